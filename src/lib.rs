@@ -1,0 +1,9 @@
+//! Exact proximity queries between continuum robots and triangle meshes.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub use parry3d_f64 as parry;
+
+mod robot;
+
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};

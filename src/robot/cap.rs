@@ -1,0 +1,8 @@
+/// The end of a [`ModifiedCylinder`](crate::ModifiedCylinder).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Cap {
+    /// A disc perpendicular to the axis: the link ends at its end point.
+    Flat,
+    /// An outward half ball of the link's radius around its end point.
+    Round,
+}

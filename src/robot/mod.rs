@@ -1,0 +1,11 @@
+//! What the robot is: links with a flat or round cap at each end, and the chain that Algorithm 1 makes of them.
+
+mod cap;
+mod chain;
+mod error;
+mod modified_cylinder;
+
+pub use cap::Cap;
+pub use chain::Chain;
+pub use error::RobotError;
+pub use modified_cylinder::ModifiedCylinder;

@@ -1,0 +1,127 @@
+//! The one shape of this crate: a cylinder whose two ends are each flat or round.
+
+use super::{Cap, RobotError};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::Capsule;
+
+/// Largest coordinate or radius that a constructor accepts. Differences of such numbers are finite,
+/// and so are the results of every query.
+pub(crate) const COORDINATE_LIMIT: Real = 1.0e300;
+
+/// A cylinder of finite length whose ends are each flat or round (paper, section III.E).
+///
+/// Two round caps make a capsule, two flat caps a cylinder. With radius 0 it is a wire; with length 0
+/// and two round caps it is a ball. Coordinates are in the unit and frame of whoever builds it.
+///
+/// ```
+/// use parry_continuum::{Cap, ModifiedCylinder, parry::math::Vector};
+///
+/// let link = ModifiedCylinder::new(Vector::ZERO, Vector::Z, 0.25, [Cap::Flat, Cap::Round])?;
+/// assert_eq!(link.length(), 1.0);
+/// # Ok::<(), parry_continuum::RobotError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModifiedCylinder {
+    start: Vector,
+    end: Vector,
+    radius: Real,
+    caps: [Cap; 2],
+}
+
+impl ModifiedCylinder {
+    /// A link from `start` to `end` with the given `radius` and the caps at start and end.
+    ///
+    /// # Errors
+    /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap is flat
+    /// although the length is 0.
+    pub fn new(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Result<Self, RobotError> {
+        check_points(&[start, end])?;
+        check_radii(&[radius])?;
+        if start == end && caps != [Cap::Round; 2] {
+            return Err(RobotError::FlatCapWithoutAxis { index: 0 });
+        }
+        Ok(Self { start, end, radius, caps })
+    }
+
+    /// A link with two round caps (the paper's K).
+    ///
+    /// # Errors
+    /// As [`ModifiedCylinder::new`].
+    pub fn capsule(start: Vector, end: Vector, radius: Real) -> Result<Self, RobotError> {
+        Self::new(start, end, radius, [Cap::Round; 2])
+    }
+
+    /// A link with two flat caps (the paper's Z).
+    ///
+    /// # Errors
+    /// As [`ModifiedCylinder::new`].
+    pub fn cylinder(start: Vector, end: Vector, radius: Real) -> Result<Self, RobotError> {
+        Self::new(start, end, radius, [Cap::Flat; 2])
+    }
+
+    /// The start point of the axis.
+    pub fn start(&self) -> Vector {
+        self.start
+    }
+
+    /// The end point of the axis.
+    pub fn end(&self) -> Vector {
+        self.end
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> Real {
+        self.radius
+    }
+
+    /// The caps at the start and at the end.
+    pub fn caps(&self) -> [Cap; 2] {
+        self.caps
+    }
+
+    /// The length of the axis; a round cap reaches one radius further.
+    pub fn length(&self) -> Real {
+        (self.end - self.start).length()
+    }
+
+    /// The unit vector from start to end, or zero for a ball.
+    pub fn axis(&self) -> Vector {
+        (self.end - self.start).normalize_or_zero()
+    }
+
+    /// The same link moved by `pose`.
+    pub fn transformed(&self, pose: &Pose) -> Self {
+        Self { start: pose * self.start, end: pose * self.end, ..*self }
+    }
+}
+
+impl TryFrom<&Capsule> for ModifiedCylinder {
+    type Error = RobotError;
+
+    fn try_from(capsule: &Capsule) -> Result<Self, RobotError> {
+        Self::capsule(capsule.segment.a, capsule.segment.b, capsule.radius)
+    }
+}
+
+/// Every coordinate is finite and within [`COORDINATE_LIMIT`].
+pub(crate) fn check_points(points: &[Vector]) -> Result<(), RobotError> {
+    for (index, point) in points.iter().enumerate() {
+        for value in point.to_array() {
+            if !value.is_finite() {
+                return Err(RobotError::PointNotFinite { index, value });
+            }
+            if value.abs() > COORDINATE_LIMIT {
+                return Err(RobotError::PointOutOfRange { index, value, limit: COORDINATE_LIMIT });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every radius is finite, not negative and within [`COORDINATE_LIMIT`].
+pub(crate) fn check_radii(radii: &[Real]) -> Result<(), RobotError> {
+    match radii.iter().position(|radius| !(0.0..=COORDINATE_LIMIT).contains(radius)) {
+        Some(index) => Err(RobotError::BadRadius { index, value: radii[index], limit: COORDINATE_LIMIT }),
+        None => Ok(()),
+    }
+}
