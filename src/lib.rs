@@ -6,4 +6,4 @@ pub use parry3d_f64 as parry;
 
 mod robot;
 
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
