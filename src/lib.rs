@@ -7,4 +7,4 @@ pub use parry3d_f64 as parry;
 mod host;
 mod robot;
 
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
