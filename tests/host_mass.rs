@@ -74,7 +74,8 @@ fn every_cap_combination_weighs_as_its_slices() {
 fn capsules_cylinders_and_balls_weigh_as_parrys() {
     let mut random = Random(2);
     for _ in 0..200 {
-        let (half, radius, pose) = (random.magnitude(1e-2, 1e1), random.magnitude(1e-2, 1e1), random.pose(5.0));
+        let (half, radius, pose) =
+            (random.magnitude(1e-2, 1e1), random.magnitude(1e-2, 1e1), random.pose(5.0));
         let (start, end) = (pose * Vector::new(0.0, -half, 0.0), pose * Vector::new(0.0, half, 0.0));
         let pairs: [(ModifiedCylinder, MassProperties); 3] = [
             (
@@ -87,7 +88,9 @@ fn capsules_cylinders_and_balls_weigh_as_parrys() {
             ),
             (
                 ModifiedCylinder::capsule(start, start, radius).unwrap(),
-                Ball::new(radius).mass_properties(3.0).transform_by(&Pose::from_parts(start, Rotation::IDENTITY)),
+                Ball::new(radius)
+                    .mass_properties(3.0)
+                    .transform_by(&Pose::from_parts(start, Rotation::IDENTITY)),
             ),
         ];
         for (link, expected) in pairs {
@@ -122,7 +125,8 @@ fn a_wire_has_no_mass_and_stays_where_it_is() {
 
 #[test]
 fn no_size_gives_a_nan() {
-    for (length, radius) in [(1e300, 1e-300), (1e-300, 1e300), (1e300, 1e300), (1e-300, 1e-300), (1e300, 0.0)] {
+    for (length, radius) in [(1e300, 1e-300), (1e-300, 1e300), (1e300, 1e300), (1e-300, 1e-300), (1e300, 0.0)]
+    {
         for caps in CAPS {
             let link = ModifiedCylinder::new(Vector::ZERO, Vector::X * length, radius, caps).unwrap();
             for density in [0.0, 1.0] {

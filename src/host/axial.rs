@@ -13,7 +13,7 @@
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
-/// A power of two and its inverse, such that `x * down` lies in [1, 2) for a normal `x`.
+/// A power of two `down` and its inverse, such that `x * down` lies in [1, 2), or between 2^-52 and 1 for a subnormal `x`.
 ///
 /// Both are normal numbers for every finite `x`, 0 included.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
@@ -27,13 +27,22 @@ pub(super) fn unit(v: Vector) -> Option<Vector> {
     if !v.is_finite() || largest == 0.0 {
         return None;
     }
-    // A subnormal vector is still below 1 after one scaling; the second brings it up.
-    let once = v * power_of_two(largest).0;
-    let twice = once * power_of_two(once.abs().max_element()).0;
-    Some(twice / twice.length())
+    let v = v * power_of_two(largest).0;
+    Some(v / v.length())
 }
 
-/// A unit vector perpendicular to the unit vector `axis`.
+/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is along the axis as far
+/// as rounding can tell.
+pub(super) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
+    let first = unit(v - axis * v.dot(axis))?;
+    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is far shorter then,
+    // and otherwise perpendicular to the last digit.
+    let second = first - axis * first.dot(axis);
+    let length = second.length();
+    (length > 0.5).then(|| second / length)
+}
+
+/// Some unit vector perpendicular to the unit vector `axis`.
 pub(super) fn perpendicular(axis: Vector) -> Vector {
     axis.any_orthonormal_vector()
 }

@@ -1,6 +1,6 @@
 //! The pieces of a link's surface: their names, as every query reports them, and their normals.
 
-use super::axial::{Axial, unit};
+use super::axial::{Axial, unit, unit_across};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::FeatureId;
@@ -20,7 +20,7 @@ pub(super) const SQUARE: u32 = 3;
 /// for a feature that the link does not have, and where there is no normal (on a wire).
 pub(super) fn normal(link: &ModifiedCylinder, feature: FeatureId, point: Vector) -> Option<Vector> {
     let (frame, from_start) = Axial::around(link, point)?;
-    let lateral = || unit(from_start - frame.axis * from_start.dot(frame.axis));
+    let lateral = || unit_across(from_start, frame.axis);
     if feature == BARREL {
         return lateral();
     }

@@ -23,9 +23,9 @@ use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Real, Rotation, Vector};
 use std::f64::consts::PI;
 
-/// One piece of the link: its share of the mass, its centre along the axis from the middle, its squared radii of gyration.
+/// One row of the table: mass, centre along the axis from its middle, squared radii of gyration.
 struct Piece {
-    share: Real,
+    mass: Real,
     centre: Real,
     axial: Real,
     transverse: Real,
@@ -34,20 +34,25 @@ struct Piece {
 /// Mass properties at uniform `density`. A wire (radius 0) has no mass.
 pub(super) fn mass_properties(link: &ModifiedCylinder, density: Real) -> MassProperties {
     let (axis, l, r) = (axis_or_x(link), link.length(), link.radius());
-    let [start_mass, end_mass] = link.caps().map(|cap| if cap == Cap::Round { 2.0 / 3.0 * r } else { 0.0 });
-    let reach = 0.5 * l + 0.375 * r;
-    let cap = |mass, centre| (mass, centre, 0.4 * r * r, 83.0 / 320.0 * r * r);
-    let column = l + start_mass + end_mass;
-    // Shares of the mass rather than masses: no product of five lengths, which could overflow on the way.
-    let pieces = [(l, 0.0, 0.5 * r * r, 0.25 * r * r + l * l / 12.0), cap(start_mass, -reach), cap(end_mass, reach)]
-        .into_iter()
-        .filter(|piece| piece.0 > 0.0)
-        .map(|(mass, centre, axial, transverse)| Piece { share: mass / column, centre, axial, transverse });
+    let half_ball = |cap, outward: Real| Piece {
+        mass: if cap == Cap::Round { 2.0 / 3.0 * r } else { 0.0 },
+        centre: outward * (0.5 * l + 0.375 * r),
+        axial: 0.4 * r * r,
+        transverse: 83.0 / 320.0 * r * r,
+    };
+    let cylinder =
+        Piece { mass: l, centre: 0.0, axial: 0.5 * r * r, transverse: 0.25 * r * r + l * l / 12.0 };
+    let [start, end] = link.caps();
+    let pieces = [cylinder, half_ball(start, -1.0), half_ball(end, 1.0)];
 
-    let centre: Real = pieces.clone().map(|piece| piece.share * piece.centre).sum();
-    let axial: Real = pieces.clone().map(|piece| piece.share * piece.axial).sum();
-    let about_centre = |piece: Piece| piece.share * (piece.transverse + (piece.centre - centre).powi(2));
-    let transverse: Real = pieces.map(about_centre).sum();
+    // Weighted by shares of the mass rather than masses, which keeps the products shorter.
+    let column: Real = pieces.iter().map(|piece| piece.mass).sum();
+    let mean = |of: &dyn Fn(&Piece) -> Real| -> Real {
+        pieces.iter().map(|piece| product(piece.mass / column, of(piece))).sum()
+    };
+    let centre = mean(&|piece| piece.centre);
+    let axial = mean(&|piece| piece.axial);
+    let transverse = mean(&|piece| piece.transverse + (piece.centre - centre).powi(2));
 
     let mass = product(density, PI * r * r * column);
     let (axial, transverse) = (product(mass, axial), product(mass, transverse));
@@ -59,7 +64,7 @@ pub(super) fn mass_properties(link: &ModifiedCylinder, density: Real) -> MassPro
     )
 }
 
-/// The product, where nothing times a number that overflowed is still nothing.
+/// The product, where nothing times a number that left the range of f64 is still nothing.
 fn product(a: Real, b: Real) -> Real {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }

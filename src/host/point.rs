@@ -15,7 +15,7 @@
 //!
 //! On the axis every direction away from it is equally close; one of them is taken.
 
-use super::axial::{Axial, perpendicular, unit};
+use super::axial::{Axial, perpendicular, unit, unit_across};
 use super::feature;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
@@ -49,15 +49,16 @@ fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
 
     // Cases 2 and 3: the capsule first, then the flat ends as half-spaces.
     let lateral = from_start - frame.axis * z;
-    let (base, away, face) = if z < 0.0 {
-        (link.start(), from_start, feature::CAP[0])
+    let (base, away, outward, face) = if z < 0.0 {
+        (link.start(), from_start, unit(from_start), feature::CAP[0])
     } else if beyond > 0.0 {
-        (link.end(), from_end, feature::CAP[1])
+        (link.end(), from_end, unit(from_end), feature::CAP[1])
     } else {
-        (link.start() + frame.restore(frame.axis * z), lateral, feature::BARREL)
+        let base = link.start() + frame.restore(frame.axis * z);
+        (base, lateral, unit_across(lateral, frame.axis), feature::BARREL)
     };
     let k = away.length();
-    let outward = unit(away).unwrap_or_else(|| perpendicular(frame.axis));
+    let outward = outward.unwrap_or_else(|| perpendicular(frame.axis));
     let mut best = Nearest {
         signed_distance: frame.restore(k - frame.radius),
         is_inside: k <= frame.radius,

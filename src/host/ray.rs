@@ -7,7 +7,7 @@
 //!
 //! 1. `0 <= z <= length`: the line enters through the barrel, at `c0`.
 //! 2. `z < 0`, flat start: it can only enter through the disc, where it crosses the plane `z = 0`, and does so exactly
-//!    when it crosses upwards and not later than `c1`.
+//!    when that is between `c0` and `c1`.
 //! 3. `z < 0`, round start: it enters where it enters the ball around the start point. (Below the plane it is in the
 //!    half ball; above, it would have crossed the plane inside the cylinder, hence inside the ball, before.) A line that
 //!    misses that ball misses the link.
@@ -20,7 +20,7 @@
 //! the half chord is `sqrt((radius - gap)(radius + gap))` for the line's distance `gap`, so that the radius never has to
 //! be told apart from the square of a far origin's distance. The direction need not have length 1; time is in units of it.
 
-use super::axial::{Axial, perpendicular, power_of_two, unit};
+use super::axial::{Axial, perpendicular, power_of_two, unit, unit_across};
 use super::feature;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
@@ -102,27 +102,23 @@ impl<'a> Line<'a> {
             let height = if end == 0 { self.z } else { self.z - self.frame.length };
             let time = -height / self.rise;
             let normal = self.frame.axis * outward;
-            // The line goes out through a plane when it moves along the outward normal.
-            let right_way = self.rise * outward * side > 0.0;
-            (right_way && enters <= time && time <= leaves).then_some(Crossing { time, normal, feature })
+            (enters <= time && time <= leaves).then_some(Crossing { time, normal, feature })
         } else {
             let (first, last) = chord(from_end, self.direction, self.frame.radius)?;
             let time = if side < 0.0 { first } else { last };
-            let normal = self.normal(from_end + self.direction * time, self.direction);
-            Some(Crossing { time, normal, feature })
+            let normal = unit(from_end + self.direction * time);
+            Some(Crossing { time, normal: normal.unwrap_or_else(|| self.facing()), feature })
         }
     }
 
     fn barrel(&self, time: Real) -> Crossing {
-        let normal = self.normal(self.lateral + self.lateral_direction * time, self.lateral_direction);
-        Crossing { time, normal, feature: feature::BARREL }
+        let normal = unit_across(self.lateral + self.lateral_direction * time, self.frame.axis);
+        Crossing { time, normal: normal.unwrap_or_else(|| self.facing()), feature: feature::BARREL }
     }
 
-    /// The outward normal at `offset` from the axis or from the centre of a ball. On a wire, where there is none, the
-    /// one that faces the ray.
-    fn normal(&self, offset: Vector, direction: Vector) -> Vector {
-        let on_wire = || unit(-direction).unwrap_or_else(|| perpendicular(self.frame.axis));
-        if self.frame.radius == 0.0 { on_wire() } else { unit(offset).unwrap_or_else(on_wire) }
+    /// The normal where a wire has none: the one that faces the ray.
+    fn facing(&self) -> Vector {
+        unit_across(-self.direction, self.frame.axis).unwrap_or_else(|| perpendicular(self.frame.axis))
     }
 }
 
@@ -150,10 +146,8 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
     if inside && solid {
         return Some(RayIntersection::new(0.0, Vector::ZERO, FeatureId::Unknown));
     }
-    // Scaled twice, so that a direction of subnormal length is a direction too.
-    let (once, _) = power_of_two(ray.dir.abs().max_element());
-    let (twice, _) = power_of_two((ray.dir * once).abs().max_element());
-    let direction = ray.dir * once * twice;
+    let (down, _) = power_of_two(ray.dir.abs().max_element());
+    let direction = ray.dir * down;
     if direction == Vector::ZERO {
         return None;
     }
@@ -161,7 +155,7 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
     let from_middle = from_start - 0.5 * frame.span;
     let closest = -from_middle.dot(direction) / direction.length_squared();
     let line = Line::new(&frame, link.caps(), from_middle + direction * closest, direction);
-    let time_of = |crossing: Crossing| frame.restore((closest + crossing.time) * twice) * once;
+    let time_of = |crossing: Crossing| frame.restore(closest + crossing.time) * down;
 
     let (time, normal, feature) = match (inside, line.interval()) {
         (true, Some((_, exit))) => (time_of(exit).max(0.0), -exit.normal, exit.feature),

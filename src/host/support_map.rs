@@ -9,7 +9,7 @@
 //! ends are support points of the two ends. They serve contact manifolds against shapes that this crate has no closed form
 //! for; no distance, contact or ray uses them.
 
-use super::axial::{axis_or_x, perpendicular, unit};
+use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
@@ -26,7 +26,7 @@ impl SupportMap for ModifiedCylinder {
         let end = usize::from(axis.dot(dir) > 0.0);
         let offset = match self.caps()[end] {
             Cap::Round => dir,
-            Cap::Flat => unit(dir - axis * axis.dot(dir)).unwrap_or(Vector::ZERO),
+            Cap::Flat => unit_across(dir, axis).unwrap_or(Vector::ZERO),
         };
         centre(self, end) + offset * self.radius()
     }
@@ -36,15 +36,14 @@ impl SupportMap for ModifiedCylinder {
 impl PolygonalFeatureMap for ModifiedCylinder {
     fn local_support_feature(&self, dir: Vector, out_feature: &mut PolygonalFeature) {
         let axis = axis_or_x(self);
-        let azimuth = unit(dir - axis * axis.dot(dir)).unwrap_or_else(|| perpendicular(axis));
+        let azimuth = unit_across(dir, axis).unwrap_or_else(|| perpendicular(axis));
         *out_feature = feature_at(self, axis, dir, azimuth);
     }
 
     fn local_support_feature_toward(&self, dir: Vector, hint: Vector, out_feature: &mut PolygonalFeature) {
         let axis = axis_or_x(self);
-        let lateral = |v: Vector| unit(v - axis * axis.dot(v));
-        let azimuth = lateral(0.5 * hint - 0.5 * self.start())
-            .or_else(|| lateral(dir))
+        let azimuth = unit_across(0.5 * hint - 0.5 * self.start(), axis)
+            .or_else(|| unit_across(dir, axis))
             .unwrap_or_else(|| perpendicular(axis));
         *out_feature = feature_at(self, axis, dir, azimuth);
     }
