@@ -4,6 +4,7 @@
 
 pub use parry3d_f64 as parry;
 
+pub mod distance;
 mod robot;
 
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};
