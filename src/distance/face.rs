@@ -12,7 +12,7 @@
 //!    leave over. The distance is |r|, the distance to an actual point of the triangle.
 //! 3. **Zero area**: the dual basis is zero and the face is marked as having no interior. The edges serve.
 
-use super::scalar::{Mask, Scalar};
+use super::scalar::Scalar;
 use super::vec3::Vec3;
 
 /// Refinements of (alpha, beta). Each wins the digits that the dual basis has; three serve a height of 1e-12.

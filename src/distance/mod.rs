@@ -31,6 +31,10 @@ mod triangle_disc;
 mod triangle_modified_cylinder;
 mod vec3;
 
+pub(crate) use face::Face;
+pub(crate) use point_modified_cylinder::Link;
+pub(crate) use triangle_modified_cylinder::Axial;
+
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;

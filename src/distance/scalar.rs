@@ -21,6 +21,9 @@ pub trait Scalar:
     /// The result of a comparison.
     type Mask: Mask<Self>;
 
+    /// The largest relative error of one rounding: 2^-24 or 2^-53.
+    const UNIT_ROUNDOFF: f64;
+
     /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double precision.
     const HALLEY_STEPS: usize;
 
@@ -81,6 +84,7 @@ macro_rules! scalar {
     ($float:ident, $halley_steps:literal, $mantissa_bits:literal, $bias:literal, $cbrt_magic:literal) => {
         impl Scalar for $float {
             type Mask = bool;
+            const UNIT_ROUNDOFF: f64 = $float::EPSILON as f64 / 2.0;
             const HALLEY_STEPS: usize = $halley_steps;
 
             #[inline(always)]

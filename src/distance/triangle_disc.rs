@@ -10,7 +10,7 @@
 //!
 //! The face's candidate is the distance between two actual points, the disc's and its foot on the triangle.
 
-use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame, plane_disc, segment_disc};
+use super::{Closest, Scalar, Vec3, face::Face, frame::Frame, plane_disc, segment_disc};
 
 /// The distance between a triangle and a solid disc with the given centre, normal (of any length) and radius;
 /// (22) to (25).

@@ -18,7 +18,7 @@
 //! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate.
 
 use super::point_modified_cylinder::Link;
-use super::{Closest, Mask, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
+use super::{Closest, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
 
 /// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to (33).
 /// `flat` says which of the two caps are flat.
@@ -77,26 +77,29 @@ impl<T: Scalar> Axial<T> {
         }
     }
 
-    /// A lower bound for the disc of case 2, tight as soon as p* is near the disc's own closest point.
+    /// A lower bound on the answer, sharper than `lower` where a flat cap decides. It stands against rounding.
     #[inline(always)]
-    pub(crate) fn plane_bound(&self, face: &Face<T>) -> T {
-        self.lower.max(bounds::separating_plane(
-            face,
-            self.upper.distance,
-            self.upper.point1,
-            self.upper.point2,
-        ))
+    pub(crate) fn plane_bound(&self, link: &Link<T>, face: &Face<T>) -> T {
+        let (centre, outward) = self.cap(link);
+        let vertices = face.vertices.map(|vertex| vertex - centre);
+        bounds::separating_plane(vertices, self.upper.point1 - centre, outward, link.radius)
     }
 
     /// The answer, discs included.
     #[inline(always)]
     pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
-        let centre = Vec3::select(self.at_flat[1], link.end, Vec3::zero(link.radius));
-        let face = face.seen_from(centre);
-        let disc = triangle_disc::from_centre(&face, link.axis, link.radius);
+        let (centre, outward) = self.cap(link);
+        let disc = triangle_disc::from_centre(&face.seen_from(centre), outward, link.radius);
         let disc =
             Closest { distance: disc.distance, point1: disc.point1 + centre, point2: disc.point2 + centre };
         let nearer = disc.distance.lt(self.upper.distance);
         Closest::select((self.at_flat[0] | self.at_flat[1]) & nearer, disc, self.upper)
+    }
+
+    /// The centre and the outward normal of the cap that p* is beyond; the start's where it is beyond neither.
+    #[inline(always)]
+    fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
+        let at_end = self.at_flat[1];
+        (Vec3::select(at_end, link.end, Vec3::zero(link.radius)), Vec3::select(at_end, link.axis, -link.axis))
     }
 }

@@ -8,4 +8,5 @@ mod modified_cylinder;
 pub use cap::Cap;
 pub use chain::Chain;
 pub use error::RobotError;
+pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
