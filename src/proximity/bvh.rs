@@ -105,7 +105,7 @@ impl Proximity for BvhSearch {
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        if !(margin >= 0.0) {
+        if margin.is_nan() || margin < 0.0 {
             return Err(ProximityError::BadMargin { margin });
         }
         place(robot.links(), pose, self.reach, &mut self.probes)?;
