@@ -8,4 +8,4 @@ pub mod distance;
 pub mod proximity;
 mod robot;
 
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
