@@ -4,7 +4,9 @@
 
 pub use parry3d_f64 as parry;
 
+pub mod distance;
 mod host;
+pub mod proximity;
 mod robot;
 
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

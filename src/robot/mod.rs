@@ -14,5 +14,6 @@ mod to_trimesh;
 pub use cap::Cap;
 pub use chain::Chain;
 pub use error::RobotError;
+pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
 pub use simplify::simplify;

@@ -5,9 +5,9 @@ use super::{Cap, RobotError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::Capsule;
 
-/// Largest coordinate or radius that a constructor accepts. Differences of such numbers are finite,
-/// and so are the results of every query.
-pub(crate) const COORDINATE_LIMIT: Real = 1.0e300;
+/// Largest coordinate or radius accepted. Squares of differences of such numbers are finite, and so are the
+/// results of every query.
+pub(crate) const COORDINATE_LIMIT: Real = 1.0e150;
 
 /// A cylinder of finite length whose ends are each flat or round (paper, section III.E).
 ///
