@@ -48,7 +48,7 @@ fn sample(polyline: &[Vector]) -> Vec<Vector> {
 fn distance_to(polyline: &[Vector], p: Vector) -> Real {
     let to_segment = |ends: &[Vector]| {
         let (w, e) = (p - ends[0], ends[1] - ends[0]);
-        let t = (w.dot(e) / e.dot(e)).max(0.0).min(1.0);
+        let t = (w.dot(e) / e.dot(e)).clamp(0.0, 1.0);
         (w - e * t).length()
     };
     polyline.windows(2).map(to_segment).fold(Real::INFINITY, Real::min)
@@ -256,6 +256,9 @@ fn tolerance_0_drops_only_what_is_exactly_collinear() {
     let (w, e) = (Vector::new(f as Real, g as Real, 0.0), Vector::new(g as Real, (f + g) as Real, 0.0));
     assert_eq!(w.cross(e), Vector::ZERO);
     assert_eq!(links(&[Vector::ZERO, w, e], 0.0), 2);
+    // Off by so little that its square underflows.
+    let nearly = [Vector::ZERO, Vector::new(0.5, 1e-170, 0.0), Vector::X];
+    assert_eq!(links(&nearly, 0.0), 2);
     // On one line, though the rounded differences of the coordinates mostly say otherwise.
     let mut random = Random(4);
     let mut naive_is_wrong = 0;
@@ -277,7 +280,7 @@ fn hooks_and_runs_back_on_a_line() {
     assert_eq!(links(&on_a_line(&[0.0, -1.0, 2.0]), 0.0), 2);
     assert_eq!(links(&on_a_line(&[0.0, -1.0, 3.0, 2.0]), 0.0), 3);
     // The hook counts with its length.
-    let overshoot = (14.0 as Real).sqrt();
+    let overshoot = 14.0_f64.sqrt();
     assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 1.000001), 1);
     assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 0.999999), 2);
     // A loop that closes is kept open by one vertex, whatever the tolerance.
@@ -317,6 +320,13 @@ fn the_unit_does_not_matter() {
             assert_eq!(again_radii, kept_radii);
         }
     }
+}
+
+#[test]
+fn a_tiny_robot_far_out() {
+    let points = [0.0, 1.0, 2.0].map(|x: Real| Vector::new(x * 1e-300, x * (2.0 - x) * 1e-300, 1e300));
+    assert_eq!(links(&points, 1e-300), 1);
+    assert_eq!(links(&points, 0.99e-300), 2);
 }
 
 #[test]

@@ -40,6 +40,17 @@ fn true_volume(link: &ModifiedCylinder) -> Real {
 }
 
 #[test]
+fn no_triangle_is_degenerate() {
+    for link in links() {
+        let (vertices, triangles) = link.to_trimesh(12);
+        for t in triangles {
+            let [a, b, c] = t.map(|i| vertices[i as usize]);
+            assert!((b - a).cross(c - a).length() > 1e-3 * link.radius().powi(2), "{t:?} of {link:?}");
+        }
+    }
+}
+
+#[test]
 fn every_edge_is_shared_by_two_triangles_that_agree_on_the_outside() {
     for link in links() {
         for nsubdiv in [0, 3, 4, 5, 17, 32] {
