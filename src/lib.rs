@@ -9,4 +9,5 @@ mod host;
 pub mod proximity;
 mod robot;
 
+pub use host::ContinuumDispatcher;
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

@@ -8,6 +8,9 @@ mod probe;
 mod report;
 mod search;
 
+pub(crate) use probe::{Probe, place};
+pub(crate) use search::{Found, Until, search};
+
 pub use bvh::BvhSearch;
 pub use engine::Proximity;
 pub use exhaustive::{Exhaustive, SearchPrecision};

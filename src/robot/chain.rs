@@ -118,6 +118,16 @@ impl Chain {
         &self.bvh
     }
 
+    /// The chain whose links are the images of this one's, or nothing if a link has none.
+    pub(crate) fn try_map(
+        &self,
+        image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
+    ) -> Option<Self> {
+        let links = self.links.iter().map(image).collect::<Option<Vec<_>>>()?;
+        let bvh = hierarchy(&links);
+        Some(Self { links, segments: self.segments.clone(), bvh })
+    }
+
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
         Self::assemble(points, segment_radii, &vec![[cap; 2]; segment_radii.len()])
@@ -143,9 +153,14 @@ impl Chain {
             )?);
             segments.push(first..next.copied().unwrap_or(radii.len()));
         }
-        let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
-        Ok(Self { links, segments, bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) })
+        let bvh = hierarchy(&links);
+        Ok(Self { links, segments, bvh })
     }
+}
+
+fn hierarchy(links: &[ModifiedCylinder]) -> Bvh {
+    let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
 }
 
 /// Equal links for equal segments. The hierarchy follows from them.
