@@ -33,7 +33,7 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 ///
 /// # Errors
 /// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also for poses,
-/// velocities or visited triangles that are not finite or beyond 1e300, for a margin that is NaN, and for the queries
+/// velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN, and for the queries
 /// that parry has not got for voxels.
 ///
 /// ```

@@ -1,7 +1,8 @@
-//! What the tests of `host` share: a seeded generator, random links, and membership in a link by a formula of its own.
+//! What the tests of `host` share: random links, and membership in a link by a formula of its own.
 #![allow(dead_code)]
 
-use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
+use crate::common::Random;
+use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{Cap, ModifiedCylinder};
 
 /// Half the distance from 1 to the next f64.
@@ -11,69 +12,43 @@ pub const U: Real = Real::EPSILON / 2.0;
 pub const CAPS: [[Cap; 2]; 4] =
     [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]];
 
-/// A small seeded generator (splitmix64).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> Real {
-        (self.bits() >> 11) as Real * (0.5 * Real::EPSILON)
-    }
-
-    pub fn between(&mut self, low: Real, high: Real) -> Real {
-        low + (high - low) * self.unit()
-    }
-
+/// What these tests draw besides points and poses.
+pub trait Draw {
     /// Uniform in the logarithm.
-    pub fn magnitude(&mut self, low: Real, high: Real) -> Real {
-        (self.between(low.ln(), high.ln())).exp()
+    fn magnitude(&mut self, low: Real, high: Real) -> Real;
+    fn index(&mut self, count: usize) -> usize;
+    fn chance(&mut self, p: Real) -> bool;
+    /// Uniform in a cube of this half width.
+    fn vector(&mut self, reach: Real) -> Vector;
+    fn caps(&mut self) -> [Cap; 2];
+    /// A link of extent about 1, from thin to flat, some along a coordinate axis, some balls and wires.
+    fn link(&mut self) -> ModifiedCylinder;
+}
+
+impl Draw for Random {
+    fn magnitude(&mut self, low: Real, high: Real) -> Real {
+        self.between(low.ln(), high.ln()).exp()
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
+    fn index(&mut self, count: usize) -> usize {
+        self.below(count as u32) as usize
     }
 
-    pub fn chance(&mut self, p: Real) -> bool {
+    fn chance(&mut self, p: Real) -> bool {
         self.unit() < p
     }
 
-    pub fn vector(&mut self, reach: Real) -> Vector {
-        Vector::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
+    fn vector(&mut self, reach: Real) -> Vector {
+        self.point() * reach
     }
 
-    pub fn direction(&mut self) -> Vector {
-        loop {
-            let v = self.vector(1.0);
-            if (0.01..1.0).contains(&v.length_squared()) {
-                return v.normalize();
-            }
-        }
+    fn caps(&mut self) -> [Cap; 2] {
+        CAPS[self.index(4)]
     }
 
-    pub fn rotation(&mut self) -> Rotation {
-        let (axis, angle) = (self.direction(), self.between(-3.0, 3.0));
-        Rotation::from_axis_angle(axis, angle)
-    }
-
-    pub fn pose(&mut self, reach: Real) -> Pose {
-        Pose::from_parts(self.vector(reach), self.rotation())
-    }
-
-    pub fn caps(&mut self) -> [Cap; 2] {
-        CAPS[self.below(4)]
-    }
-
-    /// A link of extent about 1, from thin to flat, some along a coordinate axis, some balls and wires.
-    pub fn link(&mut self) -> ModifiedCylinder {
+    fn link(&mut self) -> ModifiedCylinder {
         let start = self.vector(1.0);
-        let axis = if self.chance(0.2) { Vector::AXES[self.below(3)] } else { self.direction() };
+        let axis = if self.chance(0.2) { Vector::AXES[self.index(3)] } else { self.direction() };
         let radius = if self.chance(0.05) { 0.0 } else { self.magnitude(1e-3, 2.0) };
         if self.chance(0.05) {
             return ModifiedCylinder::capsule(start, start, radius).unwrap();
@@ -105,12 +80,12 @@ pub fn violation(link: &ModifiedCylinder, p: Vector) -> Real {
 pub fn surface_point(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let axis = (link.end() - link.start()).normalize_or(Vector::X);
     let side = axis.cross(random.direction()).normalize_or(axis.any_orthonormal_vector());
-    let (piece, r) = (random.below(4), link.radius());
+    let (piece, r) = (random.index(4), link.radius());
     if piece == 0 {
-        let t = if random.chance(0.1) { random.below(2) as Real } else { random.unit() };
+        let t = if random.chance(0.1) { random.index(2) as Real } else { random.unit() };
         return link.start() * (1.0 - t) + link.end() * t + side * r;
     }
-    let end = random.below(2);
+    let end = random.index(2);
     let (centre, outward) = if end == 0 { (link.start(), -axis) } else { (link.end(), axis) };
     match link.caps()[end] {
         Cap::Flat => centre + side * (r * if piece == 1 { 1.0 } else { random.unit().sqrt() }),
