@@ -51,8 +51,8 @@ pub fn segment_disc<T: Scalar>(
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
     let line = Line::new(ends, normal);
-    let s = line.nearest_to_disc(radius);
-    line.closest_at(s, ends, normal, radius)
+    let (s, pierces) = line.nearest_to_disc(radius);
+    line.closest_at(s, pierces, ends, normal, radius)
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
@@ -102,9 +102,9 @@ impl<T: Scalar> Line<T> {
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
 
-    /// The s at which the line is closest to the solid disc.
+    /// The s at which the line is closest to the solid disc, and whether it meets the disc there.
     #[inline(always)]
-    fn nearest_to_disc(&self, radius: T) -> T {
+    fn nearest_to_disc(&self, radius: T) -> (T, T::Mask) {
         let zero = radius.zero();
         let one = radius.one();
         let root_m = self.m.sqrt();
@@ -142,14 +142,25 @@ impl<T: Scalar> Line<T> {
 
         // Case 1.
         let (rho_plane, _) = self.radial_at(plane);
-        (reaches_plane & rho_plane.le(radius)).select(plane, s)
+        let pierces = reaches_plane & rho_plane.le(radius);
+        (pierces.select(plane, s), pierces)
     }
 
-    /// The closest points for the line's minimiser `s`, clamped to the segment.
+    /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc there and the
+    /// segment gets that far, they have that point in common, whatever rounding says of its height.
     #[inline(always)]
-    fn closest_at(&self, s: T, [start, end]: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
+    fn closest_at(
+        &self,
+        s: T,
+        pierces: T::Mask,
+        [start, end]: [Vec3<T>; 2],
+        normal: Vec3<T>,
+        radius: T,
+    ) -> Closest<T> {
         let zero = radius.zero();
-        let t = s.mul_add(self.sign, self.foot).max(zero).min(self.length);
+        let along = s.mul_add(self.sign, self.foot);
+        let pierced = pierces & zero.le(along) & along.le(self.length);
+        let t = along.max(zero).min(self.length);
         // From the nearer end, so that the rounding of a long segment's direction counts least.
         let near_start = (t + t).le(self.length);
         let point = Vec3::select(
@@ -158,6 +169,7 @@ impl<T: Scalar> Line<T> {
             end.along(self.direction, t - self.length),
         );
         let (distance, on_disc) = super::point_disc::from_centre(point, normal, radius);
-        Closest { distance, point1: point, point2: on_disc }
+        let point1 = Vec3::select(pierced, on_disc, point);
+        Closest { distance: pierced.select(zero, distance), point1, point2: on_disc }
     }
 }
