@@ -7,15 +7,15 @@
 //!
 //! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they are close, since
 //!    rounding turns it by the extent over the distance. The normals of the features don't suffer from that: the face's, the
-//!    axis, the products of axis and edges, and the direction from the axis to the triangle. The one with the largest gap is
-//!    the contact's normal.
+//!    axis, the products of axis and edges, and the direction from the axis to the triangle made perpendicular to either.
+//!    The one with the largest gap is the contact's normal.
 //! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so the least
 //!    translation is along the way from the axis to the triangle, and `radius - F` long for their distance `F`.
 //! 3. **Otherwise**, the direction with the largest gap among those of case 1 and the one that parry's expanding polytope
 //!    finds. The translation separates, but it need not be the least: the least can lie along a rim, which the polytope only
 //!    approaches. Moved apart by it the two touch, or come as near as that, and the touching points are the contact's.
 
-use super::axial::{perpendicular, power_of_two, unit};
+use super::axial::{perpendicular, power_of_two, unit, unit_across};
 use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -82,12 +82,12 @@ impl Local {
 
         // Case 1.
         if distance > 0.0 {
-            let directions = [unit(on_triangle - on_link), outward].into_iter().flatten();
-            let (_, normal) = self.widest_gap(directions);
+            let (_, normal) = self.widest_gap([unit(on_triangle - on_link), outward]);
             return LinkContact { distance, on_link, on_triangle, normal };
         }
         // Case 2.
-        if let (Some(normal), [Cap::Round, Cap::Round]) = (outward, self.link.caps()) {
+        if let (Some(_), [Cap::Round, Cap::Round]) = (outward, self.link.caps()) {
+            let (_, normal) = self.widest_gap([outward, None]);
             let distance = (axis_distance.distance - radius).min(0.0);
             let on_triangle = on_axis + from_axis;
             return LinkContact { distance, on_link: on_axis + normal * radius, on_triangle, normal };
@@ -97,7 +97,7 @@ impl Local {
         let polytope =
             contact_support_map_support_map(&Pose::IDENTITY, &self.link, &Triangle::new(a, b, c), 0.0);
         let polytope = polytope.and_then(|contact| unit(contact.normal1));
-        let (gap, normal) = self.widest_gap(outward.into_iter().chain(polytope));
+        let (gap, normal) = self.widest_gap([outward, polytope]);
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = self.closest(self.triangle.map(|vertex| vertex - normal * distance));
         LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal }
@@ -111,16 +111,21 @@ impl Local {
         (closest.distance, to_vector(closest.point2), to_vector(closest.point1))
     }
 
-    /// The largest gap and its direction, among the features' normals and `more`.
-    fn widest_gap(&self, more: impl Iterator<Item = Vector>) -> (Real, Vector) {
+    /// The largest gap and its direction, among the features' normals and `more`, as they are and made perpendicular to the
+    /// edges and the axis.
+    fn widest_gap(&self, more: [Option<Vector>; 2]) -> (Real, Vector) {
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = self.link.axis();
         let face = unit(to_vector(Face::new(self.triangle.map(to_vec3)).normal));
         // Some direction across whatever direction there is, should nothing else be left.
         let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
-        let products = edges.map(|edge| unit(edge).and_then(|edge| unit(edge.cross(axis))));
+        let edges = edges.map(unit);
+        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
         let lines = [face, unit(axis), Some(across)].into_iter().chain(products).flatten();
+        let more = more.into_iter().flatten();
+        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
+        let turned = more.clone().flat_map(|n| straight().map(move |line| unit_across(n, line)));
 
         let gap = |n: Vector| {
             let reach = self.link.local_support_point(n);
@@ -128,7 +133,7 @@ impl Local {
         };
         let mut best = (Real::NEG_INFINITY, across);
         // The first of equals stays, so `more` goes first.
-        for n in more.chain(lines.flat_map(|n| [n, -n])) {
+        for n in more.chain(turned.flatten()).chain(lines.flat_map(|n| [n, -n])) {
             let gap = gap(n);
             if gap > best.0 {
                 best = (gap, n);
