@@ -127,3 +127,35 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
         }
     }
 }
+
+/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a descent from the
+/// best of them can tell.
+#[test]
+fn no_sampled_direction_separates_sooner() {
+    let mut random = Random::new(64);
+    let mut checked = 0;
+    for _ in 0..2000 {
+        let link = random.link();
+        let Some(triangle) = crossing(&mut random, &link) else { continue };
+        let found = contact(&link, &triangle);
+        if link.radius() < 1e-2 || found.dist > -1e-6 {
+            continue;
+        }
+        checked += 1;
+        let try_all = |directions: &mut dyn Iterator<Item = Vector>, best: (Real, Vector)| {
+            directions.map(|n| (gap(&link, &triangle, n), n)).fold(best, |a, b| if b.0 > a.0 { b } else { a })
+        };
+        let worst = (Real::NEG_INFINITY, Vector::X);
+        let mut best = try_all(&mut (0..200).map(|_| random.direction()), worst);
+        let mut step = 0.3;
+        while step > 1e-8 {
+            let around = best.1;
+            let mut near = (0..12).map(|_| (around + random.direction() * step).normalize());
+            let next = try_all(&mut near, best);
+            step *= if next.0 > best.0 { 1.0 } else { 0.5 };
+            best = next;
+        }
+        assert!(best.0 <= found.dist * (1.0 - 1e-9), "{link:?} {triangle:?}: {found:?}, but {best:?}");
+    }
+    assert!(checked > 300, "{checked}");
+}
