@@ -118,7 +118,8 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
     let rod = ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.5).unwrap();
     let needle = Triangle::new(-Vector::Y, Vector::ZERO, 2.0 * Vector::Y);
     let dot = Triangle::new(Vector::ZERO, Vector::ZERO, Vector::ZERO);
-    for link in [ball, wire, rod] {
+    let point = ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, 0.0).unwrap();
+    for link in [ball, wire, rod, point] {
         for triangle in [needle, dot] {
             let found = contact(&link, &triangle);
             let apart = triangle.transformed(&Pose::from_translation(-found.normal1 * found.dist));

@@ -14,7 +14,7 @@ use parry_continuum::parry::query::{
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
 };
 use parry_continuum::parry::shape::{
-    Compound, Cuboid, HeightField, Shape, SharedShape, TriMesh, Triangle, Voxels,
+    Ball, Compound, Cuboid, HeightField, Shape, SharedShape, TriMesh, Triangle, Voxels,
 };
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
@@ -75,6 +75,19 @@ impl Scene {
         all.map(|(link, triangle)| self.pair(link, triangle)).fold(Real::INFINITY, Real::min)
     }
 
+    /// Of the contacts of all links and triangles.
+    fn deepest(&self, dispatcher: &ContinuumDispatcher) -> Real {
+        let mut deepest: Real = 0.0;
+        for link in &self.links {
+            for triangle in &self.triangles {
+                let pos12 = self.poses[0].inv_mul(&self.poses[1]);
+                let contact = dispatcher.contact(&pos12, link, triangle, 0.0).unwrap();
+                deepest = contact.map_or(deepest, |contact| deepest.min(contact.dist));
+            }
+        }
+        deepest
+    }
+
     /// Both orders: whether the robot is first, the relative pose, the shapes.
     fn orders(&self) -> [(bool, Pose, &dyn Shape, &dyn Shape); 2] {
         let [robot, surface] = self.poses;
@@ -131,6 +144,10 @@ fn robots_and_surfaces_get_the_kernels_answers_in_both_orders() {
             assert!((contact.normal1 + pos12.rotation * contact.normal2).length() <= ROUNDING);
             assert!((contact.normal1.length() - 1.0).abs() <= ROUNDING);
             assert!(named(contact.subshape1, contact.subshape2) <= least + ROUNDING);
+            if least == 0.0 {
+                let deepest = scene.deepest(&dispatcher);
+                assert!((contact.dist - deepest).abs() <= 1e-6, "{contact:?} for {deepest}");
+            }
             let between = pos12 * contact.point2 - contact.point1;
             assert!((between - contact.normal1 * contact.dist).length() <= 1e-5, "{contact:?} {between}");
         }
@@ -181,6 +198,31 @@ fn margins_include_what_is_exactly_that_far() {
             }
         }
     }
+}
+
+#[test]
+fn margins_mean_the_same_through_a_compound() {
+    let dispatcher = ContinuumDispatcher::default();
+    let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z, 0.5).unwrap();
+    let wall = |x| {
+        let corners = [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)].map(|(y, z)| Vector::new(x, y, z));
+        Compound::new(vec![(Pose::IDENTITY, SharedShape::new(Triangle::from(corners)))])
+    };
+    let (pose, apart, across) = (Pose::IDENTITY, wall(2.0), wall(0.375));
+    for (g1, g2) in [(&apart as &dyn Shape, &link as &dyn Shape), (&link, &apart)] {
+        assert_ne!(dispatcher.closest_points(&pose, g1, g2, 1.5).unwrap(), ClosestPoints::Disjoint);
+        assert_eq!(dispatcher.closest_points(&pose, g1, g2, 1.5 - 1e-9).unwrap(), ClosestPoints::Disjoint);
+        assert!(dispatcher.contact(&pose, g1, g2, 1.5).unwrap().is_some());
+    }
+    // A negative margin asks for an overlap that deep. This one is 0.125.
+    for (g1, g2) in [(&across as &dyn Shape, &link as &dyn Shape), (&link, &across)] {
+        assert!(dispatcher.contact(&pose, g1, g2, -0.1).unwrap().is_some());
+        assert_eq!(dispatcher.contact(&pose, g1, g2, -0.2).unwrap(), None);
+    }
+    // parry finds no part where squares of coordinates overflow, and takes that for the largest number.
+    let ball = SharedShape::new(Ball::new(1.0));
+    let far = Compound::new(vec![(Pose::from_translation(Vector::splat(1e200)), ball)]);
+    assert!(dispatcher.distance(&pose, &far, &link).is_err());
 }
 
 /// Every pair of a robot and a composite, with the poses that bring them near each other.

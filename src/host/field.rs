@@ -32,13 +32,9 @@ impl<D: QueryDispatcher> FieldPair<'_, D> {
     }
 
     pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
-        let nearest = self.distance()?;
-        match self.field.triangle_at_id(nearest.subshape1) {
-            Some(element) if nearest.distance <= max_dist.max(0.0) => {
-                self.dispatcher.closest_points(self.pos12, &element, self.other, max_dist)
-            }
-            _ => Ok(ClosestPoints::Disjoint),
-        }
+        let nearest = self.distance()?.subshape1;
+        let element = self.field.triangle_at_id(nearest).ok_or(Unsupported)?;
+        self.dispatcher.closest_points(self.pos12, &element, self.other, max_dist)
     }
 
     pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
@@ -146,7 +142,7 @@ pub(super) fn cast_nonlinear(
     Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
 }
 
-/// Whether a shape, whose pose is in the voxels' frame, meets a voxel that is not empty.
+/// Whether a shape, whose pose is in the voxels' frame, meets one of them.
 pub(super) fn intersection_test_voxels(
     dispatcher: &impl QueryDispatcher,
     pos12: &Pose,
@@ -157,7 +153,9 @@ pub(super) fn intersection_test_voxels(
         return Ok(ShapeIntersection::new(false));
     };
     let cube = Cuboid::new(voxels.voxel_size() * 0.5);
-    for voxel in voxels.voxels_intersecting_local_aabb(&common).filter(|voxel| !voxel.state.is_empty()) {
+    let size = common.mins.abs().max(common.maxs.abs()).max_element();
+    let common = common.loosened(16.0 * Real::EPSILON * size);
+    for voxel in voxels.voxels_intersecting_local_aabb(&common) {
         let pos12 = Pose::from_translation(-voxel.center) * *pos12;
         let found = dispatcher.intersection_test(&pos12, &cube, other)?;
         if found.intersecting {
