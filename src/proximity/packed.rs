@@ -7,6 +7,20 @@ use crate::distance::{Axial, Face, Link, Scalar, Vec3};
 /// How many triangles stand together in memory: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
 
+/// Patches of the mesh: what a hierarchy's node knows of its children.
+#[derive(Clone, Copy)]
+pub(super) struct Patches<L> {
+    pub centre: Vec3<L>,
+    /// Half extents of the box around the centre.
+    pub half: Vec3<L>,
+    /// The unit normal of the disc around the centre.
+    pub normal: Vec3<L>,
+    /// How far the patch reaches from the centre along the normal.
+    pub thickness: L,
+    /// How far it reaches across the normal.
+    pub radius: L,
+}
+
 /// A link in every lane.
 #[derive(Clone, Copy)]
 pub(super) struct PackedLink<L: Scalar> {
@@ -49,23 +63,39 @@ impl<L: Pack> PackedLink<L> {
         L::bits(self.from_axis(centre).norm_squared().lt(reach * reach))
     }
 
-    /// The squared distance between the axis and boxes, from below but for rounding.
+    /// The squared distance between the axis and patches, from below but for rounding.
     ///
-    /// Two bounds, of which the larger counts. With v from the axis to the box's centre and h the half extents,
-    /// the plane with normal v through the axis keeps |v| - <|v|, h> / |v| from the box: nearly exact for a box
-    /// that is small against its distance. The distance between the boxes of node and axis serves large ones.
+    /// Let v lead from the axis to a patch's centre. The plane through the axis point with normal v keeps
+    /// |v| - e from the patch, where e is how far the patch reaches from its centre against v: at most
+    /// (|v_n| thickness + |v_t| radius) / |v| for its disc, with v_n and v_t the parts of v along and across the
+    /// disc's normal, and <|v|, half> / |v| for its box. The disc is nearly exact for a patch of wall, however it
+    /// is turned. The distance between the boxes of patch and axis serves the large patches near the root.
     #[inline(always)]
-    pub(super) fn squared_distance_to_boxes(&self, centre: Vec3<L>, half: Vec3<L>) -> L {
+    pub(super) fn squared_distance_to_patches(&self, patch: &Patches<L>) -> L {
         let zero = self.length.zero();
-        let v = self.from_axis(centre);
+        let v = self.from_axis(patch.centre);
         let squared = v.norm_squared();
-        let ahead = (squared - magnitudes(v).dot(half)).max(zero);
+        let normal_part = v.dot(patch.normal);
+        let across = (squared - normal_part * normal_part).max(zero).sqrt();
+        let disc = normal_part.abs().mul_add(patch.thickness, across * patch.radius);
+        let reach = disc.min(magnitudes(v).dot(patch.half));
+        let ahead = (squared - reach).max(zero);
         let plane = (ahead * ahead).over(squared);
 
         let middle = self.link.end * zero.lit(0.5);
-        let gap = magnitudes(centre - self.start - middle) - half - magnitudes(middle);
+        let gap = magnitudes(patch.centre - self.start - middle) - patch.half - magnitudes(middle);
         let gap = Vec3::new(gap.x.max(zero), gap.y.max(zero), gap.z.max(zero));
         plane.max(gap.norm_squared())
+    }
+
+    /// Which triangles the plane of [`PackedLink::squared_distance_to_patches`] does not rule out, as bits.
+    #[inline(always)]
+    pub(super) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
+        let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
+        let v = self.from_axis(centre);
+        let foot = centre - v;
+        let ahead = v.dot(a - foot).min(v.dot(b - foot)).min(v.dot(c - foot)).max(limit.zero());
+        L::bits((ahead * ahead).lt(limit * limit * v.norm_squared()))
     }
 
     /// Which triangles may be nearer than the bound whose axis limit is `limit`, as bits, and the squares of

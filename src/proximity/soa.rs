@@ -103,7 +103,7 @@ impl<E: Lane> SoaMesh<E> {
 
 /// Three coordinates from the rows `row` to `row + 2`.
 #[inline(always)]
-fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
+pub(super) fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
     let rows = &rows[row * BLOCK + lane..];
     Vec3::new(L::load(token, rows), L::load(token, &rows[BLOCK..]), L::load(token, &rows[2 * BLOCK..]))
 }
