@@ -117,7 +117,7 @@ impl Local {
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = self.link.axis();
-        let face = unit(to_vector(Face::new(self.triangle.map(to_vec3)).normal));
+        let face = unit(to_vector(Face::new(self.triangle.map(to_vec3)).normal()));
         // Some direction across whatever direction there is, should nothing else be left.
         let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
         let edges = edges.map(unit);
