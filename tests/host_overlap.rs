@@ -5,10 +5,10 @@ mod host_common;
 
 use common::Random;
 use host_common::Draw;
-use parry_continuum::ContinuumDispatcher;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query::{ClosestPoints, PointQuery, QueryDispatcher};
-use parry_continuum::parry::shape::{TriMesh, Triangle};
+use parry_continuum::parry::shape::{Shape, TriMesh, Triangle};
+use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
 #[test]
 fn an_overlap_is_an_overlap_to_every_query() {
@@ -39,4 +39,24 @@ fn an_overlap_is_an_overlap_to_every_query() {
         assert!(contact.is_some_and(|contact| contact.dist < 0.0), "{contact:?} {}", context());
     }
     assert!(flat_caps > 5000, "{flat_caps}");
+}
+
+#[test]
+fn a_wire_through_a_triangle_meets_it() {
+    let dispatcher = ContinuumDispatcher::default();
+    let mut random = Random::new(52);
+    for _ in 0..5000 {
+        let inside = random.vector(1.0);
+        let way = random.vector(1.0);
+        let (start, end) = (inside - way * random.between(0.1, 1.0), inside + way * random.between(0.1, 1.0));
+        let wire = ModifiedCylinder::new(start, end, 0.0, random.caps()).unwrap();
+        let (a, b) = (inside + random.vector(2.0), inside + random.vector(2.0));
+        let triangle = Triangle::new(a, b, inside * 3.0 - a - b);
+        let mesh = TriMesh::new(triangle.vertices().to_vec(), vec![[0, 1, 2]]).unwrap();
+        for surface in [&triangle as &dyn Shape, &mesh] {
+            let distance = dispatcher.distance(&Pose::IDENTITY, &wire, surface).unwrap().distance;
+            assert_eq!(distance, 0.0, "{wire:?} {triangle:?}");
+            assert!(dispatcher.intersection_test(&Pose::IDENTITY, surface, &wire).unwrap().intersecting);
+        }
+    }
 }
