@@ -1,4 +1,5 @@
-//! Contacts: exact while apart, exact for capsules whose axis stays outside, and always a translation that separates.
+//! Contacts: exact while apart, exact for capsules whose axis stays outside, and always a translation that
+//! separates.
 
 mod common;
 mod host_common;
@@ -129,8 +130,8 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
     }
 }
 
-/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a descent from the
-/// best of them can tell.
+/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a
+/// descent from the best of them can tell.
 #[test]
 fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);

@@ -1,5 +1,5 @@
-//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and against
-//! parry, and unchanged by the unit of length.
+//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and
+//! against parry, and unchanged by the unit of length.
 
 mod common;
 mod host_common;
@@ -52,8 +52,9 @@ fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() 
 
         if distance > 0.0 {
             outside += 1;
-            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the normal is. On a rim
-            // the normal is the difference of the witnesses, which is only as good as they are apart.
+            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the
+            // normal is. On a rim the normal is the difference of the witnesses, which is only as good as
+            // they are apart.
             let (normal, tolerance) = match feature {
                 FeatureId::Face(_) => (link.feature_normal_at_point(0, feature, p), 16.0),
                 _ if apart < 1e-9 * coordinates => (None, 0.0),
@@ -132,8 +133,8 @@ fn points_agree_with_parrys_capsule_and_cylinder() {
     }
 }
 
-/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the disc, 0.95 to the
-/// half ball.
+/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the
+/// disc, 0.95 to the half ball.
 #[test]
 fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
     let link = ModifiedCylinder::new(Vector::ZERO, 0.1 * Vector::Z, 1.0, [Cap::Flat, Cap::Round]).unwrap();
@@ -142,8 +143,8 @@ fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
     assert_eq!(feature, FeatureId::Face(1));
 }
 
-/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far away, its direction
-/// of any length.
+/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far
+/// away, its direction of any length.
 fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
     let origin = point_near(random, link);
     let target = surface_point(random, link);
@@ -203,8 +204,8 @@ fn rays_hit_where_the_distance_first_vanishes() {
     assert!(marched > count * 8 / 10, "{marched} conclusive of {count}");
 }
 
-/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and exit normals both point
-/// against the ray and are the surface's.
+/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and exit
+/// normals both point against the ray and are the surface's.
 #[test]
 fn hollow_rays_leave_where_the_reversed_ray_enters() {
     let mut random = Random::new(15);
@@ -342,8 +343,8 @@ fn a_ray_without_direction_hits_the_solid_it_starts_in() {
     }
 }
 
-/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its way in, and not at all on
-/// its way out.
+/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its way in,
+/// and not at all on its way out.
 #[test]
 fn rays_from_the_surface_hit_inwards_only() {
     let mut random = Random::new(27);

@@ -1,4 +1,5 @@
-//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the true shape.
+//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the
+//! true shape.
 
 mod common;
 mod host_common;
@@ -62,8 +63,8 @@ fn boxes_touch_the_link_on_all_six_sides() {
     }
 }
 
-/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a surface point on the far side
-/// would be further than the radius.
+/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a surface point on
+/// the far side would be further than the radius.
 #[test]
 fn bounding_spheres_are_the_smallest() {
     let mut random = Random::new(23);

@@ -1,7 +1,8 @@
 //! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers exactly.
 //!
-//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays where it is and
-//! the robot is moved into its frame. Answers go back to the frames of the two shapes at the end.
+//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays
+//! where it is and the robot is moved into its frame. Answers go back to the frames of the two shapes at the
+//! end.
 
 use super::link_contact::{self, LinkContact};
 use crate::distance::{Vec3, triangle_modified_cylinder};

@@ -60,8 +60,8 @@ impl Draw for Random {
     }
 }
 
-/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a membership test, not the
-/// distance. Uses nothing of the crate but the link's data.
+/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a membership
+/// test, not the distance. Uses nothing of the crate but the link's data.
 pub fn violation(link: &ModifiedCylinder, p: Vector) -> Real {
     let span = link.end() - link.start();
     let axis = span.normalize_or_zero();
