@@ -25,7 +25,9 @@
 //! 2. **It does not**: top = min(R sqrt m, h / L), since g >= 0 at either.
 //! 3. **Start from the left**: Newton's step from s = 0, where g = -R N / rho.
 //! 4. **Start at the cusp**, a line nearly parallel to the plane and nearly tangent to the circle, where g bends
-//!    like a cube root: w = tau x with x = sqrt(K^2 - 1) + cbrt(2 N / tau), K = R m^1.5 / tau.
+//!    like a cube root: w = tau x with x = sqrt(K^2 - 1) + cbrt(2 N / tau), K = R m^1.5 / tau. Away from the
+//!    cusp that falls short, even below 0. But L^2 + m = 1 makes g = s - R w / rho, and w / rho grows with s, so
+//!    the minimiser is never left of R N / |q|: no start is.
 //! 5. **Along the normal**, m = 0: every point of the line has the same rho; s = 0 is in the disc's plane.
 //! 6. **A point**, |e| = 0: B = 0 and s = 0.
 //!
@@ -123,7 +125,7 @@ impl<T: Scalar> Line<T> {
         let rim_m = rim * self.m;
         let tangent = ((rim_m - self.tau) * (rim_m + self.tau)).max(zero).sqrt();
         let cusp = (self.n + self.n).over(self.tau).cbrt_estimate().mul_add(self.tau, tangent);
-        let from_cusp = zero.lt(self.m).select((cusp - self.n).over(self.m), top);
+        let from_cusp = (cusp - self.n).over(self.m).max(ratio0 * self.n);
         let mut s = top.min(from_zero).min(from_cusp);
 
         for _ in 0..T::HALLEY_STEPS {
