@@ -31,7 +31,8 @@
 //! 5. **Along the normal**, m = 0: every point of the line has the same rho; s = 0 is in the disc's plane.
 //! 6. **A point**, |e| = 0: B = 0 and s = 0.
 //!
-//! The least of 2, 3 and 4 is the start.
+//! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
+//! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
@@ -128,6 +129,7 @@ impl<T: Scalar> Line<T> {
         let from_cusp = (cusp - self.n).over(self.m).max(ratio0 * self.n);
         let mut s = top.min(from_zero).min(from_cusp);
 
+        let (mut low, mut high) = (zero, top);
         for _ in 0..T::HALLEY_STEPS {
             let (rho, w) = self.radial_at(s);
             let inverse = one.over(rho);
@@ -139,7 +141,10 @@ impl<T: Scalar> Line<T> {
             let g2 = one.lit(3.0) * ratio * turn * turn.mul_add(-turn, self.m) * inverse;
             let halley = (g1 * g1) * one.lit(2.0) - g * g2;
             let step = zero.lt(halley).select((g * g1 * one.lit(2.0)).over(halley), g.over(g1));
-            s = (s - step).max(zero).min(top);
+            let below = g.lt(zero);
+            low = below.select(s, low);
+            high = below.select(high, s);
+            s = (s - step).max(low).min(high);
         }
 
         // Case 1.
