@@ -55,16 +55,19 @@ pub fn segment_disc<T: Scalar>(
 pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
     let line = Line::new(ends, normal);
     let s = line.nearest_to_disc(radius);
-    line.closest_at(s, ends, normal, radius)
+    line.closest_at(s, normal, radius)
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
 struct Line<T: Scalar> {
-    /// Unit direction of the segment, and its length.
+    /// Unit direction of the segment.
     direction: Vec3<T>,
-    length: T,
-    /// Where the foot of the centre lies, from the segment's start along its direction.
+    /// The end nearer to the foot of the disc's centre, from which positions along the direction count.
+    near: Vec3<T>,
+    far: Vec3<T>,
+    /// The positions of the foot and of the far end.
     foot: T,
+    far_at: T,
     /// -1 where s runs against the direction.
     sign: T,
     h: T,
@@ -82,8 +85,13 @@ impl<T: Scalar> Line<T> {
         let edge = end - start;
         let direction = edge.normalised();
         let length = edge.dot(direction);
-        let foot = -start.dot(direction);
-        let from_centre = start.along(direction, foot);
+        let (from_start, from_end) = (-start.dot(direction), -end.dot(direction));
+        let start_nearer = from_start.abs().le(from_end.abs());
+        let near = Vec3::select(start_nearer, start, end);
+        let far = Vec3::select(start_nearer, end, start);
+        let foot = start_nearer.select(from_start, from_end);
+        let far_at = start_nearer.select(length, -length);
+        let from_centre = near.along(direction, foot);
 
         let (height, slope) = (from_centre.dot(normal), direction.dot(normal));
         let radial = from_centre.along(normal, -height);
@@ -95,7 +103,20 @@ impl<T: Scalar> Line<T> {
         let n = shallow.select(-(height * slope), radial.dot(flat));
         let q = shallow.select(n.mul_add(n, tau * tau).over(m), radial.norm_squared());
         let sign = n.lt(n.zero()).select(-n.one(), n.one());
-        Self { direction, length, foot, sign, h: height.abs(), lambda: slope.abs(), m, n: n.abs(), tau, q }
+        Self {
+            direction,
+            near,
+            far,
+            foot,
+            far_at,
+            sign,
+            h: height.abs(),
+            lambda: slope.abs(),
+            m,
+            n: n.abs(),
+            tau,
+            q,
+        }
     }
 
     /// The distance from the disc's axis, and w, at s.
@@ -154,15 +175,15 @@ impl<T: Scalar> Line<T> {
 
     /// The closest points for the line's minimiser `s`, clamped to the segment.
     #[inline(always)]
-    fn closest_at(&self, s: T, [start, end]: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
+    fn closest_at(&self, s: T, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
-        let t = s.mul_add(self.sign, self.foot).max(zero).min(self.length);
-        // From the nearer end, so that the rounding of a long segment's direction counts least.
-        let near_start = (t + t).le(self.length);
+        let t = s.mul_add(self.sign, self.foot).max(self.far_at.min(zero)).min(self.far_at.max(zero));
+        // From the end nearer to it, so that the rounding of a long segment's direction counts least.
+        let by_near_end = (t + t).abs().le(self.far_at.abs());
         let point = Vec3::select(
-            near_start,
-            start.along(self.direction, t),
-            end.along(self.direction, t - self.length),
+            by_near_end,
+            self.near.along(self.direction, t),
+            self.far.along(self.direction, t - self.far_at),
         );
         let (distance, on_disc) = super::point_disc::from_centre(point, normal, radius);
         Closest { distance, point1: point, point2: on_disc }
