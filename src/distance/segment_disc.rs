@@ -25,11 +25,14 @@
 //! 2. **It does not**: top = min(R sqrt m, h / L), since g >= 0 at either.
 //! 3. **Start from the left**: Newton's step from s = 0, where g = -R N / rho.
 //! 4. **Start at the cusp**, a line nearly parallel to the plane and nearly tangent to the circle, where g bends
-//!    like a cube root: w = tau x with x = sqrt(K^2 - 1) + cbrt(2 N / tau), K = R m^1.5 / tau.
+//!    like a cube root: w = tau x with x = sqrt(K^2 - 1) + cbrt(2 N / tau), K = R m^1.5 / tau. Away from the
+//!    cusp that falls short, even below 0. But L^2 + m = 1 makes g = s - R w / rho, and w / rho grows with s, so
+//!    the minimiser is never left of R N / |q|: no start is.
 //! 5. **Along the normal**, m = 0: every point of the line has the same rho; s = 0 is in the disc's plane.
 //! 6. **A point**, |e| = 0: B = 0 and s = 0.
 //!
-//! The least of 2, 3 and 4 is the start.
+//! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
+//! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
@@ -52,16 +55,19 @@ pub fn segment_disc<T: Scalar>(
 pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
     let line = Line::new(ends, normal);
     let (s, pierces) = line.nearest_to_disc(radius);
-    line.closest_at(s, pierces, ends, normal, radius)
+    line.closest_at(s, pierces, normal, radius)
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
 struct Line<T: Scalar> {
-    /// Unit direction of the segment, and its length.
+    /// Unit direction of the segment.
     direction: Vec3<T>,
-    length: T,
-    /// Where the foot of the centre lies, from the segment's start along its direction.
+    /// The end nearer to the foot of the disc's centre, from which positions along the direction count.
+    near: Vec3<T>,
+    far: Vec3<T>,
+    /// The positions of the foot and of the far end.
     foot: T,
+    far_at: T,
     /// -1 where s runs against the direction.
     sign: T,
     h: T,
@@ -79,8 +85,13 @@ impl<T: Scalar> Line<T> {
         let edge = end - start;
         let direction = edge.normalised();
         let length = edge.dot(direction);
-        let foot = -start.dot(direction);
-        let from_centre = start.along(direction, foot);
+        let (from_start, from_end) = (-start.dot(direction), -end.dot(direction));
+        let start_nearer = from_start.abs().le(from_end.abs());
+        let near = Vec3::select(start_nearer, start, end);
+        let far = Vec3::select(start_nearer, end, start);
+        let foot = start_nearer.select(from_start, from_end);
+        let far_at = start_nearer.select(length, -length);
+        let from_centre = near.along(direction, foot);
 
         let (height, slope) = (from_centre.dot(normal), direction.dot(normal));
         let radial = from_centre.along(normal, -height);
@@ -92,7 +103,20 @@ impl<T: Scalar> Line<T> {
         let n = shallow.select(-(height * slope), radial.dot(flat));
         let q = shallow.select(n.mul_add(n, tau * tau).over(m), radial.norm_squared());
         let sign = n.lt(n.zero()).select(-n.one(), n.one());
-        Self { direction, length, foot, sign, h: height.abs(), lambda: slope.abs(), m, n: n.abs(), tau, q }
+        Self {
+            direction,
+            near,
+            far,
+            foot,
+            far_at,
+            sign,
+            h: height.abs(),
+            lambda: slope.abs(),
+            m,
+            n: n.abs(),
+            tau,
+            q,
+        }
     }
 
     /// The distance from the disc's axis, and w, at s.
@@ -123,9 +147,10 @@ impl<T: Scalar> Line<T> {
         let rim_m = rim * self.m;
         let tangent = ((rim_m - self.tau) * (rim_m + self.tau)).max(zero).sqrt();
         let cusp = (self.n + self.n).over(self.tau).cbrt_estimate().mul_add(self.tau, tangent);
-        let from_cusp = zero.lt(self.m).select((cusp - self.n).over(self.m), top);
+        let from_cusp = (cusp - self.n).over(self.m).max(ratio0 * self.n);
         let mut s = top.min(from_zero).min(from_cusp);
 
+        let (mut low, mut high) = (zero, top);
         for _ in 0..T::HALLEY_STEPS {
             let (rho, w) = self.radial_at(s);
             let inverse = one.over(rho);
@@ -137,7 +162,10 @@ impl<T: Scalar> Line<T> {
             let g2 = one.lit(3.0) * ratio * turn * turn.mul_add(-turn, self.m) * inverse;
             let halley = (g1 * g1) * one.lit(2.0) - g * g2;
             let step = zero.lt(halley).select((g * g1 * one.lit(2.0)).over(halley), g.over(g1));
-            s = (s - step).max(zero).min(top);
+            let below = g.lt(zero);
+            low = below.select(s, low);
+            high = below.select(high, s);
+            s = (s - step).max(low).min(high);
         }
 
         // Case 1.
@@ -149,24 +177,18 @@ impl<T: Scalar> Line<T> {
     /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc
     /// there and the segment gets that far, that point is common, whatever rounding says of its height.
     #[inline(always)]
-    fn closest_at(
-        &self,
-        s: T,
-        pierces: T::Mask,
-        [start, end]: [Vec3<T>; 2],
-        normal: Vec3<T>,
-        radius: T,
-    ) -> Closest<T> {
+    fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
+        let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));
         let along = s.mul_add(self.sign, self.foot);
-        let pierced = pierces & zero.le(along) & along.le(self.length);
-        let t = along.max(zero).min(self.length);
-        // From the nearer end, so that the rounding of a long segment's direction counts least.
-        let near_start = (t + t).le(self.length);
+        let pierced = pierces & low.le(along) & along.le(high);
+        let t = along.max(low).min(high);
+        // From the end nearer to it, so that the rounding of a long segment's direction counts least.
+        let by_near_end = (t + t).abs().le(self.far_at.abs());
         let point = Vec3::select(
-            near_start,
-            start.along(self.direction, t),
-            end.along(self.direction, t - self.length),
+            by_near_end,
+            self.near.along(self.direction, t),
+            self.far.along(self.direction, t - self.far_at),
         );
         let (distance, on_disc) = super::point_disc::from_centre(point, normal, radius);
         let point1 = Vec3::select(pierced, on_disc, point);

@@ -7,6 +7,7 @@ mod engine;
 mod exhaustive;
 mod packed;
 mod patch;
+mod placed;
 mod probe;
 mod report;
 mod scan;
@@ -14,7 +15,7 @@ mod search;
 mod soa;
 mod tree;
 
-pub(crate) use probe::{Probe, place};
+pub(crate) use probe::Probe;
 pub(crate) use search::{Found, Until, search};
 
 pub use bvh::BvhSearch;

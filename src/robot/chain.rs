@@ -1,5 +1,6 @@
 //! A robot as a chain of links.
 
+use super::envelope::{self, Run};
 use super::modified_cylinder::{check_points, check_radii};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
 use parry3d_f64::bounding_volume::Aabb;
@@ -47,6 +48,8 @@ pub struct Chain {
     segments: Vec<Range<usize>>,
     /// Over the links' boxes; leaf i is link i.
     bvh: Bvh,
+    /// Capsules around runs of links.
+    runs: Vec<Run>,
 }
 
 impl Chain {
@@ -124,8 +127,12 @@ impl Chain {
         image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
     ) -> Option<Self> {
         let links = self.links.iter().map(image).collect::<Option<Vec<_>>>()?;
-        let bvh = hierarchy(&links);
-        Some(Self { links, segments: self.segments.clone(), bvh })
+        Some(Self::joined(links, self.segments.clone()))
+    }
+
+    /// Capsules around runs of links, a run before its halves.
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
     }
 
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
@@ -153,14 +160,15 @@ impl Chain {
             )?);
             segments.push(first..next.copied().unwrap_or(radii.len()));
         }
-        let bvh = hierarchy(&links);
-        Ok(Self { links, segments, bvh })
+        Ok(Self::joined(links, segments))
     }
-}
 
-fn hierarchy(links: &[ModifiedCylinder]) -> Bvh {
-    let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
-    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+    /// With what is derived from the links.
+    fn joined(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
+        let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
+        let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
+        Self { links, segments, bvh, runs }
+    }
 }
 
 /// Equal links for equal segments. The hierarchy follows from them.

@@ -1,6 +1,10 @@
 //! What several tests share: reading the reference cases.
 #![allow(dead_code)] // each test uses its part
 
+pub mod double_double;
+pub mod problems;
+pub mod rotation;
+
 use parry_continuum::parry::math::{Pose, Vector};
 use serde::Deserialize;
 
