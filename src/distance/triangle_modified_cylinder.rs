@@ -18,7 +18,7 @@
 //! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate.
 
 use super::point_modified_cylinder::Link;
-use super::{Closest, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
+use super::{Closest, Mask, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
 
 /// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to (33).
 /// `flat` says which of the two caps are flat.
@@ -82,11 +82,18 @@ impl<T: Scalar> Axial<T> {
         self.at_flat[0] | self.at_flat[1]
     }
 
-    /// Between p* and the link: an upper bound, and the answer in case 1.
+    /// Between p* and the link: an upper bound, and the answer in case 1. Where the axis itself meets the triangle, p* is a
+    /// common point, even if rounding puts it beside a link of radius 0.
     #[inline(always)]
     pub(crate) fn without_caps(&self, link: &Link<T>) -> Closest<T> {
+        let zero = self.axis_squared.zero();
         let (distance, on_link) = link.closest_to(self.on_triangle);
-        Closest { distance, point1: self.on_triangle, point2: on_link }
+        let meets = self.axis_squared.le(zero);
+        Closest {
+            distance: meets.select(zero, distance),
+            point1: self.on_triangle,
+            point2: Vec3::select(meets, self.on_triangle, on_link),
+        }
     }
 
     /// A lower bound on the answer in case 2. It stands against rounding.

@@ -114,7 +114,8 @@ impl BvhSearch {
             Some((link, triangle)) if link < placed.links() => (link, triangle),
             _ => self.likely_minimum::<L>(token, placed),
         };
-        let (probe, found) = self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
+        let (probe, found) =
+            self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
         let mut best = (first, probe, found);
         let runs = placed.runs();
         let mut place = 0;
@@ -169,10 +170,10 @@ impl BvhSearch {
                 if let Run::Links { inner, .. } = run {
                     place += inner;
                 }
-            } else if let Run::Link(link) = run {
-                if self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some() {
-                    return false;
-                }
+            } else if let Run::Link(link) = run
+                && self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some()
+            {
+                return false;
             }
             place += 1;
         }

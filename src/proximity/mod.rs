@@ -15,6 +15,9 @@ mod search;
 mod soa;
 mod tree;
 
+pub(crate) use probe::{Probe, place};
+pub(crate) use search::{Found, Until, search};
+
 pub use bvh::BvhSearch;
 pub use descent::Visits;
 pub use engine::Proximity;

@@ -1,7 +1,7 @@
 //! A robot as a chain of links.
 
-use super::modified_cylinder::{check_points, check_radii};
 use super::envelope::{self, Run};
+use super::modified_cylinder::{check_points, check_radii};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Real, Vector};
@@ -126,6 +126,15 @@ impl Chain {
         &self.runs
     }
 
+    /// The chain whose links are the images of this one's, or nothing if a link has none.
+    pub(crate) fn try_map(
+        &self,
+        image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
+    ) -> Option<Self> {
+        let links = self.links.iter().map(image).collect::<Option<Vec<_>>>()?;
+        Some(Self::of(links, self.segments.clone()))
+    }
+
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
         Self::assemble(points, segment_radii, &vec![[cap; 2]; segment_radii.len()])
@@ -151,9 +160,13 @@ impl Chain {
             )?);
             segments.push(first..next.copied().unwrap_or(radii.len()));
         }
+        Ok(Self::of(links, segments))
+    }
+
+    fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
         let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
         let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
-        Ok(Self { links, segments, bvh, runs })
+        Self { links, segments, bvh, runs }
     }
 }
 
