@@ -1,0 +1,9 @@
+//! The scene that examples, benches and tests share: a brain ventricle, a concentric tube robot in it, and a
+//! picture of both. Included by path; nothing of it is in the library.
+#![allow(dead_code, reason = "each program that includes the scene uses its own part of it")]
+
+pub mod field;
+pub mod remesh;
+pub mod surface;
+pub mod ventricle;
+pub mod mesh_file;
