@@ -4,6 +4,8 @@
 
 pub use parry3d_f64 as parry;
 
+pub mod distance;
+pub mod proximity;
 mod robot;
 
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

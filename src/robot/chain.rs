@@ -1,38 +1,168 @@
 //! A robot as a chain of links.
 
-use super::{ModifiedCylinder, RobotError};
+use super::modified_cylinder::{check_points, check_radii};
+use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
+use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::ops::Range;
 
-/// A continuum robot: links joined end to end along a centreline.
-#[derive(Clone, Debug, PartialEq)]
+/// A continuum robot: links joined end to end along a centreline (paper, section III.F).
+///
+/// A chain is the union of its links, and neighbouring links overlap where a round cap reaches into the next
+/// link. Seen from outside the union is exact. What depends on the inside, such as the volume or the way out of
+/// it, is known only link by link.
+///
+/// The constructors differ in the caps alone:
+///
+/// | constructor | caps | the tube is |
+/// |---|---|---|
+/// | [`from_centreline`](Self::from_centreline) | by Algorithm 1, from one radius per segment | followed: flat ends, filled bends |
+/// | [`from_vertex_radii`](Self::from_vertex_radii) | by Algorithm 1 as printed, from one radius per point | followed |
+/// | [`capsules`](Self::capsules) | all round | covered, but reaches one radius too far at its ends |
+/// | [`cylinders`](Self::cylinders) | all flat | never exceeded at its ends, but open at the bends |
+///
+/// Points and radii are in one unit of length and in the robot's frame; all constructors accept magnitudes up
+/// to 1e300.
+///
+/// # Repeated points
+/// Planners repeat centreline points. A segment without length has no direction and adds nothing to the robot, so
+/// it becomes no link. It is left out only after Algorithm 1 has walked over it: repeating a point changes no
+/// link, and a segment without length but with a radius of its own counts as a step there and back. The robot's
+/// own two ends stay flat whatever is repeated there. [`segments_of`](Self::segments_of) gives such a segment to
+/// the link before it, or to the first link.
+///
+/// ```
+/// use parry_continuum::{Cap, Chain, parry::math::Vector};
+///
+/// let points = [Vector::ZERO, Vector::new(3.0, 0.0, 0.0), Vector::new(5.0, 2.0, 0.0)];
+/// let robot = Chain::from_centreline(&points, &[1.0, 1.0])?;
+/// assert_eq!(robot.links()[0].caps(), [Cap::Flat, Cap::Round]);
+/// assert_eq!(robot.links()[1].caps(), [Cap::Round, Cap::Flat]);
+/// # Ok::<(), parry_continuum::RobotError>(())
+/// ```
+#[derive(Clone, Debug)]
 pub struct Chain {
     links: Vec<ModifiedCylinder>,
     segments: Vec<Range<usize>>,
+    /// Over the links' boxes; leaf i is link i.
+    bvh: Bvh,
 }
 
 impl Chain {
-    /// Capsules.
+    /// The robot with this centreline, its tubes' radii given segment by segment, capped by Algorithm 1.
+    ///
+    /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
+    /// where a round cap does not stick out of such a face. A radius that is meant to be constant must be so to
+    /// the last bit: any increase is a step. Whether a joint is far enough from a face is decided exactly.
     ///
     /// # Errors
-    /// As for each link.
-    pub fn capsules(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
-        let links = points
-            .windows(2)
-            .zip(segment_radii)
-            .map(|(ends, &radius)| ModifiedCylinder::capsule(ends[0], ends[1], radius))
-            .collect::<Result<Vec<_>, _>>()?;
-        let segments = (0..links.len()).map(|k| k..k + 1).collect();
-        Ok(Self { links, segments })
+    /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or
+    /// beyond 1e300, a negative radius, or points that are all equal.
+    pub fn from_centreline(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        check(points, segment_radii, points.len().saturating_sub(1))?;
+        Self::assemble(points, segment_radii, &algorithm_1::from_segment_radii(points, segment_radii))
     }
 
-    /// The links, from the base to the tip.
+    /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper prints it.
+    ///
+    /// A segment takes the smaller radius of its two points; a start is round where the paper's lB says so for
+    /// that point, an end where lF does. Prefer [`from_centreline`](Self::from_centreline), where a radius belongs
+    /// to a tube: here the first joint after a thick tube shorter than its radius is left open, and so are both
+    /// sides of a single thick point.
+    ///
+    /// # Errors
+    /// As [`from_centreline`](Self::from_centreline), with as many radii as points.
+    pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
+        check(points, vertex_radii, points.len())?;
+        let segment_radii: Vec<_> = vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
+        Self::assemble(points, &segment_radii, &algorithm_1::from_vertex_radii(points, vertex_radii))
+    }
+
+    /// The same centreline and radii with a round cap at both ends of each segment.
+    ///
+    /// # Errors
+    /// As [`from_centreline`](Self::from_centreline).
+    pub fn capsules(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        Self::uniform(points, segment_radii, Cap::Round)
+    }
+
+    /// The same centreline and radii with a flat cap at both ends of each segment.
+    ///
+    /// # Errors
+    /// As [`from_centreline`](Self::from_centreline).
+    pub fn cylinders(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        Self::uniform(points, segment_radii, Cap::Flat)
+    }
+
+    /// The links, from the base to the tip. There is at least one.
     pub fn links(&self) -> &[ModifiedCylinder] {
         &self.links
     }
 
-    /// The input segments that a link stands for.
+    /// The input segments that link number `link` stands for, or an empty range if there is no such link.
+    ///
+    /// Segment k joins points k and k + 1. The ranges of all links, in order, cover every segment once; exactly
+    /// one segment in each has a length.
     pub fn segments_of(&self, link: usize) -> Range<usize> {
-        self.segments[link].clone()
+        self.segments.get(link).cloned().unwrap_or_default()
     }
+
+    /// The smallest box, with sides along the axes of the robot's frame, that holds all links.
+    pub fn local_aabb(&self) -> Aabb {
+        self.bvh().root_aabb()
+    }
+
+    /// The links' bounding volume hierarchy; leaf i is link i.
+    pub(crate) fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
+    fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
+        check(points, segment_radii, points.len().saturating_sub(1))?;
+        Self::assemble(points, segment_radii, &vec![[cap; 2]; segment_radii.len()])
+    }
+
+    /// Leaves out the segments without length; radii and caps are per segment.
+    fn assemble(points: &[Vector], radii: &[Real], caps: &[[Cap; 2]]) -> Result<Self, RobotError> {
+        let with_length: Vec<_> = (0..radii.len()).filter(|&k| points[k] != points[k + 1]).collect();
+        if with_length.is_empty() {
+            return Err(RobotError::AllPointsEqual);
+        }
+        let mut links = Vec::with_capacity(with_length.len());
+        let mut segments = Vec::with_capacity(with_length.len());
+        for (link, &k) in with_length.iter().enumerate() {
+            let (first, next) = (if link == 0 { 0 } else { k }, with_length.get(link + 1));
+            // The walk leaves every end at the same place as a limit flat on its own, except at radius 0.
+            let cap_at_end = caps[if next.is_none() { radii.len() - 1 } else { k }][1];
+            links.push(ModifiedCylinder::new(
+                points[k],
+                points[k + 1],
+                radii[k],
+                [caps[first][0], cap_at_end],
+            )?);
+            segments.push(first..next.copied().unwrap_or(radii.len()));
+        }
+        let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
+        Ok(Self { links, segments, bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) })
+    }
+}
+
+/// Equal links for equal segments. The hierarchy follows from them.
+impl PartialEq for Chain {
+    fn eq(&self, other: &Self) -> bool {
+        self.links == other.links && self.segments == other.segments
+    }
+}
+
+/// Enough points, as many radii as they need, and nothing out of range.
+pub(super) fn check(points: &[Vector], radii: &[Real], expected: usize) -> Result<(), RobotError> {
+    if points.len() < 2 {
+        return Err(RobotError::TooFewPoints { count: points.len() });
+    }
+    if radii.len() != expected {
+        return Err(RobotError::LengthsDiffer { points: points.len(), expected, radii: radii.len() });
+    }
+    check_points(points)?;
+    check_radii(radii)
 }

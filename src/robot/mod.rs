@@ -1,11 +1,19 @@
 //! What the robot is: links with a flat or round cap at each end, and the chain that Algorithm 1 makes of them.
 
+mod aabb;
+mod algorithm_1;
 mod cap;
 mod chain;
 mod error;
+mod exact;
 mod modified_cylinder;
+mod scale;
+mod simplify;
+mod to_trimesh;
 
 pub use cap::Cap;
 pub use chain::Chain;
 pub use error::RobotError;
+pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
+pub use simplify::simplify;

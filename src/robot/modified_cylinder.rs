@@ -1,12 +1,13 @@
 //! The one shape of this crate: a cylinder whose two ends are each flat or round.
 
+use super::scale;
 use super::{Cap, RobotError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::Capsule;
 
-/// Largest coordinate or radius that a constructor accepts. Differences of such numbers are finite,
-/// and so are the results of every query.
-pub(crate) const COORDINATE_LIMIT: Real = 1.0e300;
+/// Largest coordinate or radius accepted. Squares of differences of such numbers are finite, and so are the
+/// results of every query.
+pub(crate) const COORDINATE_LIMIT: Real = 1.0e150;
 
 /// A cylinder of finite length whose ends are each flat or round (paper, section III.E).
 ///
@@ -81,17 +82,21 @@ impl ModifiedCylinder {
 
     /// The length of the axis; a round cap reaches one radius further.
     pub fn length(&self) -> Real {
-        (self.end - self.start).length()
+        scale::length(self.end - self.start)
     }
 
     /// The unit vector from start to end, or zero for a ball.
     pub fn axis(&self) -> Vector {
-        (self.end - self.start).normalize_or_zero()
+        scale::direction(self.end - self.start)
     }
 
     /// The same link moved by `pose`.
+    ///
+    /// If a short link is moved so far out that rounding makes its two ends one, its caps become round: the ball
+    /// holds the link whichever way its lost axis pointed.
     pub fn transformed(&self, pose: &Pose) -> Self {
-        Self { start: pose * self.start, end: pose * self.end, ..*self }
+        let (start, end) = (pose * self.start, pose * self.end);
+        Self { start, end, caps: if start == end { [Cap::Round; 2] } else { self.caps }, ..*self }
     }
 }
 

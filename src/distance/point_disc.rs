@@ -1,0 +1,31 @@
+//! Point against disc (paper, equations (9) to (12)).
+//!
+//! With l the height above the disc's plane and rho the distance from its axis, the solid disc is at
+//! sqrt(l^2 + max(0, rho - R)^2): a form without a division.
+//!
+//! 1. **Above the interior**, rho <= R: the disc point is the foot.
+//! 2. **Outside**, rho > R: the disc point is on the rim.
+//! 3. **On the axis**, rho = 0: the foot is the centre, also for R = 0.
+
+use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
+
+/// The distance between a point and a solid disc with the given centre, normal (of any length) and radius;
+/// (9) to (12). A zero normal makes the disc a ball.
+#[inline(always)]
+pub fn point_disc<T: Scalar>(point: Vec3<T>, centre: Vec3<T>, normal: Vec3<T>, radius: T) -> Closest<T> {
+    let frame = Frame::around(centre, [point], radius);
+    let point = frame.point(point);
+    let (distance, on_disc) = from_centre(point, normal.normalised(), frame.length(radius));
+    frame.answer(Closest { distance, point1: point, point2: on_disc })
+}
+
+/// The distance of `point` from the disc around the origin, and the disc's point.
+#[inline(always)]
+pub(crate) fn from_centre<T: Scalar>(point: Vec3<T>, unit_normal: Vec3<T>, radius: T) -> (T, Vec3<T>) {
+    let height = point.dot(unit_normal);
+    let radial = point.along(unit_normal, -height);
+    let rho = radial.norm();
+    let beyond = (rho - radius).max(rho.zero());
+    let shrink = radius.lt(rho).select(radius.over(rho), rho.one());
+    (height.mul_add(height, beyond * beyond).sqrt(), radial * shrink)
+}

@@ -1,0 +1,131 @@
+//! What a kernel needs of a number, so that one text serves `f64`, `f32` and lanes of either.
+//!
+//! Kernels choose by [`Mask::select`] and never branch, because lanes of one pack may choose differently.
+//! Comparisons with NaN are false, so `x.max(lo).min(hi)` turns a NaN `x` into a bound: `x` comes first.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// A truth value for each lane of a [`Scalar`].
+pub trait Mask<T>: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(self, yes: T, no: T) -> T;
+}
+
+/// A real number, or a pack of them, that the narrow phase can compute with.
+///
+/// Implemented for `f32` and `f64`. Only IEEE operations are used (and fused multiply-add where an
+/// implementation says so in [`Scalar::mul_add`]), so scalar answers are the same on every machine.
+pub trait Scalar:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The result of a comparison.
+    type Mask: Mask<Self>;
+
+    /// The largest relative error of one rounding: 2^-24 or 2^-53.
+    const UNIT_ROUNDOFF: f64;
+
+    /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double precision.
+    const HALLEY_STEPS: usize;
+
+    /// The constant `value` in the precision and lanes of `self`.
+    fn lit(self, value: f64) -> Self;
+    /// `self < other`
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`
+    fn le(self, other: Self) -> Self::Mask;
+    /// The magnitude, +0 for -0.
+    fn abs(self) -> Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// `self * factor + addend`, fused only where that is as fast as the two operations.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+    /// The cube root of the magnitude within 5 %: a start value, never an answer.
+    fn cbrt_estimate(self) -> Self;
+    /// The power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of the range.
+    fn power_of_two_to_unity(self) -> Self;
+
+    /// 0 in the precision and lanes of `self`.
+    #[inline(always)]
+    fn zero(self) -> Self {
+        self.lit(0.0)
+    }
+    /// 1 in the precision and lanes of `self`.
+    #[inline(always)]
+    fn one(self) -> Self {
+        self.lit(1.0)
+    }
+    /// The larger of two numbers; `other` where `self` is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        other.lt(self).select(self, other)
+    }
+    /// The smaller of two numbers; `other` where `self` is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.lt(other).select(self, other)
+    }
+    /// `self / divisor` for a positive divisor, 0 for any other.
+    #[inline(always)]
+    fn over(self, divisor: Self) -> Self {
+        let positive = self.zero().lt(divisor);
+        // The divisor is replaced before the division: shading languages may assume that no NaN arises.
+        positive.select(self, self.zero()) / positive.select(divisor, self.one())
+    }
+}
+
+impl<T> Mask<T> for bool {
+    #[inline(always)]
+    fn select(self, yes: T, no: T) -> T {
+        if self { yes } else { no }
+    }
+}
+
+macro_rules! scalar {
+    ($float:ident, $halley_steps:literal, $mantissa_bits:literal, $bias:literal, $cbrt_magic:literal) => {
+        impl Scalar for $float {
+            type Mask = bool;
+            const UNIT_ROUNDOFF: f64 = $float::EPSILON as f64 / 2.0;
+            const HALLEY_STEPS: usize = $halley_steps;
+
+            #[inline(always)]
+            fn lit(self, value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> bool {
+                self <= other
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $float::sqrt(self)
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                self * factor + addend
+            }
+            #[inline(always)]
+            fn cbrt_estimate(self) -> Self {
+                // A third of the exponent; the constant restores the bias and centres the error.
+                $float::from_bits(self.abs().to_bits() / 3 + $cbrt_magic)
+            }
+            #[inline(always)]
+            fn power_of_two_to_unity(self) -> Self {
+                // The exponent mirrored at 0, and kept where a quarter of the power and its inverse are normal.
+                let exponent = (self.to_bits() >> $mantissa_bits) & (2 * $bias + 1);
+                let mirrored = (2 * $bias - exponent.min(2 * $bias - 3)).min(2 * $bias - 3);
+                if self == 0.0 { 1.0 } else { $float::from_bits(mirrored << $mantissa_bits) }
+            }
+        }
+    };
+}
+
+scalar!(f32, 2, 23, 127, 0x2a51_0554);
+scalar!(f64, 3, 52, 1023, 0x2a9f_7893_782d_a1ce);

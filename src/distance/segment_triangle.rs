@@ -1,0 +1,88 @@
+//! Segment against triangle, with the parameter of the closest point on the segment.
+//!
+//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside: 0.
+//! 2. **An end above the interior.** The end's foot on the plane lies inside.
+//! 3. **An edge.** Segment-segment with each of the three edges.
+//!
+//! The ends count only against the interior, and the edges by segment-segment, so the parameter is exact to
+//! rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
+
+use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame, segment_segment};
+
+/// The distance between a segment and a triangle.
+#[inline(always)]
+pub fn segment_triangle<T: Scalar>(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]) -> Closest<T> {
+    let [a, b, c] = triangle;
+    let frame = Frame::around(segment[0], [segment[1], a, b, c], a.x.zero());
+    let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
+    let end = frame.point(segment[1]);
+    let found = from_start(end, &face);
+    frame.answer(Closest { distance: found.squared.sqrt(), point1: end * found.s, point2: found.on_triangle })
+}
+
+/// The axis of a link against a triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct AxisTriangle<T> {
+    /// The squared distance.
+    pub squared: T,
+    /// Where on the segment, in `[0, 1]`.
+    pub s: T,
+    /// The closest point of the triangle.
+    pub on_triangle: Vec3<T>,
+}
+
+impl<T: Scalar> AxisTriangle<T> {
+    #[inline(always)]
+    fn nearer(self, other: Self) -> Self {
+        other.select(other.squared.lt(self.squared), self)
+    }
+
+    #[inline(always)]
+    fn nearer_where(self, mask: T::Mask, other: Self) -> Self {
+        other.select(mask & other.squared.lt(self.squared), self)
+    }
+
+    /// `self` where the mask is true, `no` elsewhere.
+    #[inline(always)]
+    fn select(self, take: T::Mask, no: Self) -> Self {
+        Self {
+            squared: take.select(self.squared, no.squared),
+            s: take.select(self.s, no.s),
+            on_triangle: Vec3::select(take, self.on_triangle, no.on_triangle),
+        }
+    }
+}
+
+/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one.
+#[inline(always)]
+pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangle<T> {
+    let (zero, one) = (end.x.zero(), end.x.one());
+    let [a, b, c] = face.vertices;
+    // Case 3.
+    let edge = |from: Vec3<T>, to: Vec3<T>| {
+        let found = segment_segment::parameters(-from, end, to - from);
+        AxisTriangle {
+            squared: found.gap.norm_squared(),
+            s: found.s,
+            on_triangle: from.along(to - from, found.t),
+        }
+    };
+    let nearest = edge(a, b).nearer(edge(b, c)).nearer(edge(c, a));
+    // Case 2.
+    let (low, high) = (face.project(Vec3::zero(zero)), face.project(end));
+    let above = |s: T, foot: &super::face::Projection<T>| AxisTriangle {
+        squared: foot.residual.norm_squared(),
+        s,
+        on_triangle: foot.foot,
+    };
+    let nearest =
+        nearest.nearer_where(low.inside, above(zero, &low)).nearer_where(high.inside, above(one, &high));
+    // Case 1.
+    let opposite = low.residual.dot(high.residual).lt(zero);
+    let (below, beyond) = (low.residual.norm(), high.residual.norm());
+    let s = below.over(below + beyond);
+    let alpha = (high.alpha - low.alpha).mul_add(s, low.alpha);
+    let beta = (high.beta - low.beta).mul_add(s, low.beta);
+    let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };
+    nearest.nearer_where(opposite & face.holds(alpha, beta), pierced)
+}

@@ -1,0 +1,48 @@
+//! Triangle against solid disc (paper, equations (22) to (25), corrected).
+//!
+//! 1. **Edges.** If the triangle's closest point is on its boundary, segment-disc finds it.
+//! 2. **Face, apart.** If it is in the interior, the line between the closest points is normal to the plane,
+//!    so the disc's point is its nearest to the plane: on the rim, or (parallel) the centre serves, unless an
+//!    edge passes over the disc.
+//! 3. **Face, crossing.** If the disc crosses the plane, plane-disc returns the middle of the chord that the
+//!    disc cuts out of the plane. Either it lies in the triangle, or the chord leaves the triangle through an
+//!    edge, or the two are apart; the edges find the last two.
+//!
+//! The face's candidate is the distance between two actual points, the disc's and its foot on the triangle.
+
+use super::{Closest, Scalar, Vec3, face::Face, frame::Frame, plane_disc, segment_disc};
+
+/// The distance between a triangle and a solid disc with the given centre, normal (of any length) and radius;
+/// (22) to (25).
+#[inline(always)]
+pub fn triangle_disc<T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    centre: Vec3<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
+    let frame = Frame::around(centre, triangle, radius);
+    let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
+    frame.answer(from_centre(&face, normal.normalised(), frame.length(radius)))
+}
+
+/// As [`triangle_disc`], for a disc around the origin, a unit normal and numbers near one.
+#[inline(always)]
+pub(crate) fn from_centre<T: Scalar>(face: &Face<T>, normal: Vec3<T>, radius: T) -> Closest<T> {
+    let [a, b, c] = face.vertices;
+    // Cases 2 and 3.
+    let height = face.height_from(Vec3::zero(radius));
+    let nearest = plane_disc::from_centre(height, face.normal, normal, radius);
+    let projection = face.project(nearest.point);
+    let crosses = nearest.distance.le(radius.zero());
+    let apart =
+        Closest { distance: projection.residual.norm(), point1: projection.foot, point2: nearest.point };
+    let common = Closest { distance: radius.zero(), point1: nearest.point, point2: nearest.point };
+    let face_answer = Closest::select(crosses, common, apart);
+
+    // Case 1.
+    let edges = segment_disc::from_centre([a, b], normal, radius)
+        .nearer(segment_disc::from_centre([b, c], normal, radius))
+        .nearer(segment_disc::from_centre([c, a], normal, radius));
+    Closest::select(projection.inside & face_answer.distance.le(edges.distance), face_answer, edges)
+}

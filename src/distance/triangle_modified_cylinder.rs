@@ -1,0 +1,105 @@
+//! Triangle against modified cylinder (paper, equations (26) to (33), corrected).
+//!
+//! Let s be the parameter of the axis point closest to the triangle, p* the triangle's point and F their
+//! distance.
+//!
+//! 1. **Beside the barrel or beyond a round cap**, 0 < s < 1 or that end is round: the answer is that of the
+//!    capsule, max(0, F - r).
+//! 2. **Beyond a flat cap**, s exactly 0 or 1 and that end flat: the answer is that of the end's disc.
+//!
+//! The split is exact in every configuration, penetration included. Case 1: the capsule contains the link, and
+//! the link attains F - r. Case 2: let the flat end lie at z = 0 with the link below, and let p realise the
+//! triangle's distance from the link with z(p) beyond it. On the way from p* to p the triangle crosses the
+//! plane of the cap; the distance from the axis is convex along that way with its least value at p*, so it
+//! does not shrink after the crossing, and the disc is no farther from the crossing than the link from p.
+//!
+//! Rounding: to take case 1 where the truth is an end costs no more than the rounding of F. To take case 2
+//! where the truth lies inside would cost far more when the link touches; `segment_triangle` therefore makes s
+//! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate.
+
+use super::point_modified_cylinder::Link;
+use super::{Closest, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
+
+/// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to (33).
+/// `flat` says which of the two caps are flat.
+///
+/// `point1` lies on the triangle and `point2` in the link. Where the two meet, both are a common point.
+/// A link of length 0 has no direction: its caps count as round.
+#[inline(always)]
+pub fn triangle_modified_cylinder<T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
+    let [a, b, c] = triangle;
+    let frame = Frame::around(start, [end, a, b, c], radius);
+    let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
+    let link = Link::new(frame.point(end), frame.length(radius), flat);
+    frame.answer(Axial::new(&link, &face).with_caps(&link, &face))
+}
+
+/// The distance between a triangle and a capsule; (26), (27).
+#[inline(always)]
+pub fn triangle_capsule<T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
+    let neither = radius.lt(radius);
+    triangle_modified_cylinder(triangle, start, end, radius, [neither, neither])
+}
+
+/// What the axis alone tells of a link and a triangle, in coordinates from the link's start.
+#[derive(Clone, Copy)]
+pub(crate) struct Axial<T: Scalar> {
+    /// Between p* and the link: an upper bound, and the answer in case 1.
+    pub upper: Closest<T>,
+    /// d_K: the answer for the capsule, a lower bound for any cap.
+    pub lower: T,
+    /// Whether the disc at the start, or at the end, decides (case 2).
+    pub at_flat: [T::Mask; 2],
+}
+
+impl<T: Scalar> Axial<T> {
+    #[inline(always)]
+    pub(crate) fn new(link: &Link<T>, face: &Face<T>) -> Self {
+        let axis = segment_triangle::from_start(link.end, face);
+        let (distance, on_link) = link.closest_to(axis.on_triangle);
+        let (zero, one) = (axis.s.zero(), axis.s.one());
+        let has_axis = zero.lt(link.axis.norm_squared());
+        Self {
+            upper: Closest { distance, point1: axis.on_triangle, point2: on_link },
+            lower: (axis.squared.sqrt() - link.radius).max(zero),
+            at_flat: [link.flat[0] & has_axis & axis.s.le(zero), link.flat[1] & has_axis & one.le(axis.s)],
+        }
+    }
+
+    /// A lower bound on the answer, sharper than `lower` where a flat cap decides. It stands against rounding.
+    #[inline(always)]
+    pub(crate) fn plane_bound(&self, link: &Link<T>, face: &Face<T>) -> T {
+        let (centre, outward) = self.cap(link);
+        let vertices = face.vertices.map(|vertex| vertex - centre);
+        bounds::separating_plane(vertices, self.upper.point1 - centre, outward, link.radius)
+    }
+
+    /// The answer, discs included.
+    #[inline(always)]
+    pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
+        let (centre, outward) = self.cap(link);
+        let disc = triangle_disc::from_centre(&face.seen_from(centre), outward, link.radius);
+        let disc =
+            Closest { distance: disc.distance, point1: disc.point1 + centre, point2: disc.point2 + centre };
+        let nearer = disc.distance.lt(self.upper.distance);
+        Closest::select((self.at_flat[0] | self.at_flat[1]) & nearer, disc, self.upper)
+    }
+
+    /// The centre and the outward normal of the cap that p* is beyond; the start's where it is beyond neither.
+    #[inline(always)]
+    fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
+        let at_end = self.at_flat[1];
+        (Vec3::select(at_end, link.end, Vec3::zero(link.radius)), Vec3::select(at_end, link.axis, -link.axis))
+    }
+}

@@ -1,0 +1,158 @@
+//! One link, placed in the mesh's frame and ready to meet triangles.
+
+use super::search::Found;
+use super::{LinkProximity, MeshError, ProximityError};
+use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
+use crate::robot::{COORDINATE_LIMIT, Cap, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// What rounding can add to a bound on a box: all scaled numbers are below 2.
+const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// A link against which triangles of one mesh are measured.
+///
+/// Triangles are moved to the link's start and multiplied by a power of two that brings mesh and link near
+/// one, so that the kernels neither overflow nor vanish and their rounding does not depend on the place.
+/// Distances and bounds here are in these *scaled* units.
+#[derive(Clone, Copy)]
+pub(crate) struct Probe {
+    start: Vector,
+    end: Vector,
+    scale: Real,
+    link: Link<f64>,
+    has_flat_cap: bool,
+}
+
+impl Probe {
+    fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
+        let (start, end) = (pose * link.start(), pose * link.end());
+        let flat = link.caps().map(|cap| cap == Cap::Flat);
+        let local = to_vec3((end - start) * scale);
+        Self {
+            start,
+            end,
+            scale,
+            link: Link::new(local, link.radius() * scale, flat),
+            has_flat_cap: flat[0] || flat[1],
+        }
+    }
+
+    /// The ends of the axis, in the mesh's frame.
+    pub(crate) fn ends(&self) -> [Vector; 2] {
+        [self.start, self.end]
+    }
+
+    /// The link in scaled units, from its start.
+    pub(crate) fn link(&self) -> &Link<f64> {
+        &self.link
+    }
+
+    /// A length of the mesh's frame in scaled units.
+    pub(crate) fn scaled(&self, length: Real) -> Real {
+        length * self.scale
+    }
+
+    /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
+    /// closer than `bound`. The cheaper bounds spare the flat caps.
+    pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
+        let face = self.face(triangle);
+        let axial = Axial::new(&self.link, &face);
+        if axial.lower >= bound {
+            return None;
+        }
+        let closest = if !self.flat_cap_decides(&axial) {
+            axial.upper
+        } else if axial.plane_bound(&self.link, &face) >= bound {
+            return None;
+        } else {
+            axial.with_caps(&self.link, &face)
+        };
+        (closest.distance < bound).then_some(closest)
+    }
+
+    /// The closest points of the link and a triangle, in scaled units and from the link's start.
+    pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
+        let face = self.face(triangle);
+        let axial = Axial::new(&self.link, &face);
+        if self.flat_cap_decides(&axial) { axial.with_caps(&self.link, &face) } else { axial.upper }
+    }
+
+    fn face(&self, triangle: [Vector; 3]) -> Face<f64> {
+        Face::new(triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale)))
+    }
+
+    fn flat_cap_decides(&self, axial: &Axial<f64>) -> bool {
+        self.has_flat_cap && (axial.at_flat[0] || axial.at_flat[1])
+    }
+
+    /// A lower bound on the distance between the link and anything in the box, in scaled units: that of the
+    /// axis's own box, less the radius and what rounding may have added.
+    pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
+        let (low, high) = (self.start.min(self.end), self.start.max(self.end));
+        let gap = ((mins - high).max(low - maxs) * self.scale).max(Vector::ZERO);
+        (gap.length() - self.link.radius - SLACK).max(0.0)
+    }
+
+    /// An answer in the mesh's frame.
+    pub(crate) fn report(&self, link: usize, found: &Found) -> LinkProximity {
+        let place = |point: Vec3<f64>| self.start + Vector::from_array(point.into()) / self.scale;
+        LinkProximity {
+            link: link as u32,
+            triangle: found.triangle,
+            distance: found.closest.distance / self.scale,
+            on_robot: place(found.closest.point2),
+            on_mesh: place(found.closest.point1),
+        }
+    }
+}
+
+/// Makes a probe of every link, all in the same scale. `mesh_reach` is the largest coordinate of the mesh.
+///
+/// # Errors
+/// The pose is not finite or moves a link out of range.
+pub(crate) fn place(
+    links: &[ModifiedCylinder],
+    pose: &Pose,
+    mesh_reach: Real,
+    probes: &mut Vec<Probe>,
+) -> Result<(), ProximityError> {
+    probes.clear();
+    if !pose.is_finite() {
+        return Err(ProximityError::PoseNotFinite);
+    }
+    let mut reach = mesh_reach;
+    for (index, link) in links.iter().enumerate() {
+        for point in [pose * link.start(), pose * link.end()] {
+            // Written so that NaN is out of range too.
+            if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
+                return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
+            }
+            reach = reach.max(point.abs().max_element());
+        }
+        reach = reach.max(link.radius());
+    }
+    let scale = reach.power_of_two_to_unity();
+    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
+    Ok(())
+}
+
+/// The largest magnitude of the vertices' coordinates.
+pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<Real, MeshError> {
+    let mut reach: Real = 0.0;
+    for (vertex, point) in vertices.iter().enumerate() {
+        for value in point.to_array() {
+            if !value.is_finite() {
+                return Err(MeshError::NotFinite { vertex, value });
+            }
+            if value.abs() > COORDINATE_LIMIT {
+                return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
+            }
+            reach = reach.max(value.abs());
+        }
+    }
+    Ok(reach)
+}
+
+fn to_vec3(vector: Vector) -> Vec3<f64> {
+    Vec3::from(vector.to_array())
+}

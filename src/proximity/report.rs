@@ -1,0 +1,78 @@
+use parry3d_f64::math::{Real, Vector};
+use thiserror::Error;
+
+/// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LinkProximity {
+    /// The link's position in [`Chain::links`](crate::Chain::links).
+    pub link: u32,
+    /// The triangle's position in the mesh.
+    pub triangle: u32,
+    /// The distance between link and triangle, 0 where they touch or overlap.
+    pub distance: Real,
+    /// The link's closest point.
+    pub on_robot: Vector,
+    /// The triangle's closest point; the same as `on_robot` where the distance is 0.
+    pub on_mesh: Vector,
+}
+
+/// Why a mesh cannot be queried.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A vertex has a coordinate that is NaN or infinite.
+    #[error("vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair the mesh")]
+    NotFinite {
+        /// The vertex's position in the mesh.
+        vertex: usize,
+        /// The offending coordinate.
+        value: Real,
+    },
+    /// A vertex lies so far out that squares of coordinates could overflow.
+    #[error(
+        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit"
+    )]
+    OutOfRange {
+        /// The vertex's position in the mesh.
+        vertex: usize,
+        /// The offending coordinate.
+        value: Real,
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
+    /// New vertices must be as many as the old ones.
+    #[error("the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh")]
+    VertexCount {
+        /// How many vertices the mesh has.
+        expected: usize,
+        /// How many were given.
+        got: usize,
+    },
+    /// The mesh has no triangle, so nothing is closest.
+    #[error("the mesh has no triangles")]
+    Empty,
+}
+
+/// Why a query has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ProximityError {
+    /// The robot's pose has a component that is NaN or infinite.
+    #[error("the robot's pose is not finite; check its translation and rotation")]
+    PoseNotFinite,
+    /// The pose carries a link beyond the range in which squares of coordinates are finite.
+    #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
+    OutOfRange {
+        /// The link's position in the chain.
+        link: usize,
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
+    /// A margin must be a number that is at least 0.
+    #[error("the margin is {margin}; it must be at least 0")]
+    BadMargin {
+        /// The offending margin.
+        margin: Real,
+    },
+}

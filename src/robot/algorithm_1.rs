@@ -1,0 +1,63 @@
+//! Algorithm 1 of the paper (section III.F): which link ends are round.
+//!
+//! A round end fills the wedge that opens between two links where the centreline bends. But it also reaches one
+//! radius along the tube, and must not stick out of a face that the tube really has: its two ends, and each place
+//! where a thicker tube begins. So one walk goes along the centreline with the last such face as its *limit*. A
+//! link that begins thicker than the link before has a face there, which becomes the limit. Any other link may
+//! begin round if its start is at least one radius away from the limit. A second walk comes back from the tip and
+//! treats the links' other ends in the same way.
+//!
+//! The test is on the chord between limit and joint, as printed, without the paper's division: 0/0 at radius 0
+//! would leave the cap of a wire undecided. Equal radii may be round. A thick tube shorter than two radii keeps
+//! flat ends all along, with open wedges where it bends: that is a limit of the algorithm.
+//!
+//! Printed, the radius belongs to a vertex. [`from_segment_radii`] lets a vertex take the radius of the link whose
+//! end is being decided, which is meant: a radius belongs to a tube. [`from_vertex_radii`] is the rule as printed.
+//! With each link's radius the smaller of its two vertices' (the only choice that makes both steps up and steps
+//! down come out right) the two agree, except after a thick tube shorter than its radius (the printed rule
+//! compares the thin tube's first joint with the thick radius, and leaves a gap) and around a lone thick vertex,
+//! which belongs to no tube and which the printed rule makes flat on both sides.
+
+use super::Cap;
+use super::exact::at_least_apart;
+use parry3d_f64::math::{Real, Vector};
+
+/// The caps of each link, from the links' radii; one point more than radii.
+pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real]) -> Vec<[Cap; 2]> {
+    let starts = points.iter().zip(radii);
+    let ends = points.iter().skip(1).zip(radii).rev();
+    let mut forward = walk(ends);
+    forward.reverse();
+    pair(walk(starts), forward)
+}
+
+/// The caps of each link, from the vertices' radii; as many points as radii.
+pub(super) fn from_vertex_radii(points: &[Vector], radii: &[Real]) -> Vec<[Cap; 2]> {
+    let vertices = points.iter().zip(radii);
+    let mut forward = walk(vertices.clone().rev());
+    forward.reverse();
+    // Link k begins at vertex k and ends at vertex k + 1.
+    pair(walk(vertices), forward.split_off(1.min(forward.len())))
+}
+
+/// One walk: whether the link end at each vertex, facing back the way we came, is round.
+fn walk<'a>(vertices: impl Iterator<Item = (&'a Vector, &'a Real)>) -> Vec<Cap> {
+    let mut limit_and_last: Option<(Vector, Real)> = None;
+    vertices
+        .map(|(&point, &radius)| {
+            let (limit, cap) = match limit_and_last {
+                Some((limit, last)) if radius <= last => {
+                    (limit, if at_least_apart(limit, point, radius) { Cap::Round } else { Cap::Flat })
+                }
+                _ => (point, Cap::Flat),
+            };
+            limit_and_last = Some((limit, radius));
+            cap
+        })
+        .collect()
+}
+
+/// The start and end caps of each link; either list may be longer by a vertex that belongs to no link.
+fn pair(starts: Vec<Cap>, ends: Vec<Cap>) -> Vec<[Cap; 2]> {
+    starts.into_iter().zip(ends).map(|(start, end)| [start, end]).collect()
+}
