@@ -58,7 +58,13 @@ impl Canvas {
     }
 
     /// Paints every pixel within reach of a shape: `distance` is its signed distance, in pixels, within the box.
-    fn fill(&mut self, [x0, y0, x1, y1]: [f32; 4], colour: Colour, opacity: f32, distance: impl Fn(f32, f32) -> f32) {
+    fn fill(
+        &mut self,
+        [x0, y0, x1, y1]: [f32; 4],
+        colour: Colour,
+        opacity: f32,
+        distance: impl Fn(f32, f32) -> f32,
+    ) {
         let clip = |v: f32, limit: usize| (v.max(0.0) as usize).min(limit);
         for y in clip(y0 - 1.0, self.height)..clip(y1 + 2.0, self.height) {
             for x in clip(x0 - 1.0, self.width)..clip(x1 + 2.0, self.width) {

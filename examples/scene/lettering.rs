@@ -92,9 +92,11 @@ pub fn strokes(text: &str, height: f32) -> (Vec<Stroke>, f32) {
     for letter in text.chars() {
         let glyph = glyph(letter);
         let width = glyph.iter().flatten().map(|p| p[0]).reduce(f32::max).unwrap_or(1.3);
-        all.extend(glyph.into_iter().map(|stroke| {
-            stroke.into_iter().map(|p| [(x + p[0]) * unit, -p[1] * unit]).collect()
-        }));
+        all.extend(
+            glyph
+                .into_iter()
+                .map(|stroke| stroke.into_iter().map(|p| [(x + p[0]) * unit, -p[1] * unit]).collect()),
+        );
         x += width + 1.5;
     }
     (all, (x - 1.5).max(0.0) * unit)

@@ -20,16 +20,23 @@ use std::path::Path;
 pub fn load(path: &Path, scale: Real) -> Result<Mesh, String> {
     let name = path.display();
     if !(scale > 0.0 && scale.is_finite()) {
-        return Err(format!("the scale is {scale}; give a positive number, for example 1000 for metres to millimetres"));
+        return Err(format!(
+            "the scale is {scale}; give a positive number, for example 1000 for metres to millimetres"
+        ));
     }
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let parse = match extension.as_str() {
         "stl" => stl,
         "obj" => obj,
         "ply" => ply,
-        _ => return Err(format!("the format of {name} is unknown; give a file that ends in .stl, .obj or .ply")),
+        _ => {
+            return Err(format!(
+                "the format of {name} is unknown; give a file that ends in .stl, .obj or .ply"
+            ));
+        }
     };
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot read {name} ({error}); check the path"))?;
+    let bytes =
+        std::fs::read(path).map_err(|error| format!("cannot read {name} ({error}); check the path"))?;
     let broken = |reason: String| {
         let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
         format!("{name} is not a valid {} file ({reason}); export it again", extension.to_uppercase())
@@ -41,7 +48,9 @@ pub fn load(path: &Path, scale: Real) -> Result<Mesh, String> {
     for triangle in &triangles {
         if let Some(corner) = triangle.iter().find(|&&corner| corner as usize >= points.len()) {
             let count = points.len();
-            return Err(broken(format!("a triangle names vertex {corner}, but there are {count}, counted from 0")));
+            return Err(broken(format!(
+                "a triangle names vertex {corner}, but there are {count}, counted from 0"
+            )));
         }
     }
     for (index, point) in points.iter_mut().enumerate() {
@@ -50,7 +59,9 @@ pub fn load(path: &Path, scale: Real) -> Result<Mesh, String> {
         if !point.is_finite() {
             let [x, y, z] = place.to_array();
             let advice = if place.is_finite() { "choose a smaller scale" } else { "repair that vertex" };
-            return Err(format!("vertex {index} of {name} is not finite ({x}, {y}, {z}; scale {scale}); {advice}"));
+            return Err(format!(
+                "vertex {index} of {name} is not finite ({x}, {y}, {z}; scale {scale}); {advice}"
+            ));
         }
     }
     Ok((points, triangles))
@@ -102,8 +113,11 @@ fn obj(bytes: Vec<u8>) -> Result<Mesh, String> {
     let mut mesh = Mesh::default();
     for model in models {
         let first = mesh.0.len() as u32;
-        mesh.0.extend(model.mesh.positions.as_chunks().0.iter().map(|p: &[_; 3]| Vector::from(p.map(Real::from))));
-        mesh.1.extend(model.mesh.indices.as_chunks().0.iter().map(|t: &[_; 3]| t.map(|corner| first + corner)));
+        mesh.0.extend(
+            model.mesh.positions.as_chunks().0.iter().map(|p: &[_; 3]| Vector::from(p.map(Real::from))),
+        );
+        mesh.1
+            .extend(model.mesh.indices.as_chunks().0.iter().map(|t: &[_; 3]| t.map(|corner| first + corner)));
     }
     Ok(mesh)
 }
@@ -147,7 +161,8 @@ fn ply(bytes: Vec<u8>) -> Result<Mesh, String> {
             "vertex" => mesh.0 = elements.into_iter().map(|element| element.place).collect(),
             "face" => {
                 for (index, face) in elements.into_iter().enumerate() {
-                    let corners = face.corners.ok_or(format!("face {index} has no list of vertex indices"))?;
+                    let corners =
+                        face.corners.ok_or(format!("face {index} has no list of vertex indices"))?;
                     let fan = corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]);
                     mesh.1.extend(fan);
                 }

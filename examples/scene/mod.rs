@@ -2,8 +2,12 @@
 //! picture of both. Included by path; nothing of it is in the library.
 #![allow(dead_code, reason = "each program that includes the scene uses its own part of it")]
 
+pub mod canvas;
+pub mod ctr;
 pub mod field;
+pub mod lettering;
+pub mod mesh_file;
+pub mod picture;
 pub mod remesh;
 pub mod surface;
 pub mod ventricle;
-pub mod mesh_file;

@@ -119,7 +119,8 @@ impl Surface<'_> {
             let n = normal(p);
             let u = n.any_orthonormal_vector();
             let bend = [u, n.cross(u)].map(|along| (normal(p + along * REACH) - n) / REACH);
-            let [xx, xy, yy] = [bend[0].dot(u), 0.5 * (bend[0].dot(n.cross(u)) + bend[1].dot(u)), bend[1].dot(n.cross(u))];
+            let [xx, xy, yy] =
+                [bend[0].dot(u), 0.5 * (bend[0].dot(n.cross(u)) + bend[1].dot(u)), bend[1].dot(n.cross(u))];
             let curvature = (0.5 * (xx + yy)).abs() + (0.5 * (xx - yy)).hypot(xy);
             (DETAIL * curvature).hypot(1.0)
         };
@@ -135,7 +136,8 @@ impl Surface<'_> {
             let is_current = self.length(edge).to_bits() == bits && self.wings(edge[0], edge[1]).is_some();
             if is_current && self.collapse(edge) {
                 let kept = edge[0];
-                queue.extend(self.neighbours(kept).map(|other| key(self, [kept.min(other), kept.max(other)])));
+                queue
+                    .extend(self.neighbours(kept).map(|other| key(self, [kept.min(other), kept.max(other)])));
             }
         }
     }
@@ -183,7 +185,8 @@ impl Surface<'_> {
         for [a, b] in self.edges() {
             let Some([(left, c), (right, d)]) = self.wings(a, b) else { continue };
             let (one, two) = ([a, d, c], [d, b, c]);
-            let outward = self.normal([a, b, c]).normalize_or_zero() + self.normal([b, a, d]).normalize_or_zero();
+            let outward =
+                self.normal([a, b, c]).normalize_or_zero() + self.normal([b, a, d]).normalize_or_zero();
             let stays_flat = |t| self.normal(t).dot(outward) > 1.2 * self.normal(t).length();
             let spare = self.valence(a) > 4 && self.valence(b) > 4;
             let new = !self.neighbours(c).any(|n| n == d);
@@ -230,7 +233,8 @@ impl Surface<'_> {
                 let (mut sum, mut weight) = (Vector::ZERO, 0.0);
                 for &index in around {
                     let triangle = self.triangles[index as usize];
-                    let fineness = triangle.map(|v| self.fineness[v as usize]).into_iter().sum::<Real>() / 3.0;
+                    let fineness =
+                        triangle.map(|v| self.fineness[v as usize]).into_iter().sum::<Real>() / 3.0;
                     let share = self.normal(triangle).length() * fineness * fineness;
                     sum += triangle.map(|v| self.point(v)).into_iter().sum::<Vector>() * (share / 3.0);
                     weight += share;
