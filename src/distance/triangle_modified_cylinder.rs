@@ -57,8 +57,6 @@ pub fn triangle_capsule<T: Scalar>(
 pub(crate) struct Axial<T: Scalar> {
     /// Between p* and the link: an upper bound, and the answer in case 1.
     pub upper: Closest<T>,
-    /// d_K: the answer for the capsule, a lower bound for any cap.
-    pub lower: T,
     /// Whether the disc at the start, or at the end, decides (case 2).
     pub at_flat: [T::Mask; 2],
 }
@@ -72,12 +70,11 @@ impl<T: Scalar> Axial<T> {
         let has_axis = zero.lt(link.axis.norm_squared());
         Self {
             upper: Closest { distance, point1: axis.on_triangle, point2: on_link },
-            lower: (axis.squared.sqrt() - link.radius).max(zero),
             at_flat: [link.flat[0] & has_axis & axis.s.le(zero), link.flat[1] & has_axis & one.le(axis.s)],
         }
     }
 
-    /// A lower bound on the answer, sharper than `lower` where a flat cap decides. It stands against rounding.
+    /// A lower bound on the answer where a flat cap decides. It stands against rounding.
     #[inline(always)]
     pub(crate) fn plane_bound(&self, link: &Link<T>, face: &Face<T>) -> T {
         let (centre, outward) = self.cap(link);

@@ -87,9 +87,9 @@ impl CoarseMesh {
         for (index, vertices) in self.triangles.iter().enumerate() {
             let face = Face::new(vertices.map(|vertex| vertex - start));
             let axial = Axial::new(&link, &face);
-            let mut distance = axial.lower;
+            let mut distance = axial.upper.distance;
             if axial.at_flat[0] || axial.at_flat[1] {
-                distance = axial.plane_bound(&link, &face).max(distance);
+                distance = axial.plane_bound(&link, &face);
                 if distance - error < best {
                     distance = axial.with_caps(&link, &face).distance;
                 }

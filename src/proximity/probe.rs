@@ -57,9 +57,6 @@ impl Probe {
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
         let face = self.face(triangle);
         let axial = Axial::new(&self.link, &face);
-        if axial.lower >= bound {
-            return None;
-        }
         let closest = if !self.flat_cap_decides(&axial) {
             axial.upper
         } else if axial.plane_bound(&self.link, &face) >= bound {

@@ -23,7 +23,7 @@ use std::ops::Range;
 /// | [`cylinders`](Self::cylinders) | all flat | never exceeded at its ends, but open at the bends |
 ///
 /// Points and radii are in one unit of length and in the robot's frame; all constructors accept magnitudes up
-/// to 1e300.
+/// to 1e150.
 ///
 /// # Repeated points
 /// Planners repeat centreline points. A segment without length has no direction and adds nothing to the robot, so
@@ -58,7 +58,7 @@ impl Chain {
     ///
     /// # Errors
     /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or
-    /// beyond 1e300, a negative radius, or points that are all equal.
+    /// beyond 1e150, a negative radius, or points that are all equal.
     pub fn from_centreline(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
         Self::assemble(points, segment_radii, &algorithm_1::from_segment_radii(points, segment_radii))

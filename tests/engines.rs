@@ -1,0 +1,287 @@
+//! Every engine gives the same answers, on pleasant and on nasty meshes.
+
+mod common;
+
+use common::{Case, Random, distance_cases, read_lines};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::*;
+use parry_continuum::{Cap, Chain};
+use serde::Deserialize;
+
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// Every engine for a mesh, with a name.
+fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
+    vec![
+        ("exhaustive f64", Box::new(Exhaustive::<f64>::new(mesh).unwrap())),
+        ("exhaustive f32", Box::new(Exhaustive::<f32>::new(mesh).unwrap())),
+        ("search", Box::new(BvhSearch::new(mesh).unwrap())),
+    ]
+}
+
+fn extent(mesh: &TriMesh, robot: &Chain) -> f64 {
+    let (mesh, robot) = (mesh.local_aabb(), robot.local_aabb());
+    (mesh.maxs.max(robot.maxs) - mesh.mins.min(robot.mins)).max_element()
+}
+
+/// All engines, all methods: the same distances, and witnesses that realise them.
+fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f64) -> Vec<f64> {
+    let unit = UNIT * (extent(mesh, robot) + magnitude);
+    let mut reference: Vec<f64> = Vec::new();
+    for (name, mut engine) in engines(mesh) {
+        let mut answers = Vec::new();
+        for round in 0..2 {
+            engine.per_link(robot, pose, &mut answers).unwrap();
+            assert_eq!(answers.len(), robot.links().len());
+            if reference.is_empty() {
+                reference = answers.iter().map(|answer| answer.distance).collect();
+            }
+            for (link, (answer, expected)) in answers.iter().zip(&reference).enumerate() {
+                assert_eq!(answer.link as usize, link);
+                let error = (answer.distance - expected).abs() / unit;
+                assert!(
+                    error <= 16.0,
+                    "{name}, round {round}, link {link}: {} for {expected}",
+                    answer.distance
+                );
+                let gap = (answer.on_robot - answer.on_mesh).length();
+                assert!(
+                    (gap - answer.distance).abs() <= 8.0 * unit,
+                    "{name}: witnesses at {gap}, {answer:?}"
+                );
+                if answer.distance == 0.0 {
+                    assert_eq!(answer.on_robot, answer.on_mesh, "{name}");
+                }
+            }
+        }
+        let least = answers.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min);
+        let minimum = engine.minimum(robot, pose).unwrap();
+        assert_eq!(minimum.distance, least, "{name}");
+        for margin in [0.0, least.next_down().max(0.0), least, least.next_up(), 2.0 * least, f64::INFINITY] {
+            assert_eq!(
+                engine.clears(robot, pose, margin).unwrap(),
+                least > margin,
+                "{name} {margin} {least}"
+            );
+        }
+    }
+    reference
+}
+
+#[derive(Deserialize)]
+struct ChainCase {
+    id: String,
+    points: Vec<[f64; 3]>,
+    segment_radius: Vec<f64>,
+    tris: Vec<[[f64; 3]; 3]>,
+    d_seg: Vec<String>,
+}
+
+fn mesh_of(triangles: &[[[f64; 3]; 3]]) -> TriMesh {
+    let vertices = triangles.iter().flatten().map(|&vertex| Vector::from(vertex)).collect();
+    let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    TriMesh::new(vertices, indices).unwrap()
+}
+
+#[test]
+fn chain_cases() {
+    let cases: Vec<ChainCase> = read_lines(include_str!("data/chain_open.jsonl"));
+    assert_eq!(cases.len(), 40);
+    for case in cases {
+        let points: Vec<_> = case.points.iter().map(|&point| Vector::from(point)).collect();
+        let robot = Chain::from_centreline(&points, &case.segment_radius).unwrap();
+        let mesh = mesh_of(&case.tris);
+        let found = check_agreement(&mesh, &robot, &Pose::IDENTITY, 0.0);
+        let unit = UNIT * extent(&mesh, &robot);
+        for (link, (found, expected)) in found.iter().zip(&case.d_seg).enumerate() {
+            let error = (found - expected.parse::<f64>().unwrap()).abs() / unit;
+            assert!(error <= 16.0, "{} link {link}: {error} units", case.id);
+        }
+    }
+}
+
+/// A bumpy sphere with slivers, points, folded and duplicate triangles strewn in.
+fn nasty_mesh(random: &mut Random, size: f64, offset: Vector) -> TriMesh {
+    let mut triangles = Vec::new();
+    for _ in 0..400 {
+        let centre = random.direction() * size * random.between(0.5, 1.5);
+        let mut corner = || centre + random.direction() * size * 0.2;
+        let (a, b, c) = (corner(), corner(), corner());
+        let kind = random.below(8);
+        triangles.push(match kind {
+            0 => [a, a, a],
+            1 => [a, b, b],
+            2 => [a, a.lerp(b, 0.3), b],
+            3 => [a, a.lerp(b, 0.3) + (c - a) * 1e-9, b],
+            4 => [a, b, a + (c - a) * 1e-12],
+            _ => [a, b, c],
+        });
+        if kind == 5 {
+            triangles.push([b, c, a]);
+        }
+    }
+    mesh_of(&triangles.iter().map(|t| t.map(|v| (v + offset).to_array())).collect::<Vec<_>>())
+}
+
+fn random_robot(random: &mut Random, size: f64, offset: Vector, model: u32) -> Chain {
+    let mut points = vec![offset + random.direction() * size * 0.2];
+    let mut heading = random.direction();
+    let mut radii = Vec::new();
+    for segment in 0..12 {
+        heading = (heading + random.direction() * 0.4).normalize();
+        points.push(points[segment] + heading * size * random.between(0.01, 0.1));
+        radii.push(size * [0.05, 0.03, 0.01][segment / 4]);
+    }
+    match model {
+        0 => Chain::from_centreline(&points, &radii),
+        1 => Chain::capsules(&points, &radii),
+        _ => Chain::cylinders(&points, &radii),
+    }
+    .unwrap()
+}
+
+#[test]
+fn nasty_meshes_at_any_size_and_place() {
+    let mut random = Random::new(7);
+    let (mut apart, mut touching) = (0, 0);
+    for round in 0..60 {
+        let size = [1.0, 1e-6, 1e6, 1e-30][round % 4];
+        let offset = if round % 3 == 0 { random.direction() * size * 1e6 } else { Vector::ZERO };
+        let mesh = nasty_mesh(&mut random, size, offset);
+        let robot = random_robot(&mut random, size, offset, round as u32 % 3);
+        let pose = if round % 3 == 0 { Pose::IDENTITY } else { random.pose(size) };
+        let magnitude = offset.length() + pose.translation.length();
+        for distance in check_agreement(&mesh, &robot, &pose, magnitude) {
+            if distance > 0.0 { apart += 1 } else { touching += 1 }
+        }
+    }
+    assert!(apart > 100 && touching > 20, "{apart} apart, {touching} touching");
+}
+
+#[test]
+fn moved_vertices_are_seen() {
+    let mut random = Random::new(11);
+    let (mesh, other) =
+        (nasty_mesh(&mut random, 1.0, Vector::ZERO), nasty_mesh(&mut random, 1.0, Vector::ZERO));
+    let moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
+    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
+    let fresh = TriMesh::new(moved.clone(), mesh.indices().to_vec()).unwrap();
+    let expected = Exhaustive::<f64>::new(&fresh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
+    let bad = vec![Vector::NAN; moved.len()];
+    for (name, mut engine) in engines(&mesh) {
+        let before = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
+        assert_ne!(before.distance, expected.distance);
+        assert!(matches!(engine.set_vertices(&moved[1..]), Err(MeshError::VertexCount { .. })), "{name}");
+        assert!(matches!(engine.set_vertices(&bad), Err(MeshError::NotFinite { vertex: 0, .. })), "{name}");
+        assert_eq!(engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance, before.distance, "{name}");
+        engine.set_vertices(&moved).unwrap();
+        assert_eq!(engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance, expected.distance, "{name}");
+    }
+    assert_ne!(other.vertices(), mesh.vertices());
+}
+
+#[test]
+fn a_batch_is_its_robots_one_by_one() {
+    let mut random = Random::new(13);
+    let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
+    let robots: Vec<_> =
+        (0..5).map(|i| (random_robot(&mut random, 1.0, Vector::ZERO, i % 3), random.pose(0.3))).collect();
+    for (name, mut engine) in engines(&mesh) {
+        let mut batch = vec![Vec::new(); 9];
+        engine.per_link_batch(&robots, &mut batch).unwrap();
+        assert_eq!(batch.len(), robots.len());
+        for ((robot, pose), answers) in robots.iter().zip(&batch) {
+            let mut alone = Vec::new();
+            engine.per_link(robot, pose, &mut alone).unwrap();
+            let distances =
+                |answers: &[LinkProximity]| answers.iter().map(|a| a.distance).collect::<Vec<_>>();
+            assert_eq!(distances(&alone), distances(answers), "{name}");
+        }
+    }
+}
+
+#[test]
+fn scaling_by_a_power_of_two_scales_the_answers_bit_for_bit() {
+    let mut random = Random::new(17);
+    let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
+    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
+    let mut plain = Vec::new();
+    for (k, (_, mut engine)) in engines(&mesh).into_iter().enumerate() {
+        engine.per_link(&robot, &Pose::IDENTITY, &mut plain).unwrap();
+        for power in [-300, -40, 40, 300] {
+            let factor = 2.0_f64.powi(power);
+            let vertices = mesh.vertices().iter().map(|&vertex| vertex * factor).collect();
+            let scaled_mesh = TriMesh::new(vertices, mesh.indices().to_vec()).unwrap();
+            let mut points = vec![robot.links()[0].start() * factor];
+            points.extend(robot.links().iter().map(|link| link.end() * factor));
+            let radii: Vec<_> = robot.links().iter().map(|link| link.radius() * factor).collect();
+            let scaled = Chain::from_centreline(&points, &radii).unwrap();
+            let mut answers = Vec::new();
+            engines(&scaled_mesh).remove(k).1.per_link(&scaled, &Pose::IDENTITY, &mut answers).unwrap();
+            for (answer, plain) in answers.iter().zip(&plain) {
+                assert_eq!(answer.distance, plain.distance * factor);
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_an_error() {
+    let mut random = Random::new(19);
+    let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
+    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
+    let nan = Pose::from_translation(Vector::new(0.0, f64::NAN, 0.0));
+    let far = Pose::from_translation(Vector::X * 1e200);
+    for (name, mut engine) in engines(&mesh) {
+        let mut out = vec![engine.minimum(&robot, &Pose::IDENTITY).unwrap()];
+        assert_eq!(engine.per_link(&robot, &nan, &mut out), Err(ProximityError::PoseNotFinite), "{name}");
+        assert!(out.is_empty());
+        assert!(matches!(engine.minimum(&robot, &far), Err(ProximityError::OutOfRange { link: 0, .. })));
+        for margin in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
+            let error = engine.clears(&robot, &Pose::IDENTITY, margin).unwrap_err();
+            assert!(error.to_string().contains(&margin.to_string()), "{name}: {error}");
+        }
+        engine.per_link(&robot, &Pose::IDENTITY, &mut out).unwrap();
+        assert_eq!(out.len(), 12);
+    }
+    let mut vertices = mesh.vertices().to_vec();
+    for value in [f64::NAN, f64::INFINITY, 1e151] {
+        vertices[7].y = value;
+        let bad = mesh.clone();
+        let bad = TriMesh::new(vertices.clone(), bad.indices().to_vec());
+        // parry's own hierarchy may refuse such a mesh; if it does not, the engines do.
+        if let Ok(bad) = bad {
+            for error in [
+                BvhSearch::new(&bad).err(),
+                Exhaustive::<f64>::new(&bad).err(),
+                Exhaustive::<f32>::new(&bad).err(),
+            ] {
+                let message = error.expect("an error").to_string();
+                assert!(message.contains("vertex 7"), "{message}");
+            }
+        }
+    }
+}
+
+/// The flat caps of single cases as chains of one link: the search must find what the kernel finds.
+#[test]
+fn one_link_chains_of_the_distance_cases() {
+    let flat_and_apart = |case: &&Case| case.kind == "triangle_cylinder" && case.distance() > 0.0;
+    let cases = distance_cases();
+    let cases: Vec<_> = cases.iter().filter(flat_and_apart).collect();
+    assert!(cases.len() > 100);
+    for case in cases {
+        let (start, end) = (Vector::from(case.p0), Vector::from(case.p1));
+        if start == end {
+            continue;
+        }
+        let robot = Chain::cylinders(&[start, end], &[case.r]).unwrap();
+        assert_eq!(robot.links()[0].caps(), [Cap::Flat; 2]);
+        for (name, mut engine) in engines(&mesh_of(&[case.tri])) {
+            let found = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
+            let error = (found.distance - case.distance()).abs() / (UNIT * case.scale);
+            assert!(error <= 16.0, "{} {} {name}: {error}", case.id, case.cat);
+        }
+    }
+}
