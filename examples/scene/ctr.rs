@@ -127,6 +127,19 @@ impl Robot {
         if stiffness > 0.0 { sum / stiffness } else { Vector::ZERO }
     }
 
+    /// The joints on the way to a goal, at a share of its length from 0 to 1: the outermost section comes out first,
+    /// then the next. The tubes that are still inside have their final angles, so the robot that is out has its
+    /// final shape, and the rest of it follows where the tip went.
+    pub fn on_the_way(&self, goal: &Joints, share: Real) -> Joints {
+        let mut out = share * self.length(goal);
+        let mut part = |extension: &Real| {
+            let part = out.min(*extension);
+            out -= part;
+            part
+        };
+        Joints { extensions: goal.extensions.iter().map(&mut part).collect(), angles: goal.angles.clone() }
+    }
+
     /// The centreline as about `links` segments, shared out among the sections by their lengths: at least one for
     /// each section that is out, so that the radius changes exactly where a section ends.
     pub fn centreline(&self, joints: &Joints, links: usize) -> Centreline {

@@ -3,8 +3,10 @@
 #![allow(dead_code, reason = "each program that includes the scene uses its own part of it")]
 
 pub mod canvas;
+pub mod colour_map;
 pub mod ctr;
 pub mod field;
+pub mod figure;
 pub mod lettering;
 pub mod mesh_file;
 pub mod picture;

@@ -102,7 +102,7 @@ const GLASS_EDGE: Colour = hex(0x54788f);
 const TISSUE: Colour = hex(0xf0c4b4);
 const TISSUE_DEEP: Colour = hex(0x8f4a4c);
 const INK: Colour = hex(0x3d4a57);
-const SKY: [Colour; 2] = [hex(0xfdfcfa), hex(0xdfe5ea)];
+pub const SKY: [Colour; 2] = [hex(0xfdfcfa), hex(0xdfe5ea)];
 
 impl<'a> Picture<'a> {
     pub fn new(wall: Option<&'a TriMesh>, solids: Vec<Solid>) -> Self {

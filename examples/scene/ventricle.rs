@@ -5,10 +5,11 @@
 //! Millimetres; x to the right, y to the front, z up; the origin is in the middle of the third ventricle. Sizes
 //! follow an adult's, with passages somewhat wider than average, so that a robot of 2.5 mm fits through a foramen.
 
+use super::ctr::Joints;
 use super::field::{Body, Tube, knot, round};
 use super::remesh::remesh;
 use super::surface::{Mesh, extract, subdivide};
-use parry_continuum::parry::math::{Real, Vector};
+use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 
 /// The triangles of [`mesh`] where nothing else is asked for.
 pub const DEFAULT_TRIANGLES: usize = 6000;
@@ -40,6 +41,18 @@ pub fn mesh(target_triangles: usize) -> Mesh {
         mesh = subdivide(&field, mesh, STEP);
     }
     mesh
+}
+
+/// The robot's pose at its entry: a burr hole over the right frontal horn, the base 3 mm inside the roof.
+pub fn entry() -> Pose {
+    let into = Vector::new(-0.46, -0.085, -0.884).normalize();
+    Pose::from_parts(Vector::new(10.7, 13.7, 16.8), Rot3::from_rotation_arc(Vector::Z, into))
+}
+
+/// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro into the third
+/// ventricle, and back along it to the mouth of the aqueduct. A random search found it; it keeps 1.2 mm from the wall.
+pub fn goal() -> Joints {
+    Joints { extensions: vec![13.2, 18.1, 10.4], angles: vec![-0.54, -1.76, 0.0] }
 }
 
 /// The ventricle as a field.
