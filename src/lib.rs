@@ -5,6 +5,7 @@
 pub use parry3d_f64 as parry;
 
 pub mod distance;
+mod host;
 pub mod proximity;
 mod robot;
 
