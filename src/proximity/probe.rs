@@ -20,6 +20,7 @@ pub(crate) struct Probe {
     end: Vector,
     scale: Real,
     link: Link<f64>,
+    length: Real,
     has_flat_cap: bool,
 }
 
@@ -32,6 +33,7 @@ impl Probe {
             start,
             end,
             scale,
+            length: local.norm(),
             link: Link::new(local, link.radius() * scale, flat),
             has_flat_cap: flat[0] || flat[1],
         }
@@ -55,7 +57,11 @@ impl Probe {
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
-        let face = self.face(triangle);
+        let vertices = triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale));
+        if self.at_least(vertices) > bound {
+            return None;
+        }
+        let face = Face::new(vertices);
         let axial = Axial::new(&self.link, &face);
         let closest = if !self.flat_cap_decides(&axial) {
             axial.upper
@@ -65,6 +71,16 @@ impl Probe {
             axial.with_caps(&self.link, &face)
         };
         (closest.distance < bound).then_some(closest)
+    }
+
+    /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
+    fn at_least(&self, [a, b, c]: [Vec3<f64>; 3]) -> Real {
+        let centre = (a + b + c) * (1.0 / 3.0);
+        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
+        let foot = self.link.axis * t;
+        let normal = centre - foot;
+        let beyond = normal.dot(a - foot).min(normal.dot(b - foot)).min(normal.dot(c - foot));
+        beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
     /// The closest points of the link and a triangle, in scaled units and from the link's start.
@@ -82,12 +98,22 @@ impl Probe {
         self.has_flat_cap && (axial.at_flat[0] || axial.at_flat[1])
     }
 
-    /// A lower bound on the distance between the link and anything in the box, in scaled units: that of the
-    /// axis's own box, less the radius and what rounding may have added.
+    /// A lower bound on the distance between the link and anything in the box, in scaled units, less what
+    /// rounding may have added.
+    ///
+    /// With c the box's centre, p the axis point nearest to c and v = c - p, the whole axis lies behind the
+    /// plane through p with normal v, and the box beyond the one through its corner on that side. So the bound
+    /// is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
+    /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
+    /// badly.
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
-        let (low, high) = (self.start.min(self.end), self.start.max(self.end));
-        let gap = ((mins - high).max(low - maxs) * self.scale).max(Vector::ZERO);
-        (gap.length() - self.link.radius - SLACK).max(0.0)
+        let half = (maxs - mins) * (0.5 * self.scale);
+        let centre = to_vec3((mins - self.start) * self.scale + half);
+        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
+        let to_centre = centre.along(self.link.axis, -t);
+        let distance = to_centre.norm();
+        let corner = half.dot(Vector::from_array(to_centre.into()).abs());
+        (distance - corner.over(distance) - self.link.radius - SLACK).max(0.0)
     }
 
     /// An answer in the mesh's frame.
