@@ -5,7 +5,7 @@
 
 use super::canvas::{Align, Canvas, Colour, hex, mix};
 use super::colour_map::ColourMap;
-use super::picture::{Camera, Picture, SKY, Solid};
+use super::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};
 use parry_continuum::proximity::LinkProximity;
@@ -13,9 +13,10 @@ use parry_continuum::{Chain, ModifiedCylinder};
 
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x66757f);
-const SIZE: [usize; 2] = [2000, 1300];
+const SIZE: [usize; 2] = [2000, 1220];
 const LEFT: usize = 1230;
-const INSET: [usize; 4] = [1250, 130, 690, 800];
+const TOP: usize = 150;
+const INSET: [usize; 4] = [1250, 70, 690, 800];
 
 /// The text on the picture.
 pub struct Caption {
@@ -26,7 +27,7 @@ pub struct Caption {
 }
 
 /// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one per link. The mesh's
-/// z is up and its y to the front, as scanners have it.
+/// z is taken to be up and its y to the front, as in scans.
 pub fn draw(
     mesh: &TriMesh,
     robot: &Chain,
@@ -42,39 +43,47 @@ pub fn draw(
         picture.tints.insert(answer.triangle, colours.colour(answer.distance));
     }
 
-    let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, y| mix(SKY[0], SKY[1], y as f32 / SIZE[1] as f32));
-    let towards = Vector::new(-1.0, -0.55, -0.32);
-    let aspect = LEFT as Real / SIZE[1] as Real;
-    let whole = Camera::framing(mesh.vertices(), towards, Vector::Z, aspect, 0.05);
-    canvas.paste(&picture.render(&whole, LEFT, SIZE[1]), [0, 0], 0.0);
-
-    // Close up: the robot and the ends of its lines, from where it is broadest.
+    let sky = |y: usize| mix(SKY[0], SKY[1], y as f32 / SIZE[1] as f32);
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, y| sky(y));
     let mut seen: Vec<Vector> =
         robot.links().iter().flat_map(|l| [pose * l.start(), pose * l.end()]).collect();
     let (first, middle, last) = (seen[0], seen[seen.len() / 2], seen[seen.len() - 1]);
+
+    // The whole, from the front and above, on the side where the robot is.
+    let side = if first.x < mesh.local_aabb().center().x { 1.0 } else { -1.0 };
+    let towards = Vector::new(side, -0.55, -0.32).normalize();
+    let size = [LEFT, SIZE[1] - TOP];
+    let whole = Camera::framing(mesh.vertices(), towards, Vector::Z, size[0] as Real / size[1] as Real, 0.04);
+    picture.sky = [sky(TOP), sky(SIZE[1])];
+    canvas.paste(&picture.render(&whole, size[0], size[1]), [0, TOP], 0.0);
+
+    // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front of them.
     let broadside = (middle - first).cross(last - first).normalize_or_zero();
     let broadside = if broadside.dot(towards) < 0.0 { -broadside } else { broadside };
     seen.extend(answers.iter().map(|answer| answer.on_mesh));
     let [left, top, width, height] = INSET;
-    let near = Camera::framing(
+    let mut near = Camera::framing(
         &seen,
         broadside + towards.normalize() * 0.5,
         Vector::Z,
         width as Real / height as Real,
         0.08,
     );
-    picture.skin = [0.015, 0.4, 0.85];
-    picture.edges = 0.3;
+    let depth = |p: &Vector| (*p - near.eye).dot(near.forward);
+    near.cut = seen.iter().map(depth).fold(Real::INFINITY, Real::min) - 0.5 * thick;
+    picture.sky = [sky(top), sky(top + height)];
+    picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
     let inset = picture.render(&near, width, height);
     let frame = [left as f32, top as f32, (left + width) as f32, (top + height) as f32];
-    lens(&mut canvas, &whole, &seen, frame);
+    let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
+    lens(&mut canvas, &places.collect::<Vec<_>>(), frame);
     canvas.paste(&inset, [left, top], 18.0);
     canvas.frame(frame, 18.0, 2.5, PALE);
 
     canvas.text(&caption.title, [56.0, 84.0], Align::Left, 30.0, INK);
     canvas.text(&caption.subtitle, [56.0, 132.0], Align::Left, 19.0, PALE);
     let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
-    ruler(&mut canvas, &whole, mesh.local_aabb().center(), [LEFT, SIZE[1]], [56.0, 1244.0]);
+    ruler(&mut canvas, &whole, mesh.local_aabb().center(), size, [56.0, 1164.0]);
     ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, frame[3] - 28.0]);
     let bar = [frame[0], frame[3] + 74.0];
     colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
@@ -116,8 +125,7 @@ fn solids(
 }
 
 /// Shows which part of the left picture the close-up shows.
-fn lens(canvas: &mut Canvas, camera: &Camera, seen: &[Vector], inset: [f32; 4]) {
-    let places: Vec<[f32; 2]> = seen.iter().map(|&p| camera.place(p, [LEFT, SIZE[1]])).collect();
+fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
     let side =
         |axis: usize, pick: fn(f32, f32) -> f32| places.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0);
     let margin = 14.0;

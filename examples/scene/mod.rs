@@ -4,6 +4,7 @@
 
 pub mod canvas;
 pub mod colour_map;
+pub mod command;
 pub mod ctr;
 pub mod field;
 pub mod figure;
@@ -11,5 +12,7 @@ pub mod lettering;
 pub mod mesh_file;
 pub mod picture;
 pub mod remesh;
+pub mod steer;
 pub mod surface;
+pub mod timing;
 pub mod ventricle;

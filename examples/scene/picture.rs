@@ -22,6 +22,8 @@ pub struct Camera {
     pub right: Vector,
     /// Half the vertical field of view, as a tangent.
     pub spread: Real,
+    /// Depth before which nothing is seen: a cut through the scene.
+    pub cut: Real,
 }
 
 impl Camera {
@@ -50,7 +52,7 @@ impl Camera {
             let q = p - centre;
             back = back.max((q.dot(right).abs() / aspect).max(q.dot(up).abs()) / tall - q.dot(forward));
         }
-        Self { eye: centre - forward * back, forward, up, right, spread }
+        Self { eye: centre - forward * back, forward, up, right, spread, cut: 0.0 }
     }
 
     /// The place of a point in a picture of the given size, in pixels.
@@ -91,16 +93,30 @@ pub struct Picture<'a> {
     aabb: Aabb,
     /// How far shading by a nearby solid reaches.
     reach: Real,
-    /// Opacity of the wall's near side, at normal and at grazing incidence, and of its far side.
-    pub skin: [f32; 3],
-    /// Opacity of the triangles' edges.
-    pub edges: f32,
+    pub skin: Skin,
+    /// The backdrop's colour at the top and at the bottom.
+    pub sky: [Colour; 2],
+}
+
+/// How the wall looks: opacities.
+#[derive(Clone, Copy)]
+pub struct Skin {
+    /// Of the near side, seen straight on.
+    pub near: f32,
+    /// Of the near side, seen at a grazing angle.
+    pub rim: f32,
+    /// Of the lamp's reflection in the near side.
+    pub glint: f32,
+    /// Of the far side.
+    pub far: f32,
+    /// Of the triangles' edges, on the near and the far side.
+    pub edges: [f32; 2],
 }
 
 const GLASS: Colour = hex(0xdbe7ee);
-const GLASS_EDGE: Colour = hex(0x54788f);
-const TISSUE: Colour = hex(0xf0c4b4);
-const TISSUE_DEEP: Colour = hex(0x8f4a4c);
+const GLASS_EDGE: Colour = hex(0x35607d);
+const TISSUE: Colour = hex(0xf3bfae);
+const TISSUE_DEEP: Colour = hex(0x6e3138);
 const INK: Colour = hex(0x3d4a57);
 pub const SKY: [Colour; 2] = [hex(0xfdfcfa), hex(0xdfe5ea)];
 
@@ -119,8 +135,8 @@ impl<'a> Picture<'a> {
             solids,
             aabb,
             reach,
-            skin: [0.05, 0.72, 0.7],
-            edges: 0.2,
+            skin: Skin { near: 0.05, rim: 0.8, glint: 0.5, far: 0.72, edges: [0.16, 0.2] },
+            sky: SKY,
         }
     }
 
@@ -130,9 +146,9 @@ impl<'a> Picture<'a> {
         let look = |x: f64, y: f64| {
             let across = (2.0 * x - width as f64) / height as f64 * camera.spread;
             let up = (1.0 - 2.0 * y / height as f64) * camera.spread;
-            let ray =
-                Ray::new(camera.eye, (camera.forward + camera.right * across + camera.up * up).normalize());
-            let backdrop = mix(SKY[0], SKY[1], (y / height as f64) as f32);
+            let towards = camera.forward + camera.right * across + camera.up * up;
+            let ray = Ray::new(camera.eye + towards * camera.cut, towards.normalize());
+            let backdrop = mix(self.sky[0], self.sky[1], (y / height as f64) as f32);
             self.look(&ray, camera, backdrop, 2.0 * camera.spread / height as Real)
         };
         canvas.pixels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
@@ -178,7 +194,7 @@ impl<'a> Picture<'a> {
                     break;
                 };
                 let t = start + hit.time_of_impact;
-                let (colour, opacity) = self.skin(wall, ray, t, hit.subshape, camera, t * pixel);
+                let (colour, opacity) = self.skin(wall, ray, t, hit.subshape, camera, pixel);
                 seen = std::array::from_fn(|i| seen[i] + clear * opacity * colour[i]);
                 clear *= 1.0 - opacity;
                 start = t + step;
@@ -197,7 +213,8 @@ impl<'a> Picture<'a> {
             let limit = best.map_or(Real::MAX, |(_, t, _)| t);
             if solid.aabb.cast_local_ray(ray, limit, true).is_some()
                 && let Some(hit) = solid.shape.cast_ray_and_get_normal(&solid.pose, ray, limit, true)
-                && hit.time_of_impact < limit
+                // Where two surfaces coincide, as the balls at a joint do, the first one shows.
+                && hit.time_of_impact < limit * (1.0 - 1e-9)
             {
                 best = Some((solid, hit.time_of_impact, hit.normal));
             }
@@ -205,7 +222,7 @@ impl<'a> Picture<'a> {
         best
     }
 
-    /// Colour and opacity of the wall where the ray meets it.
+    /// Colour and opacity of the wall where the ray meets it; `pixel` is a pixel's size at depth 1.
     fn skin(
         &self,
         wall: &TriMesh,
@@ -216,6 +233,7 @@ impl<'a> Picture<'a> {
         pixel: Real,
     ) -> (Colour, f32) {
         let p = ray.point_at(t);
+        let pixel = pixel * (p - camera.eye).dot(camera.forward);
         let corners = wall.indices()[id as usize].map(|i| i as usize);
         let [a, b, c] = corners.map(|i| wall.vertices()[i]);
         let flat = (b - a).cross(c - a);
@@ -230,15 +248,15 @@ impl<'a> Picture<'a> {
         let heights = [(c - b).length(), (a - c).length(), (b - a).length()].map(|side| flat.length() / side);
         let to_edge = (0..3).map(|i| share[i].max(0.0) * heights[i]).fold(Real::MAX, Real::min) / pixel;
         let fades = ((heights.into_iter().fold(Real::MAX, Real::min) / pixel - 6.0) / 20.0).clamp(0.0, 1.0);
-        let line = self.edges * ((1.1 - to_edge).clamp(0.0, 1.0) * fades) as f32;
+        let line = self.skin.edges[usize::from(!entering)] * ((1.1 - to_edge).clamp(0.0, 1.0) * fades) as f32;
 
         let (mut colour, mut opacity) = if entering {
             let colour = mix(GLASS, GLASS_EDGE, grazing);
-            let glint = shine(normal, ray.dir, camera, 60.0);
-            (mix(colour, [1.0; 3], glint.min(1.0)), self.skin[0] + self.skin[1] * grazing + 0.5 * glint)
+            let glint = self.skin.glint * shine(normal, ray.dir, camera, 60.0);
+            (mix(colour, [1.0; 3], glint.min(1.0)), self.skin.near + self.skin.rim * grazing + glint)
         } else {
             let light = light(-normal, camera) * (1.0 - 0.62 * self.shade(p));
-            (mix(TISSUE_DEEP, TISSUE, light), self.skin[2] + (1.0 - self.skin[2]) * grazing)
+            (mix(TISSUE_DEEP, TISSUE, light), self.skin.far + (1.0 - self.skin.far) * grazing)
         };
         if let Some(tint) = self.tints.get(&id) {
             colour = mix(colour, *tint, 0.85);
