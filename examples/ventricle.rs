@@ -279,7 +279,7 @@ fn print_times(
             &mut || exhaustive.per_link(chain, base, &mut c).map_err(text),
             &mut || timing::parry(mesh, &cylinders, base).map(drop).map_err(text),
         ],
-        Duration::from_secs(2),
+        Duration::from_secs(1),
     )?;
     let [cold, warm, all, parry] = medians[..] else { return Err("a time is missing".into()) };
     println!("\ntime per query of all {} links (median, taken in turns)", chain.links().len());

@@ -103,7 +103,7 @@ impl Robot {
             while s > to
                 && let Some(next) = breaks.next()
             {
-                frame = frame * arc(self.curvature(joints, &ends, 0.5 * (from + to)), to - from);
+                frame *= arc(self.curvature(joints, &ends, 0.5 * (from + to)), to - from);
                 (from, to) = (to, next);
             }
             frames.push(frame * arc(self.curvature(joints, &ends, 0.5 * (from + to)), s - from));

@@ -78,16 +78,30 @@ impl Tube {
 
     /// The field of this tube alone; where that exceeds `limit`, it may be infinite.
     fn value(&self, p: Vector, limit: Real) -> Real {
-        if (p - self.whole.centre).length() - self.whole.reach > limit {
+        if !self.whole.is_within(limit, p) {
             return Real::INFINITY;
         }
-        let mut least = Real::INFINITY;
-        for (pair, ball) in self.sections.windows(2).zip(&self.balls) {
-            if (p - ball.centre).length() - ball.reach < least.min(limit) {
-                least = least.min(piece(p, &pair[0], &pair[1]));
+        // The piece whose ball is most central first: its value lets most of the others be skipped.
+        let far = |ball: &Ball| (p - ball.centre).length_squared();
+        let value = |k: usize| piece(p, &self.sections[k], &self.sections[k + 1]);
+        let first = (0..self.balls.len())
+            .min_by(|&j, &k| far(&self.balls[j]).total_cmp(&far(&self.balls[k])))
+            .unwrap_or_default();
+        let mut least = value(first);
+        for (k, ball) in self.balls.iter().enumerate() {
+            if k != first && ball.is_within(least.min(limit), p) {
+                least = least.min(value(k));
             }
         }
         least
+    }
+}
+
+impl Ball {
+    /// Whether the ball's surface is nearer to p than `limit`.
+    fn is_within(&self, limit: Real, p: Vector) -> bool {
+        let span = limit + self.reach;
+        span > 0.0 && (p - self.centre).length_squared() < span * span
     }
 }
 

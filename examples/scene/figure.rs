@@ -60,7 +60,9 @@ pub fn draw(
     // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front of them.
     let broadside = (middle - first).cross(last - first).normalize_or_zero();
     let broadside = if broadside.dot(towards) < 0.0 { -broadside } else { broadside };
-    seen.extend(answers.iter().map(|answer| answer.on_mesh));
+    let ends = answers.iter().map(|answer| answer.on_mesh);
+    let inner = seen.clone();
+    seen.extend(ends.clone());
     let [left, top, width, height] = INSET;
     let mut near = Camera::framing(
         &seen,
@@ -69,8 +71,9 @@ pub fn draw(
         width as Real / height as Real,
         0.08,
     );
-    let depth = |p: &Vector| (*p - near.eye).dot(near.forward);
-    near.cut = seen.iter().map(depth).fold(Real::INFINITY, Real::min) - 0.5 * thick;
+    let depth = |p: Vector| (p - near.eye).dot(near.forward);
+    let robot_depths = inner.into_iter().map(|p| depth(p) - 1.05 * thick);
+    near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
     picture.sky = [sky(top), sky(top + height)];
     picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
     let inset = picture.render(&near, width, height);

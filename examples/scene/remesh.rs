@@ -42,11 +42,11 @@ pub fn remesh(field: Field, (points, triangles): Mesh, target: usize, step: Real
     let fineness = vec![1.0; points.len()];
     let mut surface = Surface { field, step, points, fineness, triangles, around, alive };
     surface.slide(1);
-    for round in 0..8 {
+    for round in 0..6 {
         surface.measure();
         surface.coarsen(target);
-        surface.flip(if round < 5 { Surface::evens_neighbours } else { Surface::widens_angles });
-        surface.slide(3);
+        surface.flip(if round < 4 { Surface::evens_neighbours } else { Surface::widens_angles });
+        surface.slide(2);
     }
     for _ in 0..3 {
         surface.flip(Surface::widens_angles);
@@ -111,7 +111,7 @@ impl Surface<'_> {
 
     /// Takes the fineness from the larger principal curvature: the normals' change over two directions across.
     fn measure(&mut self) {
-        let normal = |p| slope(self.field, p, self.step).1.normalize_or_zero();
+        let normal = |p| slope(self.field, p, (self.field)(p), self.step).normalize_or_zero();
         let finer = |(&p, around): (&Vector, &Vec<u32>)| {
             if around.is_empty() {
                 return 1.0;
@@ -242,7 +242,7 @@ impl Surface<'_> {
                 if weight == 0.0 {
                     return p;
                 }
-                let normal = slope(self.field, p, self.step).1.normalize_or_zero();
+                let normal = slope(self.field, p, (self.field)(p), self.step).normalize_or_zero();
                 let pull = sum / weight - p;
                 project(self.field, p + (pull - normal * pull.dot(normal)) * 0.8, self.step)
             };

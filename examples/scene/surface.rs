@@ -93,24 +93,24 @@ fn faces(inside: [bool; 4]) -> Vec<[[usize; 2]; 3]> {
     }
 }
 
-/// The field's value and its gradient, by differences over `step`.
-pub fn slope(field: Field, p: Vector, step: Real) -> (Real, Vector) {
-    let value = field(p);
+/// The field's gradient where its value is `value`, by differences over `step`.
+pub fn slope(field: Field, p: Vector, value: Real, step: Real) -> Vector {
     let ahead = [Vector::X, Vector::Y, Vector::Z].map(|e| field(p + e * step));
-    (value, (Vector::from(ahead) - Vector::splat(value)) / step)
+    (Vector::from(ahead) - Vector::splat(value)) / step
 }
 
-/// The point moved onto the zero set by a few Newton steps along the gradient.
+/// The point moved onto the zero set, to within `step`, by a few Newton steps along the gradient.
 pub fn project(field: Field, mut p: Vector, step: Real) -> Vector {
-    for _ in 0..3 {
-        let (value, gradient) = slope(field, p, step);
+    for _ in 0..4 {
+        let value = field(p);
+        if value.abs() < step {
+            break;
+        }
+        let gradient = slope(field, p, value, step);
         if gradient == Vector::ZERO {
             break;
         }
         p -= gradient * (value / gradient.length_squared());
-        if value.abs() < step {
-            break;
-        }
     }
     p
 }

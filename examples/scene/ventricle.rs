@@ -18,8 +18,8 @@ pub const DEFAULT_TRIANGLES: usize = 6000;
 const LOW: Vector = Vector::new(-44.0, -66.0, -62.0);
 const HIGH: Vector = Vector::new(44.0, 44.0, 32.0);
 
-/// Grid spacing of the first surface: below half the bore of the aqueduct.
-const SPACING: Real = 1.3;
+/// Grid spacing of the first surface: about half the bore of the aqueduct.
+const SPACING: Real = 1.6;
 
 /// Difference step and detail limit of the field.
 const STEP: Real = 1e-4;
@@ -29,7 +29,7 @@ const REMESHED: usize = 24_000;
 
 /// The ventricle's wall with about `target_triangles` triangles (500 to some millions), closed and oriented outwards.
 pub fn mesh(target_triangles: usize) -> Mesh {
-    let body = Ventricle::new();
+    let body = Ventricle::grow();
     let field = |p: Vector| body.value(p);
     let (mut coarse, mut halvings) = (target_triangles, 0);
     while coarse > REMESHED {
@@ -46,7 +46,7 @@ pub fn mesh(target_triangles: usize) -> Mesh {
 /// The robot's pose at its entry: a burr hole over the right frontal horn, the base 3 mm inside the roof.
 pub fn entry() -> Pose {
     let into = Vector::new(-0.46, -0.085, -0.884).normalize();
-    Pose::from_parts(Vector::new(10.7, 13.7, 16.8), Rot3::from_rotation_arc(Vector::Z, into))
+    Pose::from_parts(Vector::new(10.8, 13.72, 17.0), Rot3::from_rotation_arc(Vector::Z, into))
 }
 
 /// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro into the third
@@ -63,8 +63,7 @@ pub struct Ventricle {
 
 impl Ventricle {
     /// Grows the ventricle.
-    #[expect(clippy::new_without_default, reason = "growing it is work")]
-    pub fn new() -> Self {
+    pub fn grow() -> Self {
         let tubes = [lateral(), third(), fourth()].into_iter().flatten().collect();
         Self { half: Body { tubes, blend: 4.0 } }
     }
