@@ -26,9 +26,10 @@ fn small() -> &'static Mesh {
     MESH.get_or_init(|| ventricle::mesh(ventricle::DEFAULT_TRIANGLES))
 }
 
-/// Asserts that a mesh is one closed surface without handles: every edge has exactly two triangles, which run along
-/// it in opposite directions, those around a vertex form one ring, and Euler's characteristic is 2.
-fn assert_closed(points: &[Vector], triangles: &[[u32; 3]]) {
+/// Asserts that a mesh is one closed surface: every edge has exactly two triangles, which run along
+/// it in opposite directions, those around a vertex form one ring, and Euler's characteristic is as given: 2 for a
+/// surface without handles, 0 for a ring.
+fn assert_closed(points: &[Vector], triangles: &[[u32; 3]], euler: i64) {
     let mut edges = BTreeSet::new();
     let mut next = vec![BTreeMap::new(); points.len()];
     for &[a, b, c] in triangles {
@@ -55,7 +56,7 @@ fn assert_closed(points: &[Vector], triangles: &[[u32; 3]]) {
     }
     assert!(reached.iter().all(|&is| is), "more than one part");
     let (v, e, f) = (points.len() as i64, edges.len() as i64 / 2, triangles.len() as i64);
-    assert_eq!(v - e + f, 2);
+    assert_eq!(v - e + f, euler);
 }
 
 fn volume((points, triangles): &Mesh) -> Real {
@@ -77,7 +78,7 @@ fn ventricle_is_closed_oriented_and_of_well_shaped_triangles_at_any_size() {
         let mesh = if wanted == small().1.len() { small().clone() } else { ventricle::mesh(wanted) };
         let (points, triangles) = &mesh;
         assert!(triangles.len().abs_diff(wanted) <= wanted / 1000, "{} of {wanted}", triangles.len());
-        assert_closed(points, triangles);
+        assert_closed(points, triangles, 2);
         // Outward normals make the volume positive; an adult's ventricles hold 20 to 50 ml.
         assert!((20e3..50e3).contains(&volume(&mesh)), "{} ml", volume(&mesh) / 1e3);
         let low = points.iter().copied().reduce(Vector::min).unwrap();
@@ -94,6 +95,19 @@ fn ventricle_is_closed_oriented_and_of_well_shaped_triangles_at_any_size() {
             angles[0],
             angles[angles.len() / 2]
         );
+    }
+}
+
+#[test]
+fn coarsening_stops_before_it_closes_a_ring() {
+    // So thin that the last collapses allowed by shape alone would pinch it.
+    let ring = |p: Vector| (p.x.hypot(p.y) - 5.0).hypot(p.z) - 1.0;
+    let fine = scene::surface::extract(&ring, Vector::splat(-7.0), Vector::splat(7.0), 0.35);
+    assert_closed(&fine.0, &fine.1, 0);
+    for target in [1000, 300, 100, 0] {
+        let (points, triangles) = scene::remesh::remesh(&ring, fine.clone(), target, 1e-4);
+        assert_closed(&points, &triangles, 0);
+        assert!(triangles.len() >= target && triangles.len() < target.max(100) + 100, "{}", triangles.len());
     }
 }
 
@@ -140,7 +154,7 @@ fn ball(radius: Real) -> TriMesh {
     for _ in 0..3 {
         mesh = scene::surface::subdivide(&field, mesh, 1e-6 * radius);
     }
-    assert_closed(&mesh.0, &mesh.1);
+    assert_closed(&mesh.0, &mesh.1, 2);
     assert!(volume(&mesh) > 0.0);
     TriMesh::new(mesh.0, mesh.1).unwrap()
 }
@@ -168,6 +182,13 @@ fn a_start_and_a_goal_are_found_in_an_unknown_mesh() {
     assert!(matches!(steer::find_goal(&robot, &mut cramped, &Pose::IDENTITY), Err(steer::NoGoal::NoRoom)));
     let sheet = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], vec![[0, 1, 2]]).unwrap();
     assert_eq!(steer::deepest_point(&sheet), None);
+    // Below a ball, the sheet makes the number of crossings odd: no telling what is inside.
+    let (mut points, mut triangles) = (room.vertices().to_vec(), room.indices().to_vec());
+    let last = points.len() as u32;
+    points.extend([[-500.0, -300.0], [500.0, -300.0], [0.0, 800.0]].map(|[x, y]| Vector::new(x, y, -400.0)));
+    triangles.push([last, last + 1, last + 2]);
+    let deepest = steer::deepest_point(&TriMesh::new(points, triangles).unwrap());
+    assert!(deepest.is_none_or(|p| p.length() < 60.0), "{deepest:?}");
 }
 
 /// A file with the given bytes, in a directory of this test's own.
@@ -206,7 +227,7 @@ fn meshes_are_read_as_they_were_written() {
     let mesh = small();
     let mut solid = binary_stl(mesh);
     // A binary file may call itself solid, and an ASCII file may leave its solid without a name.
-    solid[..5].copy_from_slice(b"solid");
+    solid[..16].copy_from_slice(b"solid of bytes \n");
     let facets: String = mesh
         .1
         .iter()
@@ -243,7 +264,7 @@ fn meshes_are_read_as_they_were_written() {
     ] {
         for scale in [1.0, 1000.0] {
             let (points, triangles) = mesh_file::load(&file(name, &bytes), scale).unwrap();
-            assert_closed(&points, &triangles);
+            assert_closed(&points, &triangles, 2);
             assert_eq!((points.len(), triangles.len()), (mesh.0.len(), mesh.1.len()), "{name}");
             for (read, written) in triangles.iter().zip(&mesh.1) {
                 for corner in 0..3 {
@@ -256,10 +277,15 @@ fn meshes_are_read_as_they_were_written() {
 }
 
 #[test]
-fn polygons_are_cut_into_triangles() {
+fn polygons_are_cut_and_objects_joined() {
     let quad = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     let (_, triangles) = mesh_file::load(&file("quad.obj", quad), 1.0).unwrap();
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
+    let two = b"o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no two\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf 4 5 6\n";
+    let (points, triangles) = mesh_file::load(&file("two.obj", two), 1.0).unwrap();
+    assert_eq!(triangles.len(), 2);
+    assert!(triangles[0].iter().all(|&i| points[i as usize].z == 0.0));
+    assert!(triangles[1].iter().all(|&i| points[i as usize].z == 9.0));
     let mesh = (vec![Vector::ZERO; 5], vec![[0; 3]]);
     let text = ply_header(&mesh, "ascii", "float") + &"0 0 0\n".repeat(5) + "5 0 1 2 3 4\n";
     let (_, triangles) = mesh_file::load(&file("pentagon.ply", text.as_bytes()), 1.0).unwrap();
