@@ -1,28 +1,40 @@
-//! Proximity by the mesh's bounding volume hierarchy.
+//! Proximity by a bounding volume hierarchy.
 
+use super::coarse::CoarseLink;
+use super::descent::{Descent, Stack, Visits};
 use super::probe::{Probe, check_vertices, place};
-use super::search::{Found, Until, search};
+use super::search::Found;
+use super::tree::Tree;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
+use crate::distance::lanes::Lane;
+use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
-/// Proximity queries by the mesh's bounding volume hierarchy: the work per link grows with the logarithm of
-/// the number of triangles.
+/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
+/// triangles.
 ///
-/// The engine keeps a copy of the mesh, and remembers the last answers: they bound the next query. Any robot
-/// and pose may follow; small motions are answered fastest. [`BvhSearch::forget`] makes it cold again.
+/// The engine keeps the mesh and a hierarchy of its own, 16 boxes and 16 triangles wide, in single precision;
+/// what rounding leaves in question is measured in double precision, so the answers are those of
+/// [`Exhaustive`](super::Exhaustive). It remembers the last answers, which bound the next query: any robot and
+/// pose may follow, and small motions are answered fastest. [`BvhSearch::forget`] makes it cold again.
 pub struct BvhSearch {
-    mesh: TriMesh,
+    level: Level,
+    vertices: Vec<Vector>,
+    indices: Vec<[u32; 3]>,
     /// The largest coordinate of the mesh.
     reach: Real,
+    tree: Tree,
+    visits: Visits,
     /// The closest triangle of each link at the last query, where there was one.
     last: Vec<u32>,
     probes: Vec<Probe>,
+    stack: Stack,
 }
 
 impl BvhSearch {
-    /// An engine for `mesh`, whose vertices and hierarchy are copied.
+    /// An engine for `mesh`, whose vertices and triangles are copied.
     ///
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
@@ -31,7 +43,17 @@ impl BvhSearch {
             return Err(MeshError::Empty);
         }
         let reach = check_vertices(mesh.vertices())?;
-        Ok(Self { mesh: mesh.clone(), reach, last: Vec::new(), probes: Vec::new() })
+        Ok(Self {
+            level: Level::new(),
+            vertices: mesh.vertices().to_vec(),
+            indices: mesh.indices().to_vec(),
+            reach,
+            tree: Tree::new(mesh.vertices(), mesh.indices()),
+            visits: Visits::default(),
+            last: Vec::new(),
+            probes: Vec::new(),
+            stack: Vec::new(),
+        })
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
@@ -39,26 +61,51 @@ impl BvhSearch {
         self.last.clear();
     }
 
-    /// The probe's answer, found with the best start that the last query and the link before offer.
-    fn nearest(&self, probe: &Probe, seeds: [Option<u32>; 2]) -> Found {
-        let mut best = self.measure(probe, seeds[0].or(seeds[1]).unwrap_or(0));
-        if let Some(second) = seeds[1].filter(|&second| second != best.triangle) {
-            let other = self.measure(probe, second);
-            if other.closest.distance < best.closest.distance {
-                best = other;
-            }
-        }
-        match search(&self.mesh, probe, best.closest.distance, Until::Nearest) {
-            Ok(Some(found)) => found,
-            // Nothing is nearer than the start (every vertex was seen to be finite).
-            Ok(None) | Err(_) => best,
-        }
+    /// How much was computed since the engine was built.
+    pub fn visits(&self) -> Visits {
+        self.visits
     }
 
-    /// One triangle, whatever its distance.
-    fn measure(&self, probe: &Probe, triangle: u32) -> Found {
-        let vertices = self.mesh.triangle(triangle).vertices().to_owned();
-        Found { triangle, closest: probe.closest(vertices) }
+    /// The triangle nearest to the probe of a link among those strictly nearer than `bound` (or, if it is to
+    /// `stop_at_first`, any of those).
+    fn nearest(
+        &mut self,
+        link: usize,
+        bound: Real,
+        stop_at_first: bool,
+        start: [Option<u32>; 2],
+    ) -> Option<Found> {
+        let probe = &self.probes[link];
+        let Some(link) = CoarseLink::new(probe, &self.tree.frame) else {
+            return self.nearest_of_all(probe, bound);
+        };
+        let mut descent = Descent {
+            tree: &self.tree,
+            vertices: &self.vertices,
+            indices: &self.indices,
+            probe,
+            link: &link,
+            bound,
+            stop_at_first,
+            found: None,
+            visits: self.visits,
+        };
+        dispatch!(self.level, simd => descent.run::<<f32 as Lane>::Pack<_>>(simd, &mut self.stack, start));
+        self.visits = descent.visits;
+        descent.found
+    }
+
+    /// Looks at every triangle: for a link that lies too far out for single precision.
+    fn nearest_of_all(&self, probe: &Probe, mut bound: Real) -> Option<Found> {
+        let mut found = None;
+        for (triangle, corners) in (0..).zip(&self.indices) {
+            let vertices = corners.map(|index| self.vertices[index as usize]);
+            if let Some(closest) = probe.nearer_than(bound, vertices) {
+                bound = closest.distance;
+                found = Some(Found { triangle, closest });
+            }
+        }
+        found
     }
 }
 
@@ -71,11 +118,13 @@ impl Proximity for BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         place(robot.links(), pose, self.reach, &mut self.probes)?;
-        let mut before = None;
-        for (link, probe) in self.probes.iter().enumerate() {
-            let found = self.nearest(probe, [before, self.last.get(link).copied()]);
-            before = Some(found.triangle);
-            out.push(probe.report(link, &found));
+        for link in 0..self.probes.len() {
+            let before = out.last().map(|answer: &LinkProximity| answer.triangle);
+            let start = [self.last.get(link).copied(), before];
+            // Without a bound some triangle is always the nearest.
+            if let Some(found) = self.nearest(link, Real::INFINITY, false, start) {
+                out.push(self.probes[link].report(link, &found));
+            }
         }
         self.last.clear();
         self.last.extend(out.iter().map(|answer| answer.triangle));
@@ -84,24 +133,15 @@ impl Proximity for BvhSearch {
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
         place(robot.links(), pose, self.reach, &mut self.probes)?;
-        let start = self.last.first().copied().unwrap_or(0);
-        let (mut link, mut found) = (0, self.measure(&self.probes[0], start));
-        // The nearest of the last answers gives the bound that all links share.
-        for (other, (probe, &triangle)) in self.probes.iter().zip(&self.last).enumerate().skip(1) {
-            let again = self.measure(probe, triangle);
-            if again.closest.distance < found.closest.distance {
-                (link, found) = (other, again);
+        let corners = self.indices[0].map(|index| self.vertices[index as usize]);
+        let mut best = (0, Found { triangle: 0, closest: self.probes[0].closest(corners) });
+        for link in 0..self.probes.len() {
+            let start = [self.last.get(link).copied(), None];
+            if let Some(found) = self.nearest(link, best.1.closest.distance, false, start) {
+                best = (link, found);
             }
         }
-        for (other, probe) in self.probes.iter().enumerate() {
-            if let Ok(Some(nearer)) = search(&self.mesh, probe, found.closest.distance, Until::Nearest) {
-                (link, found) = (other, nearer);
-            }
-        }
-        if let Some(last) = self.last.get_mut(link) {
-            *last = found.triangle;
-        }
-        Ok(self.probes[link].report(link, &found))
+        Ok(self.probes[best.0].report(best.0, &best.1))
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
@@ -109,20 +149,21 @@ impl Proximity for BvhSearch {
             return Err(ProximityError::BadMargin { margin });
         }
         place(robot.links(), pose, self.reach, &mut self.probes)?;
-        Ok(self.probes.iter().all(|probe| {
+        Ok((0..self.probes.len()).all(|link| {
             // The next number, because the search wants triangles strictly nearer than its bound.
-            let bound = probe.scaled(margin).next_up();
-            matches!(search(&self.mesh, probe, bound, Until::FirstWithinBound), Ok(None))
+            let bound = self.probes[link].scaled(margin).next_up();
+            self.nearest(link, bound, true, [None; 2]).is_none()
         }))
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.mesh.vertices().len();
+        let expected = self.vertices.len();
         if vertices.len() != expected {
             return Err(MeshError::VertexCount { expected, got: vertices.len() });
         }
         self.reach = check_vertices(vertices)?;
-        self.mesh.set_vertices(vertices);
+        self.vertices.copy_from_slice(vertices);
+        self.tree.refit(vertices, &self.indices);
         Ok(())
     }
 }

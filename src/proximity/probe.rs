@@ -21,7 +21,6 @@ pub(crate) struct Probe {
     scale: Real,
     link: Link<f64>,
     length: Real,
-    has_flat_cap: bool,
 }
 
 impl Probe {
@@ -29,14 +28,7 @@ impl Probe {
         let (start, end) = (pose * link.start(), pose * link.end());
         let flat = link.caps().map(|cap| cap == Cap::Flat);
         let local = to_vec3((end - start) * scale);
-        Self {
-            start,
-            end,
-            scale,
-            length: local.norm(),
-            link: Link::new(local, link.radius() * scale, flat),
-            has_flat_cap: flat[0] || flat[1],
-        }
+        Self { start, end, scale, length: local.norm(), link: Link::new(local, link.radius() * scale, flat) }
     }
 
     /// The ends of the axis, in the mesh's frame.
@@ -57,14 +49,14 @@ impl Probe {
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
-        let vertices = triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale));
+        let vertices = self.local(triangle);
         if self.at_least(vertices) > bound {
             return None;
         }
         let face = Face::new(vertices);
         let axial = Axial::new(&self.link, &face);
-        let closest = if !self.flat_cap_decides(&axial) {
-            axial.upper
+        let closest = if !axial.beyond_flat_cap() {
+            axial.without_caps(&self.link)
         } else if axial.plane_bound(&self.link, &face) >= bound {
             return None;
         } else {
@@ -85,17 +77,17 @@ impl Probe {
 
     /// The closest points of the link and a triangle, in scaled units and from the link's start.
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
-        let face = self.face(triangle);
+        let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
-        if self.flat_cap_decides(&axial) { axial.with_caps(&self.link, &face) } else { axial.upper }
+        if axial.beyond_flat_cap() {
+            axial.with_caps(&self.link, &face)
+        } else {
+            axial.without_caps(&self.link)
+        }
     }
 
-    fn face(&self, triangle: [Vector; 3]) -> Face<f64> {
-        Face::new(triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale)))
-    }
-
-    fn flat_cap_decides(&self, axial: &Axial<f64>) -> bool {
-        self.has_flat_cap && (axial.at_flat[0] || axial.at_flat[1])
+    fn local(&self, triangle: [Vector; 3]) -> [Vec3<f64>; 3] {
+        triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale))
     }
 
     /// A lower bound on the distance between the link and anything in the box, in scaled units, less what
