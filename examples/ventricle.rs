@@ -120,13 +120,14 @@ fn steer(options: &Options) -> Result<(), String> {
     let goal = if planned {
         ventricle::goal()
     } else {
-        println!(
-            "planning a way in from {} along {}",
-            show(base.translation),
-            show(base.rotation * Vector::Z)
-        );
         steer::find_goal(&robot, &mut search, &base).map_err(|none| no_goal(&none, &base))?
     };
+    println!(
+        "{:.1} mm of robot, from {} along {}",
+        robot.length(&goal),
+        show(base.translation),
+        show(base.rotation * Vector::Z)
+    );
 
     // The way in: both engines at every step.
     let scale = mesh.local_aabb().extents().length() + mesh.local_aabb().center().abs().max_element();

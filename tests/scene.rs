@@ -1,5 +1,5 @@
-//! The scene of the examples is what it says: a closed ventricle with a robot that fits, meshes read as they were
-//! written, pictures that show caps as they are queried, and programs whose errors are one line.
+//! The scene of the examples is what it says: a closed ventricle with a robot that fits, a start and a goal in any
+//! other mesh, and pictures that show caps as they are queried.
 
 #[path = "../examples/scene/mod.rs"]
 mod scene;
@@ -14,10 +14,8 @@ use scene::colour_map::ColourMap;
 use scene::ctr::three_tubes;
 use scene::picture::{Camera, Picture, Solid};
 use scene::surface::Mesh;
-use scene::{lettering, mesh_file, steer, ventricle};
+use scene::{lettering, steer, ventricle};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::OnceLock;
 
 /// The default ventricle, grown once for all tests.
@@ -191,155 +189,6 @@ fn a_start_and_a_goal_are_found_in_an_unknown_mesh() {
     assert!(deepest.is_none_or(|p| p.length() < 60.0), "{deepest:?}");
 }
 
-/// A file with the given bytes, in a directory of this test's own.
-fn file(name: &str, bytes: &[u8]) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, bytes).unwrap();
-    path
-}
-
-fn binary_stl((points, triangles): &Mesh) -> Vec<u8> {
-    let vertex = |i: u32| stl_io::Vertex::new(points[i as usize].to_array().map(|x| x as f32));
-    let facet =
-        |t: &[u32; 3]| stl_io::Triangle { normal: stl_io::Normal::new([0.0; 3]), vertices: t.map(vertex) };
-    let facets: Vec<_> = triangles.iter().map(facet).collect();
-    let mut bytes = Vec::new();
-    stl_io::write_stl(&mut bytes, facets.iter()).unwrap();
-    bytes
-}
-
-/// The mesh as text: a line for each vertex and one for each triangle.
-fn lines(mesh: &Mesh, vertex: impl Fn(Vector) -> String, face: impl Fn([u32; 3]) -> String) -> String {
-    mesh.0.iter().map(|&p| vertex(p)).chain(mesh.1.iter().map(|&t| face(t))).collect()
-}
-
-fn ply_header(mesh: &Mesh, format: &str, number: &str) -> String {
-    format!(
-        "ply\nformat {format} 1.0\nelement vertex {}\nproperty {number} x\nproperty {number} y\nproperty {number} z\n\
-         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        mesh.0.len(),
-        mesh.1.len()
-    )
-}
-
-#[test]
-fn meshes_are_read_as_they_were_written() {
-    let mesh = small();
-    let mut solid = binary_stl(mesh);
-    // A binary file may call itself solid, and an ASCII file may leave its solid without a name.
-    solid[..16].copy_from_slice(b"solid of bytes \n");
-    let facets: String = mesh
-        .1
-        .iter()
-        .map(|t| {
-            let corners: String = t
-                .iter()
-                .map(|&i| mesh.0[i as usize])
-                .map(|p| format!("vertex {:e} {:e} {:e}\n", p.x as f32, p.y as f32, p.z as f32))
-                .collect();
-            format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
-        })
-        .collect();
-    let obj = lines(
-        mesh,
-        |p| format!("v {} {} {}\n", p.x, p.y, p.z),
-        |[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1),
-    );
-    let ply = lines(mesh, |p| format!("{} {} {}\n", p.x, p.y, p.z), |[a, b, c]| format!("3 {a} {b} {c}\n"));
-    let mut packed = ply_header(mesh, "binary_little_endian", "float").into_bytes();
-    mesh.0.iter().flat_map(|p| p.to_array()).for_each(|x| packed.extend((x as f32).to_le_bytes()));
-    for triangle in &mesh.1 {
-        packed.push(3);
-        triangle.iter().for_each(|corner| packed.extend(corner.to_le_bytes()));
-    }
-
-    let single = 40.0 * Real::from(f32::EPSILON);
-    for (name, bytes, tolerance) in [
-        ("read.stl", binary_stl(mesh), single),
-        ("solid.STL", solid, single),
-        ("ascii.stl", format!("solid\n{facets}endsolid\n").into_bytes(), single),
-        ("read.obj", obj.into_bytes(), single),
-        ("ascii.ply", (ply_header(mesh, "ascii", "double") + &ply).into_bytes(), 0.0),
-        ("binary.ply", packed, single),
-    ] {
-        for scale in [1.0, 1000.0] {
-            let (points, triangles) = mesh_file::load(&file(name, &bytes), scale).unwrap();
-            assert_closed(&points, &triangles, 2);
-            assert_eq!((points.len(), triangles.len()), (mesh.0.len(), mesh.1.len()), "{name}");
-            for (read, written) in triangles.iter().zip(&mesh.1) {
-                for corner in 0..3 {
-                    let (p, q) = (points[read[corner] as usize], mesh.0[written[corner] as usize] * scale);
-                    assert!((p - q).abs().max_element() <= tolerance * scale, "{name}: {p} for {q}");
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn polygons_are_cut_and_objects_joined() {
-    let quad = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-    let (_, triangles) = mesh_file::load(&file("quad.obj", quad), 1.0).unwrap();
-    assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
-    let two = b"o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no two\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf 4 5 6\n";
-    let (points, triangles) = mesh_file::load(&file("two.obj", two), 1.0).unwrap();
-    assert_eq!(triangles.len(), 2);
-    assert!(triangles[0].iter().all(|&i| points[i as usize].z == 0.0));
-    assert!(triangles[1].iter().all(|&i| points[i as usize].z == 9.0));
-    let mesh = (vec![Vector::ZERO; 5], vec![[0; 3]]);
-    let text = ply_header(&mesh, "ascii", "float") + &"0 0 0\n".repeat(5) + "5 0 1 2 3 4\n";
-    let (_, triangles) = mesh_file::load(&file("pentagon.ply", text.as_bytes()), 1.0).unwrap();
-    assert_eq!(triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
-}
-
-#[test]
-fn every_error_of_a_mesh_file_is_one_line_that_says_what_to_do() {
-    let mesh = small();
-    let cut = binary_stl(mesh)[..10_000].to_vec();
-    let mut nan = binary_stl(mesh);
-    nan[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
-    let triangle = (vec![Vector::ZERO; 3], vec![[0; 3]]);
-    let ply = |faces: &str| {
-        let text = ply_header(&triangle, "ascii", "float") + "0 0 0\n1 0 0\n0 1 0\n" + faces;
-        text.into_bytes()
-    };
-    let mut packed = ply_header(&triangle, "binary_big_endian", "double").into_bytes();
-    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, Real::NAN, 0.0].iter().for_each(|x| packed.extend(x.to_be_bytes()));
-    packed.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
-    let huge =
-        ply_header(&triangle, "binary_little_endian", "float").replace("vertex 3", "vertex 99999999999");
-    for (name, bytes, scale, expected) in [
-        ("a.xyz", vec![], 1.0, "ends in .stl, .obj or .ply"),
-        ("empty.stl", vec![], 1.0, "export it again"),
-        ("cut.stl", cut, 1.0, "export it again"),
-        ("none.stl", vec![0; 84], 1.0, "no triangles"),
-        ("nan.stl", nan, 1.0, "repair that vertex"),
-        ("text.stl", b"solid x\nfacet normal\n".to_vec(), 1.0, "export it again"),
-        ("points.obj", b"v 0 0 0\nv 1 0 0\n".to_vec(), 1.0, "no triangles"),
-        ("beyond.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n".to_vec(), 1.0, "export it again"),
-        ("word.obj", b"v 0 zero 0\n".to_vec(), 1.0, "export it again"),
-        ("nan.obj", b"v 0 nan 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(), 1.0, "repair that vertex"),
-        ("beyond.ply", ply("3 0 1 3\n"), 1.0, "names vertex 3, but there are 3"),
-        ("negative.ply", ply("3 0 1 -1\n"), 1.0, "export it again"),
-        ("missing.ply", ply(""), 1.0, "export it again"),
-        ("huge.ply", huge.into_bytes(), 1.0, "export it again"),
-        ("nan.ply", packed, 1.0, "repair that vertex"),
-        ("scale.ply", ply("3 0 1 2\n"), 0.0, "give a positive number"),
-        ("nan-scale.ply", ply("3 0 1 2\n"), Real::NAN, "give a positive number"),
-        ("far.ply", ply("3 0 1 2\n"), 1e300, ""),
-    ] {
-        let result = mesh_file::load(&file(name, &bytes), scale);
-        if expected.is_empty() {
-            assert!(result.is_ok(), "{name}: {result:?}");
-            continue;
-        }
-        let message = result.expect_err(name);
-        assert!(message.contains(expected) && !message.contains('\n'), "{name}: {message}");
-    }
-    let message = mesh_file::load(Path::new("nowhere/brain.stl"), 1.0).unwrap_err();
-    assert!(message.contains("nowhere/brain.stl") && message.contains("check the path"), "{message}");
-}
-
 /// How much of a picture differs from its first pixel.
 fn covered(canvas: &Canvas) -> Real {
     let backdrop = canvas.pixels[0];
@@ -381,85 +230,5 @@ fn every_letter_can_be_drawn_and_every_scale_has_numbers() {
     for largest in [1e-6, 0.03, 0.99, 1.0, 3.9, 4.1, 77.0, 12345.0] {
         let map = ColourMap::up_to(largest);
         assert!((1.0 - 1e-9..1.5).contains(&(map.end / largest)), "{} for {largest}", map.end);
-    }
-}
-
-/// Runs an example program as a user does, in a directory of this test's own.
-fn program(name: &str, arguments: &[&str]) -> (bool, String, String) {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    let directory = BUILT.get_or_init(|| {
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--example", "ventricle", "--example", "figure7"]);
-        assert!(build.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
-        // This test is target/debug/deps/scene-..; examples are in target/debug/examples.
-        std::env::current_exe().unwrap().ancestors().nth(2).unwrap().join("examples")
-    });
-    let output = Command::new(directory.join(name))
-        .args(arguments)
-        .current_dir(env!("CARGO_TARGET_TMPDIR"))
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.success(), text(output.stdout), text(output.stderr))
-}
-
-#[test]
-fn programs_answer_bad_input_with_one_line_and_an_error_code() {
-    let empty = file("hollow.stl", &[0; 84]);
-    let empty = empty.to_str().unwrap();
-    for (arguments, expected) in [
-        (&["--mesh", "nowhere.stl"][..], "check the path"),
-        (&["--mesh", empty], "no triangles"),
-        (&["--mesh", empty, "--scale", "-1"], "positive number"),
-        (&["--triangle", "1"], "--triangle"),
-        (&["--triangles", "none"], "'none'"),
-        (&["--triangles", "100"], "6000..=20000000"),
-        (&["--base", "1,2"], "three numbers"),
-        (&["--base", "1,2,inf"], "three numbers"),
-        (&["--axis", "0,0,0"], "a direction needs a length"),
-        (&["--model", "cone"], "capsule, cylinder, modified"),
-        (&["--tolerance", "-0.1"], "at least 0"),
-        (&["--steps", "0"], "1..=100000"),
-        (&["--scale", "2"], "--mesh"),
-    ] {
-        let (success, out, error) = program("ventricle", arguments);
-        assert!(!success && out.is_empty(), "{arguments:?}: {out}");
-        assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
-    }
-    assert!(program("ventricle", &["--help"]).0);
-}
-
-#[test]
-fn programs_draw_their_pictures() {
-    let room = ball(30.0);
-    let mesh = (room.vertices().to_vec(), room.indices().to_vec());
-    let path = file("room.stl", &binary_stl(&mesh));
-    let arguments = [
-        "--mesh",
-        path.to_str().unwrap(),
-        "--model",
-        "capsule",
-        "--tolerance",
-        "0.2",
-        "--steps",
-        "3",
-        "--out",
-        "drawn",
-    ];
-    let (success, out, error) = program("ventricle", &arguments);
-    assert!(success, "{error}");
-    assert!(out.contains("512 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
-    for line in ["parry distance(Cylinder, TriMesh)", "search, cold", "search, warm", "exhaustive"] {
-        assert!(out.contains(line), "{out}");
-    }
-    let (success, _, error) = program("figure7", &["--out", "drawn/seven.png"]);
-    assert!(success, "{error}");
-    for name in ["drawn/ventricle.png", "drawn/seven.png"] {
-        let file = std::fs::File::open(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        let colours: BTreeSet<_> = pixels.as_chunks::<3>().0.iter().collect();
-        assert!(colours.len() > 1000, "{name} has {} colours", colours.len());
     }
 }

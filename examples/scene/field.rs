@@ -1,11 +1,11 @@
 //! Smooth bodies as the zero set of a distance-like field: tubes of elliptic cross-section, swept along splines and
 //! blended into each other.
 //!
-//! A tube is a spline through [`Knot`]s, sampled into short straight pieces. At a point p the piece with the
-//! parameter t nearest to p has the centre c, the cross directions u and v and the half-widths a and b. With the
-//! offset q = p - c in that frame, scaled by (a, b, cap), k = |scaled q| is 1 on the surface, and k (k - 1) / |grad|
-//! is, to first order, the distance to it: negative inside. Tubes are joined by a smooth minimum, which rounds the
-//! crease between two of them over a length `blend` and leaves everything further away as it is.
+//! A tube is a spline through [`Knot`]s. The point of its centreline nearest to p has the centre c, the directions u
+//! and v across and the half-widths a and b. With the offset q = p - c in that frame, scaled by (a, b, cap), where
+//! cap rounds the two ends, k = |scaled q| is 1 on the surface, and k (k - 1) / |grad| is, to first order, the
+//! distance to it: negative inside. Tubes are joined by a smooth minimum, which rounds the crease between two of
+//! them over a length `blend` and leaves everything further away as it is.
 
 use parry_continuum::parry::math::{Real, Vector};
 
@@ -26,107 +26,74 @@ pub fn round(centre: [Real; 3], radius: Real) -> Knot {
     knot(centre, [1.0, 0.3, 0.2], [radius, radius])
 }
 
-#[derive(Clone, Copy)]
-struct Section {
-    centre: Vector,
-    u: Vector,
-    v: Vector,
-    half: [Real; 2],
-}
-
-/// A ball around something: what it holds is no nearer than its surface.
-struct Ball {
-    centre: Vector,
+/// A swept tube, with a ball around it, so that it is skipped where it is far away.
+pub struct Tube {
+    knots: Vec<Knot>,
+    /// Points of the centreline: parameter and place.
+    samples: Vec<(Real, Vector)>,
+    middle: Vector,
     reach: Real,
 }
 
-/// A swept tube, with balls around its pieces and around the whole, so that what is far away is skipped.
-pub struct Tube {
-    sections: Vec<Section>,
-    balls: Vec<Ball>,
-    whole: Ball,
-}
-
-/// Straight pieces per span of the spline.
-const PIECES: usize = 5;
+/// Samples per span of the spline.
+const SAMPLES: usize = 4;
 
 impl Tube {
     /// The tube through the given cross-sections (at least two).
-    pub fn new(knots: &[Knot]) -> Self {
-        let last = knots.len() - 1;
-        let at = |i: isize| &knots[i.clamp(0, last as isize) as usize];
-        let mut sections = Vec::with_capacity(last * PIECES + 1);
-        for sample in 0..=last * PIECES {
-            let span = (sample / PIECES).min(last - 1);
-            let t = sample as Real / PIECES as Real - span as Real;
-            let four = [-1, 0, 1, 2].map(|k| at(span as isize + k));
-            let (w, d) = (spline(t), spline_slope(t));
-            let mix = |f: &dyn Fn(&Knot) -> Vector, w: [Real; 4]| {
-                four.iter().zip(w).map(|(knot, w)| f(knot) * w).sum::<Vector>()
-            };
-            let along = mix(&|k| k.centre, d).normalize();
-            let across = mix(&|k| k.across, w);
-            let u = (across - along * across.dot(along)).normalize();
-            let half = mix(&|k| Vector::new(k.half[0], k.half[1], 0.0), w);
-            let centre = mix(&|k| k.centre, w);
-            sections.push(Section { centre, u, v: along.cross(u), half: [half.x, half.y] });
-        }
-        let balls = sections.windows(2).map(around).collect();
-        let whole = around(&sections);
-        Self { sections, balls, whole }
+    pub fn new(knots: Vec<Knot>) -> Self {
+        let mut tube = Self { knots, samples: Vec::new(), middle: Vector::ZERO, reach: 0.0 };
+        let count = (tube.knots.len() - 1) * SAMPLES;
+        let parameters = (0..=count).map(|k| k as Real / SAMPLES as Real);
+        tube.samples = parameters.map(|s| (s, tube.mix(s, spline, |knot| knot.centre))).collect();
+        tube.middle = tube.samples.iter().map(|(_, p)| *p).sum::<Vector>() / (count + 1) as Real;
+        let wide = tube.knots.iter().map(|knot| knot.half[0].max(knot.half[1])).fold(0.0, Real::max);
+        let far = tube.samples.iter().map(|(_, p)| (*p - tube.middle).length()).fold(0.0, Real::max);
+        tube.reach = far + 1.1 * wide;
+        tube
+    }
+
+    /// A quantity of the four knots around parameter s (0 at the first, 1 at the second knot), weighted.
+    fn mix(&self, s: Real, weights: fn(Real) -> [Real; 4], of: fn(&Knot) -> Vector) -> Vector {
+        let last = self.knots.len() - 1;
+        let span = (s as usize).min(last - 1);
+        let four = [span.saturating_sub(1), span, span + 1, (span + 2).min(last)];
+        four.iter().zip(weights(s - span as Real)).map(|(&k, w)| of(&self.knots[k]) * w).sum()
     }
 
     /// The field of this tube alone; where that exceeds `limit`, it may be infinite.
     fn value(&self, p: Vector, limit: Real) -> Real {
-        if !self.whole.is_within(limit, p) {
+        let span = limit + self.reach;
+        if span <= 0.0 || (p - self.middle).length_squared() >= span * span {
             return Real::INFINITY;
         }
-        // The piece whose ball is most central first: its value lets most of the others be skipped.
-        let far = |ball: &Ball| (p - ball.centre).length_squared();
-        let value = |k: usize| piece(p, &self.sections[k], &self.sections[k + 1]);
-        let first = (0..self.balls.len())
-            .min_by(|&j, &k| far(&self.balls[j]).total_cmp(&far(&self.balls[k])))
-            .unwrap_or_default();
-        let mut least = value(first);
-        for (k, ball) in self.balls.iter().enumerate() {
-            if k != first && ball.is_within(least.min(limit), p) {
-                least = least.min(value(k));
+        // The nearest sample, then a few steps to where the offset is perpendicular to the centreline.
+        let (mut s, mut nearest) = (0.0, Real::INFINITY);
+        for (parameter, place) in &self.samples {
+            let square = (p - place).length_squared();
+            if square < nearest {
+                (s, nearest) = (*parameter, square);
             }
         }
-        least
+        let end = (self.knots.len() - 1) as Real;
+        for _ in 0..3 {
+            let along = self.mix(s, slope, |knot| knot.centre);
+            let off = (p - self.mix(s, spline, |knot| knot.centre)).dot(along);
+            s = (s + off / along.length_squared()).clamp(0.0, end);
+        }
+        let along = self.mix(s, slope, |knot| knot.centre).normalize();
+        let across = self.mix(s, spline, |knot| knot.across);
+        let u = (across - along * across.dot(along)).normalize();
+        let half = self.mix(s, spline, |knot| Vector::new(knot.half[0], knot.half[1], 0.0));
+        let cap = half.x.min(half.y);
+        let q = p - self.mix(s, spline, |knot| knot.centre);
+        let scale = Vector::new(1.0 / half.x, 1.0 / half.y, 1.0 / cap);
+        let local = Vector::new(q.dot(u), q.dot(along.cross(u)), q.dot(along));
+        let k = (local * scale).length();
+        if k == 0.0 {
+            return -cap;
+        }
+        k * (k - 1.0) / (local * scale * scale).length()
     }
-}
-
-impl Ball {
-    /// Whether the ball's surface is nearer to p than `limit`.
-    fn is_within(&self, limit: Real, p: Vector) -> bool {
-        let span = limit + self.reach;
-        span > 0.0 && (p - self.centre).length_squared() < span * span
-    }
-}
-
-/// A ball around the sections.
-fn around(sections: &[Section]) -> Ball {
-    let centre = sections.iter().map(|s| s.centre).sum::<Vector>() / sections.len() as Real;
-    let reach = |s: &Section| (s.centre - centre).length() + s.half[0].max(s.half[1]);
-    Ball { centre, reach: sections.iter().map(reach).fold(0.0, Real::max) }
-}
-
-/// The field of one straight piece.
-fn piece(p: Vector, from: &Section, to: &Section) -> Real {
-    let axis = to.centre - from.centre;
-    let t = ((p - from.centre).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
-    let mix = |a: Vector, b: Vector| a + (b - a) * t;
-    let half = [0, 1].map(|i| from.half[i] + (to.half[i] - from.half[i]) * t);
-    let cap = half[0].min(half[1]);
-    let q = p - mix(from.centre, to.centre);
-    let scale = Vector::new(1.0 / half[0], 1.0 / half[1], 1.0 / cap);
-    let local = Vector::new(q.dot(mix(from.u, to.u)), q.dot(mix(from.v, to.v)), q.dot(axis) / axis.length());
-    let k = (local * scale).length();
-    if k == 0.0 {
-        return -cap;
-    }
-    k * (k - 1.0) / (local * scale * scale).length()
 }
 
 /// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their slopes.
@@ -135,7 +102,7 @@ fn spline(t: Real) -> [Real; 4] {
     [-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2].map(|w| 0.5 * w)
 }
 
-fn spline_slope(t: Real) -> [Real; 4] {
+fn slope(t: Real) -> [Real; 4] {
     let t2 = t * t;
     [-3.0 * t2 + 4.0 * t - 1.0, 9.0 * t2 - 10.0 * t, -9.0 * t2 + 8.0 * t + 1.0, 3.0 * t2 - 2.0 * t]
         .map(|w| 0.5 * w)

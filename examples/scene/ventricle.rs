@@ -11,7 +11,7 @@ use super::remesh::remesh;
 use super::surface::{Mesh, extract, subdivide};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 
-/// The triangles of [`mesh`] where nothing else is asked for.
+/// The triangles of [`mesh`] where nothing else is asked for, and the fewest it makes well.
 pub const DEFAULT_TRIANGLES: usize = 6000;
 
 /// The box that encloses the ventricle.
@@ -27,7 +27,8 @@ const STEP: Real = 1e-4;
 /// Coarser surfaces are remeshed to size; finer ones subdivide such a surface.
 const REMESHED: usize = 24_000;
 
-/// The ventricle's wall with about `target_triangles` triangles (500 to some millions), closed and oriented outwards.
+/// The ventricle's wall with about `target_triangles` triangles ([`DEFAULT_TRIANGLES`] to some millions), closed and
+/// oriented outwards. Fewer would not do for its thin passages.
 pub fn mesh(target_triangles: usize) -> Mesh {
     let body = Ventricle::grow();
     let field = |p: Vector| body.value(p);
@@ -50,7 +51,7 @@ pub fn entry() -> Pose {
 }
 
 /// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro into the third
-/// ventricle, and back along it to the mouth of the aqueduct. A random search found it; it keeps 1.2 mm from the wall.
+/// ventricle, and back along it to the mouth of the aqueduct. A random search found it; it keeps 1 mm from the wall.
 pub fn goal() -> Joints {
     Joints { extensions: vec![13.2, 18.1, 10.4], angles: vec![-0.54, -1.76, 0.0] }
 }
@@ -83,7 +84,7 @@ impl Ventricle {
 
 /// The right lateral ventricle and its foramen. The first half-width of each section points sideways.
 fn lateral() -> Vec<Tube> {
-    let c_shape = Tube::new(&[
+    let c_shape = Tube::new(vec![
         knot([14.5, 36.0, 2.0], [1.0, 0.0, 0.3], [2.2, 3.5]),
         knot([13.0, 30.0, 6.0], [1.0, 0.0, 0.4], [4.6, 7.0]),
         knot([11.5, 21.0, 11.5], [1.0, 0.0, 0.4], [5.6, 7.6]),
@@ -97,13 +98,13 @@ fn lateral() -> Vec<Tube> {
         knot([31.0, -7.0, -19.0], [1.0, 0.0, 0.2], [4.8, 2.8]),
         knot([28.5, 3.0, -20.0], [1.0, 0.2, 0.2], [2.6, 2.0]),
     ]);
-    let occipital = Tube::new(&[
+    let occipital = Tube::new(vec![
         knot([24.5, -29.0, 7.0], [1.0, 0.0, 0.0], [5.5, 6.5]),
         knot([24.5, -40.0, 5.0], [1.0, 0.2, 0.0], [4.8, 6.0]),
         knot([21.0, -51.0, 2.5], [1.0, 0.4, 0.0], [3.2, 4.4]),
         knot([17.5, -58.0, 0.5], [1.0, 0.4, 0.0], [1.8, 2.4]),
     ]);
-    let foramen = Tube::new(&[
+    let foramen = Tube::new(vec![
         round([9.5, 13.0, 12.5], 4.2),
         round([6.0, 10.5, 8.5], 3.0),
         round([3.0, 8.5, 5.5], 2.8),
@@ -115,28 +116,28 @@ fn lateral() -> Vec<Tube> {
 /// The third ventricle, a thin upright slab, with its recesses; the aqueduct that drains it.
 fn third() -> Vec<Tube> {
     let across = [1.0, 0.0, 0.0];
-    let slab = Tube::new(&[
+    let slab = Tube::new(vec![
         knot([0.0, 11.5, -3.0], across, [2.4, 6.0]),
         knot([0.0, 5.0, -1.0], across, [3.2, 8.2]),
         knot([0.0, -4.0, -0.5], across, [3.4, 7.6]),
         knot([0.0, -12.0, 0.0], across, [2.8, 5.2]),
     ]);
-    let infundibular = Tube::new(&[
+    let infundibular = Tube::new(vec![
         knot([0.0, 8.0, -6.0], across, [2.6, 3.6]),
         knot([0.0, 10.0, -10.5], across, [2.2, 2.6]),
         knot([0.0, 11.5, -14.5], across, [1.8, 1.8]),
     ]);
-    let optic = Tube::new(&[
+    let optic = Tube::new(vec![
         knot([0.0, 10.5, -4.0], across, [2.4, 4.0]),
         knot([0.0, 14.5, -7.5], across, [2.0, 2.6]),
         knot([0.0, 16.5, -9.5], across, [1.7, 1.7]),
     ]);
-    let pineal = Tube::new(&[
+    let pineal = Tube::new(vec![
         knot([0.0, -11.0, 2.0], across, [2.4, 3.0]),
         knot([0.0, -15.5, 3.0], across, [2.2, 2.4]),
         knot([0.0, -19.0, 3.2], across, [1.8, 1.8]),
     ]);
-    let aqueduct = Tube::new(&[
+    let aqueduct = Tube::new(vec![
         round([0.0, -11.0, -1.5], 2.6),
         round([0.0, -16.5, -6.5], 1.7),
         round([0.0, -21.5, -13.5], 1.5),
@@ -149,7 +150,7 @@ fn third() -> Vec<Tube> {
 /// The fourth ventricle: a tent over a flat diamond, with its lateral recesses.
 fn fourth() -> Vec<Tube> {
     let across = [1.0, 0.0, 0.0];
-    let diamond = Tube::new(&[
+    let diamond = Tube::new(vec![
         knot([0.0, -27.0, -24.5], across, [1.8, 1.8]),
         knot([0.0, -29.5, -31.0], across, [5.4, 2.9]),
         knot([0.0, -31.5, -38.0], across, [8.6, 3.6]),
@@ -157,12 +158,12 @@ fn fourth() -> Vec<Tube> {
         knot([0.0, -33.0, -51.0], across, [2.8, 2.3]),
         knot([0.0, -33.5, -56.0], across, [1.9, 1.9]),
     ]);
-    let tent = Tube::new(&[
+    let tent = Tube::new(vec![
         knot([0.0, -32.0, -37.0], across, [4.6, 5.0]),
         knot([0.0, -37.5, -37.0], across, [3.0, 3.4]),
         knot([0.0, -41.5, -37.0], across, [2.0, 2.2]),
     ]);
-    let recess = Tube::new(&[
+    let recess = Tube::new(vec![
         round([6.0, -31.5, -38.5], 2.8),
         round([12.0, -30.0, -39.5], 2.0),
         round([16.0, -26.5, -40.5], 1.8),
