@@ -59,27 +59,42 @@ pub(super) struct CoarseLink<E> {
 }
 
 impl<E: Lane> CoarseLink<E> {
-    /// None where the link lies too far out for the precision.
+    /// The link of a probe. None where it lies too far out for the precision.
     pub(super) fn new(probe: &Probe, frame: &CoarseFrame) -> Option<Self> {
-        let [start, end] = probe.ends().map(|point| (point - frame.centre) * frame.scale);
-        let factor = frame.scale / probe.scaled(1.0);
-        let radius = probe.link().radius * factor;
+        let [start, end] = probe.ends();
+        let unit = probe.scaled(1.0);
+        Self::between(start, end, probe.link().radius / unit, probe.link().flat, unit, frame)
+    }
+
+    /// A link between two points of the mesh's frame, whose bounds are given in units of 1 / `unit`.
+    pub(super) fn between(
+        start: Vector,
+        end: Vector,
+        radius: Real,
+        flat: [bool; 2],
+        unit: Real,
+        frame: &CoarseFrame,
+    ) -> Option<Self> {
+        let [start, end] = [start, end].map(|point| (point - frame.centre) * frame.scale);
+        let radius = radius * frame.scale;
         let reach = start.abs().max(end.abs()).max_element().max(radius).max(1.0);
         if reach.is_nan() || reach > FARTHEST {
             return None;
         }
+        let along = end - start;
+        let length = along.length();
         // The mesh's own rounding, where it lies far from the origin, is that of double precision.
         let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach);
         Some(Self {
             start: round(start),
-            along: round(end - start),
-            // Rounded by itself: the link may be too short for the precision.
-            axis: round(Vector::from_array(probe.link().axis.into())),
-            length: E::round((end - start).length()),
+            along: round(along),
+            // Without a direction the flat caps count as round, which is a bound for them too.
+            axis: round(if length > 0.0 { along / length } else { Vector::ZERO }),
+            length: E::round(length),
             radius: E::round(radius),
-            flat: probe.link().flat,
+            flat,
             error: E::round(error),
-            factor,
+            factor: frame.scale / unit,
         })
     }
 

@@ -110,7 +110,7 @@ impl<T: Precision> Exhaustive<T> {
 
     /// Makes probes of a robot's links and appends them to `scratch.links`.
     fn place(&mut self, robot: &Chain, pose: &Pose) -> Result<(), ProximityError> {
-        place(robot.links(), pose, self.reach, &mut self.scratch.probes)?;
+        place(robot, pose, self.reach, &mut self.scratch.probes)?;
         for probe in &self.scratch.probes {
             self.scratch.links.push((*probe, CoarseLink::new(probe, &self.mesh.frame)));
         }

@@ -7,6 +7,7 @@ mod engine;
 mod exhaustive;
 mod packed;
 mod patch;
+mod placed;
 mod probe;
 mod report;
 mod scan;

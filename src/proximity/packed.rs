@@ -21,6 +21,16 @@ pub(super) struct Patches<L> {
     pub radius: L,
 }
 
+/// What a pack of triangles is to a link; one bit per lane.
+pub(super) struct Nearer<L> {
+    /// Which may be nearer than a bound.
+    pub nearer: u64,
+    /// Of those, for which a flat cap decides.
+    pub beyond_flat_cap: u64,
+    /// The squared axis distances.
+    pub axis_squared: L,
+}
+
 /// A link in every lane.
 #[derive(Clone, Copy)]
 pub(super) struct PackedLink<L: Scalar> {
@@ -98,19 +108,20 @@ impl<L: Pack> PackedLink<L> {
         L::bits((ahead * ahead).lt(limit * limit * v.norm_squared()))
     }
 
-    /// Which triangles may be nearer than the bound whose axis limit is `limit`, as bits, and the squares of
-    /// their axis distances.
+    /// Which triangles may be nearer than the bound whose axis limit is `limit`.
     #[inline(always)]
-    pub(super) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> (u64, L) {
+    pub(super) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);
         let axial = Axial::new(&self.link, &face);
         let squared_limit = limit * limit;
         let mut nearer = L::bits(axial.axis_squared.lt(squared_limit));
+        let mut beyond_flat_cap = 0;
         if nearer != 0 && self.has_flat_cap {
-            let beyond_cap = axial.plane_bound(&self.link, &face) + self.link.radius;
-            nearer &= !L::bits(axial.beyond_flat_cap() & limit.le(beyond_cap));
+            beyond_flat_cap = L::bits(axial.beyond_flat_cap());
+            let plane = axial.plane_bound(&self.link, &face) + self.link.radius;
+            nearer &= !(beyond_flat_cap & L::bits(limit.le(plane)));
         }
-        (nearer, axial.axis_squared)
+        Nearer { nearer, beyond_flat_cap, axis_squared: axial.axis_squared }
     }
 
     /// The distances of triangles with every disc that decides one: the paper's work for a pair.

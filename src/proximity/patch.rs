@@ -2,7 +2,7 @@
 
 use super::packed::BLOCK;
 use super::tree::{Leaf, Node};
-use crate::distance::{Scalar, Vec3};
+use crate::distance::Vec3;
 
 /// How many numbers a patch has.
 pub(super) const PATCH_ROWS: usize = 11;

@@ -3,7 +3,7 @@
 use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
-use crate::robot::{COORDINATE_LIMIT, Cap, ModifiedCylinder};
+use crate::robot::{COORDINATE_LIMIT, Cap, Chain, Envelope, ModifiedCylinder, Run};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// What rounding can add to a bound on a box: all scaled numbers are below 2.
@@ -24,7 +24,8 @@ pub(crate) struct Probe {
 }
 
 impl Probe {
-    fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
+    /// The link at `pose`, in the scale of [`scale_for`].
+    pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
         let (start, end) = (pose * link.start(), pose * link.end());
         let flat = link.caps().map(|cap| cap == Cap::Flat);
         let local = to_vec3((end - start) * scale);
@@ -126,29 +127,50 @@ impl Probe {
 /// # Errors
 /// The pose is not finite or moves a link out of range.
 pub(crate) fn place(
-    links: &[ModifiedCylinder],
+    robot: &Chain,
     pose: &Pose,
     mesh_reach: Real,
     probes: &mut Vec<Probe>,
 ) -> Result<(), ProximityError> {
+    let scale = scale_for(robot, pose, mesh_reach)?;
     probes.clear();
+    probes.extend(robot.links().iter().map(|link| Probe::new(link, pose, scale)));
+    Ok(())
+}
+
+/// The power of two that brings mesh and robot near one.
+///
+/// # Errors
+/// The pose is not finite or moves a link out of range.
+pub(crate) fn scale_for(robot: &Chain, pose: &Pose, mesh_reach: Real) -> Result<Real, ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
-    let mut reach = mesh_reach;
-    for (index, link) in links.iter().enumerate() {
-        for point in [pose * link.start(), pose * link.end()] {
-            // Written so that NaN is out of range too.
-            if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
-                return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
-            }
-            reach = reach.max(point.abs().max_element());
+    let mut reach = match robot.runs().first() {
+        Some(Run::Links { envelope: Envelope { start, end, radius }, .. }) => {
+            reach_of(pose * *start).max(reach_of(pose * *end)) + radius
         }
-        reach = reach.max(link.radius());
+        _ => Real::INFINITY,
+    };
+    // Link by link where the capsule around all of them is out of range, or there is one link only.
+    if reach.is_nan() || reach > COORDINATE_LIMIT {
+        reach = 0.0;
+        for (index, link) in robot.links().iter().enumerate() {
+            for point in [pose * link.start(), pose * link.end()] {
+                // Written so that NaN is out of range too.
+                if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
+                    return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
+                }
+                reach = reach.max(reach_of(point)).max(link.radius());
+            }
+        }
     }
-    let scale = reach.power_of_two_to_unity();
-    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
-    Ok(())
+    Ok(reach.max(mesh_reach).power_of_two_to_unity())
+}
+
+/// The largest magnitude of a coordinate.
+fn reach_of(point: Vector) -> Real {
+    point.abs().max_element()
 }
 
 /// The largest magnitude of the vertices' coordinates.

@@ -143,7 +143,7 @@ impl<E: Lane> Turn<'_, E> {
                 self.work.axis_distances += L::LANES as u64;
                 let face = mesh.faces::<L>(token, block, lane);
                 let mut nearer = if self.job.culling {
-                    packed.may_be_nearer(&face, limit).0
+                    packed.may_be_nearer(&face, limit).nearer
                 } else {
                     let slack = L::splat(token, link.radius);
                     L::bits((packed.distances(&face) + slack).lt(limit))
