@@ -76,9 +76,11 @@ impl Tube {
         }
         let end = (self.knots.len() - 1) as Real;
         for _ in 0..3 {
-            let along = self.mix(s, slope, |knot| knot.centre);
-            let off = (p - self.mix(s, spline, |knot| knot.centre)).dot(along);
-            s = (s + off / along.length_squared()).clamp(0.0, end);
+            let [off, along, turn] = [spline, slope, bend].map(|weights| self.mix(s, weights, |k| k.centre));
+            let off = p - off;
+            // Newton's method, held back where the tube bends around p.
+            let square = along.length_squared();
+            s = (s + off.dot(along) / (square - off.dot(turn)).max(0.3 * square)).clamp(0.0, end);
         }
         let along = self.mix(s, slope, |knot| knot.centre).normalize();
         let across = self.mix(s, spline, |knot| knot.across);
@@ -96,7 +98,7 @@ impl Tube {
     }
 }
 
-/// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their slopes.
+/// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their two derivatives.
 fn spline(t: Real) -> [Real; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2].map(|w| 0.5 * w)
@@ -106,6 +108,10 @@ fn slope(t: Real) -> [Real; 4] {
     let t2 = t * t;
     [-3.0 * t2 + 4.0 * t - 1.0, 9.0 * t2 - 10.0 * t, -9.0 * t2 + 8.0 * t + 1.0, 3.0 * t2 - 2.0 * t]
         .map(|w| 0.5 * w)
+}
+
+fn bend(t: Real) -> [Real; 4] {
+    [-3.0 * t + 2.0, 9.0 * t - 5.0, -9.0 * t + 4.0, 3.0 * t - 1.0]
 }
 
 /// The smooth union of tubes.
