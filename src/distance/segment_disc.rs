@@ -179,8 +179,8 @@ impl<T: Scalar> Line<T> {
     #[inline(always)]
     fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
-        let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));
         let along = s.mul_add(self.sign, self.foot);
+        let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));
         let pierced = pierces & low.le(along) & along.le(high);
         let t = along.max(low).min(high);
         // From the end nearer to it, so that the rounding of a long segment's direction counts least.

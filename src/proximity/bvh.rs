@@ -170,10 +170,10 @@ impl BvhSearch {
                 if let Run::Links { inner, .. } = run {
                     place += inner;
                 }
-            } else if let Run::Link(link) = run {
-                if self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some() {
-                    return false;
-                }
+            } else if let Run::Link(link) = run
+                && self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some()
+            {
+                return false;
             }
             place += 1;
         }

@@ -110,7 +110,7 @@ impl<T: Precision> Exhaustive<T> {
 
     /// Makes probes of a robot's links and appends them to `scratch.links`.
     fn place(&mut self, robot: &Chain, pose: &Pose) -> Result<(), ProximityError> {
-        place(robot, pose, self.reach, &mut self.scratch.probes)?;
+        place(robot.links(), pose, self.reach, &mut self.scratch.probes)?;
         for probe in &self.scratch.probes {
             self.scratch.links.push((*probe, CoarseLink::new(probe, &self.mesh.frame)));
         }
@@ -201,10 +201,10 @@ impl<T: Precision> Proximity for Exhaustive<T> {
         let corners = self.indices[0].map(|index| self.vertices[index as usize]);
         let mut best = (0, Found { triangle: 0, closest: probe.closest(corners) });
         for link in 0..self.scratch.links.len() {
-            if let Some(found) = self.found(link) {
-                if found.closest.distance < best.1.closest.distance {
-                    best = (link, found);
-                }
+            if let Some(found) = self.found(link)
+                && found.closest.distance < best.1.closest.distance
+            {
+                best = (link, found);
             }
         }
         Ok(self.scratch.links[best.0].0.report(best.0, &best.1))

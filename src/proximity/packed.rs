@@ -60,7 +60,7 @@ impl<L: Pack> PackedLink<L> {
 
     /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
     #[inline(always)]
-    fn from_axis(&self, point: Vec3<L>) -> Vec3<L> {
+    fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {
         let relative = point - self.start;
         let t = relative.dot(self.link.axis).max(self.length.zero()).min(self.length);
         relative.along(self.link.axis, -t)
@@ -70,7 +70,7 @@ impl<L: Pack> PackedLink<L> {
     #[inline(always)]
     pub(super) fn meets_spheres(&self, centre: Vec3<L>, radius: L, limit: L) -> u64 {
         let reach = limit + radius;
-        L::bits(self.from_axis(centre).norm_squared().lt(reach * reach))
+        L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
     }
 
     /// The squared distance between the axis and patches, from below but for rounding.
@@ -83,7 +83,7 @@ impl<L: Pack> PackedLink<L> {
     #[inline(always)]
     pub(super) fn squared_distance_to_patches(&self, patch: &Patches<L>) -> L {
         let zero = self.length.zero();
-        let v = self.from_axis(patch.centre);
+        let v = self.offset_from_axis(patch.centre);
         let squared = v.norm_squared();
         let normal_part = v.dot(patch.normal);
         let across = (squared - normal_part * normal_part).max(zero).sqrt();
@@ -102,7 +102,7 @@ impl<L: Pack> PackedLink<L> {
     #[inline(always)]
     pub(super) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
-        let v = self.from_axis(centre);
+        let v = self.offset_from_axis(centre);
         let foot = centre - v;
         let ahead = v.dot(a - foot).min(v.dot(b - foot)).min(v.dot(c - foot)).max(limit.zero());
         L::bits((ahead * ahead).lt(limit * limit * v.norm_squared()))

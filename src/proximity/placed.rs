@@ -20,7 +20,8 @@ impl<'a> Placed<'a> {
     /// # Errors
     /// The pose is not finite or moves a link out of range.
     pub(super) fn new(robot: &'a Chain, pose: &'a Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
-        Ok(Self { robot, pose, scale: scale_for(robot, pose, mesh_reach)? })
+        let envelope = Self::envelope(robot);
+        Ok(Self { robot, pose, scale: scale_for(robot.links(), envelope, pose, mesh_reach)? })
     }
 
     pub(super) fn scale(&self) -> Real {
@@ -72,9 +73,16 @@ impl<'a> Placed<'a> {
         CoarseLink::between(self.pose * start, self.pose * end, radius, flat, self.scale, frame)
     }
 
+    fn envelope(robot: &Chain) -> Option<&Envelope> {
+        match robot.runs().first() {
+            Some(Run::Links { envelope, .. }) => Some(envelope),
+            _ => None,
+        }
+    }
+
     /// The capsule around the whole robot, if it has more than one link.
     pub(super) fn envelope_of_all(&self) -> Option<(Probe, Envelope)> {
-        let Some(Run::Links { envelope, .. }) = self.runs().first() else { return None };
+        let envelope = Self::envelope(self.robot)?;
         let capsule = ModifiedCylinder::capsule(envelope.start, envelope.end, envelope.radius).ok()?;
         Some((Probe::new(&capsule, self.pose, self.scale), *envelope))
     }

@@ -3,7 +3,7 @@
 use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
-use crate::robot::{COORDINATE_LIMIT, Cap, Chain, Envelope, ModifiedCylinder, Run};
+use crate::robot::{COORDINATE_LIMIT, Cap, Envelope, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// What rounding can add to a bound on a box: all scaled numbers are below 2.
@@ -127,35 +127,37 @@ impl Probe {
 /// # Errors
 /// The pose is not finite or moves a link out of range.
 pub(crate) fn place(
-    robot: &Chain,
+    links: &[ModifiedCylinder],
     pose: &Pose,
     mesh_reach: Real,
     probes: &mut Vec<Probe>,
 ) -> Result<(), ProximityError> {
-    let scale = scale_for(robot, pose, mesh_reach)?;
+    let scale = scale_for(links, None, pose, mesh_reach)?;
     probes.clear();
-    probes.extend(robot.links().iter().map(|link| Probe::new(link, pose, scale)));
+    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
     Ok(())
 }
 
-/// The power of two that brings mesh and robot near one.
+/// The power of two that brings mesh and robot near one. A capsule around all links spares looking at each.
 ///
 /// # Errors
 /// The pose is not finite or moves a link out of range.
-pub(crate) fn scale_for(robot: &Chain, pose: &Pose, mesh_reach: Real) -> Result<Real, ProximityError> {
+pub(crate) fn scale_for(
+    links: &[ModifiedCylinder],
+    envelope: Option<&Envelope>,
+    pose: &Pose,
+    mesh_reach: Real,
+) -> Result<Real, ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
-    let mut reach = match robot.runs().first() {
-        Some(Run::Links { envelope: Envelope { start, end, radius }, .. }) => {
-            reach_of(pose * *start).max(reach_of(pose * *end)) + radius
-        }
-        _ => Real::INFINITY,
-    };
-    // Link by link where the capsule around all of them is out of range, or there is one link only.
+    let mut reach = envelope.map_or(Real::INFINITY, |around| {
+        reach_of(pose * around.start).max(reach_of(pose * around.end)) + around.radius
+    });
+    // Link by link where the capsule is out of range, or there is none.
     if reach.is_nan() || reach > COORDINATE_LIMIT {
         reach = 0.0;
-        for (index, link) in robot.links().iter().enumerate() {
+        for (index, link) in links.iter().enumerate() {
             for point in [pose * link.start(), pose * link.end()] {
                 // Written so that NaN is out of range too.
                 if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {

@@ -121,18 +121,18 @@ impl Chain {
         &self.bvh
     }
 
+    /// Capsules around runs of links, a run before its halves.
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
     /// The chain whose links are the images of this one's, or nothing if a link has none.
     pub(crate) fn try_map(
         &self,
         image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
     ) -> Option<Self> {
         let links = self.links.iter().map(image).collect::<Option<Vec<_>>>()?;
-        Some(Self::joined(links, self.segments.clone()))
-    }
-
-    /// Capsules around runs of links, a run before its halves.
-    pub(crate) fn runs(&self) -> &[Run] {
-        &self.runs
+        Some(Self::of(links, self.segments.clone()))
     }
 
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
@@ -160,11 +160,10 @@ impl Chain {
             )?);
             segments.push(first..next.copied().unwrap_or(radii.len()));
         }
-        Ok(Self::joined(links, segments))
+        Ok(Self::of(links, segments))
     }
 
-    /// With what is derived from the links.
-    fn joined(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
+    fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
         let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
         let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
         Self { links, segments, bvh, runs }
