@@ -6,9 +6,8 @@ use super::probe::{Probe, check_vertices};
 use super::search::Found;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
-use crate::distance::lanes::{Lane, Pack};
 use crate::robot::{Run, distance_to_segment};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -55,27 +54,20 @@ impl BvhSearch {
         self.descent.visits
     }
 
-    #[inline(always)]
-    fn per_link_in<L: Pack<Element = f32>>(
-        &mut self,
-        token: L::Token,
-        placed: &Placed,
-        out: &mut Vec<LinkProximity>,
-    ) {
+    fn per_link_in<S: Simd>(&mut self, simd: S, placed: &Placed, out: &mut Vec<LinkProximity>) {
         for link in 0..placed.links() {
             let before = out.last().map(|answer: &LinkProximity| answer.triangle);
             let start = [self.last.get(link).copied(), before];
             // Without a bound some triangle is always the nearest.
-            if let Some((probe, found)) = self.nearest::<L>(token, placed, link, Real::INFINITY, start) {
+            if let Some((probe, found)) = self.nearest(simd, placed, link, Real::INFINITY, start) {
                 out.push(probe.report(link, &found));
             }
         }
     }
 
-    #[inline(always)]
-    fn nearest<L: Pack<Element = f32>>(
+    fn nearest<S: Simd>(
         &mut self,
-        token: L::Token,
+        simd: S,
         placed: &Placed,
         link: usize,
         bound: Real,
@@ -83,49 +75,36 @@ impl BvhSearch {
     ) -> Option<(Probe, Found)> {
         let probe = placed.probe(link);
         let coarse = placed.coarse(link, &self.descent.tree.frame);
-        let found = self.descent.nearest::<L>(token, &probe, coarse.as_ref(), bound, start)?;
+        let found = self.descent.nearest(simd, &probe, coarse.as_ref(), bound, start)?;
         Some((probe, found))
     }
 
     /// Whether any triangle may be nearer than `bound` to any link of a run; false only if none is.
-    #[inline(always)]
-    fn may_meet<L: Pack<Element = f32>>(
-        &mut self,
-        token: L::Token,
-        placed: &Placed,
-        run: &Run,
-        bound: Real,
-    ) -> bool {
+    fn may_meet<S: Simd>(&mut self, simd: S, placed: &Placed, run: &Run, bound: Real) -> bool {
         let coarse = match run {
             Run::Links { envelope, .. } => placed.coarse_envelope(envelope, &self.descent.tree.frame),
             Run::Link(link) => placed.coarse(*link, &self.descent.tree.frame),
         };
-        coarse.is_none_or(|coarse| self.descent.may_meet::<L>(token, &coarse, bound))
+        coarse.is_none_or(|coarse| self.descent.may_meet(simd, &coarse, bound))
     }
 
     /// The nearest link and triangle among those nearer than `best`, where there is a best.
-    #[inline(always)]
-    fn minimum_in<L: Pack<Element = f32>>(
-        &mut self,
-        token: L::Token,
-        placed: &Placed,
-    ) -> Option<(usize, Probe, Found)> {
+    fn minimum_in<S: Simd>(&mut self, simd: S, placed: &Placed) -> Option<(usize, Probe, Found)> {
         let (first, triangle) = match self.last_minimum {
             Some((link, triangle)) if link < placed.links() => (link, triangle),
-            _ => self.likely_minimum::<L>(token, placed),
+            _ => self.likely_minimum(simd, placed),
         };
-        let (probe, found) =
-            self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
+        let (probe, found) = self.nearest(simd, placed, first, Real::INFINITY, [Some(triangle), None])?;
         let mut best = (first, probe, found);
         let runs = placed.runs();
         let mut place = 0;
         while let Some(run) = runs.get(place) {
             let bound = best.2.closest.distance;
             match run {
-                Run::Links { inner, .. } if !self.may_meet::<L>(token, placed, run, bound) => place += inner,
+                Run::Links { inner, .. } if !self.may_meet(simd, placed, run, bound) => place += inner,
                 Run::Link(link) if *link != first => {
                     let start = [Some(best.2.triangle), None];
-                    if let Some((probe, found)) = self.nearest::<L>(token, placed, *link, bound, start) {
+                    if let Some((probe, found)) = self.nearest(simd, placed, *link, bound, start) {
                         best = (*link, probe, found);
                     }
                 }
@@ -137,11 +116,10 @@ impl BvhSearch {
     }
 
     /// The triangle nearest to the capsule around the robot, and the link nearest to that triangle.
-    #[inline(always)]
-    fn likely_minimum<L: Pack<Element = f32>>(&mut self, token: L::Token, placed: &Placed) -> (usize, u32) {
+    fn likely_minimum<S: Simd>(&mut self, simd: S, placed: &Placed) -> (usize, u32) {
         let Some((probe, envelope)) = placed.envelope_of_all() else { return (0, 0) };
         let coarse = placed.coarse_envelope(&envelope, &self.descent.tree.frame);
-        let found = self.descent.nearest::<L>(token, &probe, coarse.as_ref(), Real::INFINITY, [None, None]);
+        let found = self.descent.nearest(simd, &probe, coarse.as_ref(), Real::INFINITY, [None, None]);
         let triangle = found.map_or(0, |found| found.triangle);
         let [a, b, c] = self.descent.indices[triangle as usize].map(|v| self.descent.vertices[v as usize]);
         let centre = placed.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
@@ -159,19 +137,18 @@ impl BvhSearch {
         (nearest.0, triangle)
     }
 
-    #[inline(always)]
-    fn clears_in<L: Pack<Element = f32>>(&mut self, token: L::Token, placed: &Placed, margin: Real) -> bool {
+    fn clears_in<S: Simd>(&mut self, simd: S, placed: &Placed, margin: Real) -> bool {
         // The next number, because the search wants triangles strictly nearer than its bound.
         let bound = (margin * placed.scale()).next_up();
         let runs = placed.runs();
         let mut place = 0;
         while let Some(run) = runs.get(place) {
-            if !self.may_meet::<L>(token, placed, run, bound) {
+            if !self.may_meet(simd, placed, run, bound) {
                 if let Run::Links { inner, .. } = run {
                     place += inner;
                 }
             } else if let Run::Link(link) = run
-                && self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some()
+                && self.nearest(simd, placed, *link, bound, [None, None]).is_some()
             {
                 return false;
             }
@@ -190,7 +167,7 @@ impl Proximity for BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         let placed = Placed::new(robot, pose, self.reach)?;
-        dispatch!(self.level, simd => self.per_link_in::<<f32 as Lane>::Pack<_>>(simd, &placed, out));
+        dispatch!(self.level, simd => self.per_link_in(simd, &placed, out));
         self.last.clear();
         self.last.extend(out.iter().map(|answer| answer.triangle));
         Ok(())
@@ -198,7 +175,7 @@ impl Proximity for BvhSearch {
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
         let placed = Placed::new(robot, pose, self.reach)?;
-        let found = dispatch!(self.level, simd => self.minimum_in::<<f32 as Lane>::Pack<_>>(simd, &placed));
+        let found = dispatch!(self.level, simd => self.minimum_in(simd, &placed));
         let (link, probe, found) = found.unwrap_or_else(|| {
             // Without a bound some triangle is always the nearest; this is any other.
             let probe = placed.probe(0);
@@ -214,7 +191,7 @@ impl Proximity for BvhSearch {
             return Err(ProximityError::BadMargin { margin });
         }
         let placed = Placed::new(robot, pose, self.reach)?;
-        Ok(dispatch!(self.level, simd => self.clears_in::<<f32 as Lane>::Pack<_>>(simd, &placed, margin)))
+        Ok(dispatch!(self.level, simd => self.clears_in(simd, &placed, margin)))
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {

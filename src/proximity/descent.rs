@@ -12,7 +12,8 @@ use super::search::Found;
 use super::soa::load_vertices;
 use super::tree::{Child, Leaf, Tree, WIDTH};
 use crate::distance::Face;
-use crate::distance::lanes::Pack;
+use crate::distance::lanes::{Lane, Pack};
+use fearless_simd::Simd;
 use parry3d_f64::math::{Real, Vector};
 
 /// How much a search has computed since it was built.
@@ -50,12 +51,6 @@ struct Quest<'a> {
     found: Option<Found>,
 }
 
-impl Quest<'_> {
-    fn limit_squared(&self) -> f32 {
-        self.limit * self.limit
-    }
-}
-
 impl Descent {
     pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         Self {
@@ -76,54 +71,69 @@ impl Descent {
 
     /// The triangle nearest to a link among those strictly nearer than `bound`, which is in the probe's units.
     /// The leaves of the triangles to `start` with come first, for the bound they give.
-    #[inline(always)]
-    pub(super) fn nearest<L: Pack<Element = f32>>(
+    #[inline(never)] // compiled once for each instruction set
+    pub(super) fn nearest<S: Simd>(
         &mut self,
-        token: L::Token,
+        simd: S,
         probe: &Probe,
         link: Option<&CoarseLink<f32>>,
         bound: Real,
         start: [Option<u32>; 2],
     ) -> Option<Found> {
         let Some(link) = link else { return self.nearest_of_all(probe, bound) };
-        let packed = PackedLink::<L>::new(token, link);
         let mut quest = Quest { probe, link, bound, limit: link.axis_limit(bound), found: None };
-        self.candidates.clear();
-        let start = [self.leaf_of(start[0]), self.leaf_of(start[1])];
-        if let Some(leaf) = start[0] {
-            self.visit_leaf(token, &packed, leaf, &mut quest);
-        }
-        if let Some(leaf) = start[1].filter(|_| start[1] != start[0]) {
-            self.visit_leaf(token, &packed, leaf, &mut quest);
-        }
-        self.stack.clear();
-        self.stack.push((0.0, 0));
-        while let Some((squared, child)) = self.stack.pop() {
-            if squared >= quest.limit_squared() || quest.bound <= 0.0 {
-                continue;
-            }
-            match Child::unpack(child) {
-                Child::Node(node) => self.visit_node(token, &packed, node, quest.limit),
-                Child::Leaf(leaf) if start.contains(&Some(leaf)) => {}
-                Child::Leaf(leaf) => self.visit_leaf(token, &packed, leaf, &mut quest),
-            }
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || self.descend::<<f32 as Lane>::Pack<S>>(simd, &mut quest, start),
+        );
         self.settle(&mut quest);
         quest.found
     }
 
-    /// Whether some triangle may be nearer than `bound` to the link; false only if none is.
     #[inline(always)]
-    pub(super) fn may_meet<L: Pack<Element = f32>>(
+    fn descend<L: Pack<Element = f32>>(
         &mut self,
         token: L::Token,
-        link: &CoarseLink<f32>,
-        bound: Real,
-    ) -> bool {
-        let packed = PackedLink::<L>::new(token, link);
-        let limit = link.axis_limit(bound);
+        quest: &mut Quest,
+        start: [Option<u32>; 2],
+    ) {
+        let packed = PackedLink::<L>::new(token, quest.link);
+        self.candidates.clear();
+        let mut start = [self.leaf_of(start[0]), self.leaf_of(start[1])];
+        if start[0] == start[1] {
+            start[1] = None;
+        }
         self.stack.clear();
-        self.stack.push((0.0, 0));
+        self.stack.push((0.0, Child::Node(0).pack()));
+        // Below 0, to tell a leaf to start with from the same leaf met again.
+        self.stack.extend(start.iter().rev().flatten().map(|&leaf| (-1.0, Child::Leaf(leaf).pack())));
+        while let Some((squared, child)) = self.stack.pop() {
+            if squared >= quest.limit * quest.limit || quest.bound <= 0.0 {
+                continue;
+            }
+            match Child::unpack(child) {
+                Child::Node(node) => self.visit_node(token, &packed, node, quest.limit),
+                Child::Leaf(leaf) if squared >= 0.0 && start.contains(&Some(leaf)) => {}
+                Child::Leaf(leaf) => self.visit_leaf(token, &packed, leaf, quest),
+            }
+        }
+    }
+
+    /// Whether some triangle may be nearer than `bound` to the link; false only if none is.
+    #[inline(never)] // compiled once for each instruction set
+    pub(super) fn may_meet<S: Simd>(&mut self, simd: S, link: &CoarseLink<f32>, bound: Real) -> bool {
+        let limit = link.axis_limit(bound);
+        simd.vectorize(
+            #[inline(always)]
+            || self.meets::<<f32 as Lane>::Pack<S>>(simd, link, limit),
+        )
+    }
+
+    #[inline(always)]
+    fn meets<L: Pack<Element = f32>>(&mut self, token: L::Token, link: &CoarseLink<f32>, limit: f32) -> bool {
+        let packed = PackedLink::<L>::new(token, link);
+        self.stack.clear();
+        self.stack.push((0.0, Child::Node(0).pack()));
         while let Some((_, child)) = self.stack.pop() {
             match Child::unpack(child) {
                 Child::Node(node) => self.visit_node(token, &packed, node, limit),

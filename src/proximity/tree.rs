@@ -25,7 +25,7 @@ pub(super) enum Child {
 impl Child {
     const LEAF: u32 = 1 << 31;
 
-    fn pack(self) -> u32 {
+    pub(super) fn pack(self) -> u32 {
         match self {
             Self::Node(node) => node,
             Self::Leaf(leaf) => leaf | Self::LEAF,
