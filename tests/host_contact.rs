@@ -97,7 +97,7 @@ fn close_contacts_have_the_normal_of_the_feature() {
     let mut random = Random::new(63);
     for _ in 0..500 {
         let pose = random.pose(1.0);
-        let (caps, gap) = (random.caps(), random.magnitude(1e-13, 1e-11));
+        let (caps, gap) = (random.caps(), random.log_between(1e-13, 1e-11));
         let link = ModifiedCylinder::new(-Vector::X, Vector::X, 0.25, caps).unwrap();
         let floor = -0.25 - gap;
         let triangle = Triangle::new(

@@ -18,8 +18,8 @@ fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let on_axis = link.start() * (1.0 - t) + link.end() * t;
     match random.index(6) {
         0 => on_axis,
-        1 => surface + random.direction() * random.magnitude(1e-9, 1e-3),
-        2 => surface + random.direction() * random.magnitude(1e2, 1e6),
+        1 => surface + random.direction() * random.log_between(1e-9, 1e-3),
+        2 => surface + random.direction() * random.log_between(1e2, 1e6),
         3 => surface,
         4 => on_axis * 0.5 + surface * 0.5,
         _ => surface + random.vector(2.0),
@@ -115,7 +115,7 @@ fn solid_points_stay_and_distances_carry_parrys_sign() {
 fn points_agree_with_parrys_capsule_and_cylinder() {
     let mut random = Random::new(13);
     for _ in 0..5000 {
-        let (half, radius) = (random.magnitude(0.1, 2.0), random.magnitude(0.1, 2.0));
+        let (half, radius) = (random.log_between(0.1, 2.0), random.log_between(0.1, 2.0));
         let (start, end) = (Vector::new(0.0, -half, 0.0), Vector::new(0.0, half, 0.0));
         let p = random.vector(3.0);
         let capsule = ModifiedCylinder::capsule(start, end, radius).unwrap();
@@ -156,7 +156,7 @@ fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
         3 => target + random.vector(0.3) - origin,
         _ => random.direction(),
     };
-    Ray::new(origin, direction * random.magnitude(1e-3, 1e3))
+    Ray::new(origin, direction * random.log_between(1e-3, 1e3))
 }
 
 /// Along the ray no point before the time of impact is on the link, and the point at that time is.
@@ -251,7 +251,7 @@ fn rays_agree_with_parrys_capsule_and_cylinder() {
     let mut random = Random::new(16);
     let (mut hits, mut misses, count) = (0, 0, 5000);
     for _ in 0..count {
-        let (half, radius) = (random.magnitude(0.1, 2.0), random.magnitude(0.1, 2.0));
+        let (half, radius) = (random.log_between(0.1, 2.0), random.log_between(0.1, 2.0));
         let (start, end) = (Vector::new(0.0, -half, 0.0), Vector::new(0.0, half, 0.0));
         let origin = random.vector(4.0);
         let ray = Ray::new(origin, random.vector(1.5) - origin);
@@ -399,7 +399,7 @@ fn balls_and_wires_answer_rays_and_points() {
 fn on_the_axis_any_way_out_is_taken_but_a_whole_radius_long() {
     let mut random = Random::new(17);
     for _ in 0..2000 {
-        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.magnitude(1e-3, 1.0));
+        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.log_between(1e-3, 1.0));
         let link = ModifiedCylinder::new(start, start + axis, radius, random.caps()).unwrap();
         let p = start + axis * random.between(0.4, 0.6);
         let depth = -link.distance_to_local_point(p, false);

@@ -20,7 +20,7 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 /// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
 /// |---|---|
 /// | `distance`, `closest_points`, `intersection_test` | exact |
-/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not the shortest one |
+/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not promised to be the shortest |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
 /// | contact manifolds | parry's, on polygons that stand for the link's surface |
 ///
