@@ -14,6 +14,7 @@ mod scan;
 mod search;
 mod soa;
 mod tree;
+mod walk;
 
 pub(crate) use probe::Probe;
 pub(crate) use search::{Found, Until, search};
