@@ -44,10 +44,6 @@ pub(crate) struct Projection<T: Scalar> {
     pub residual: Vec3<T>,
     /// Whether the foot lies in the triangle.
     pub inside: T::Mask,
-    /// Coordinates of the foot along the face's edges.
-    pub alpha: T,
-    /// See `alpha`.
-    pub beta: T,
 }
 
 impl<T: Scalar> Face<T> {
@@ -96,19 +92,20 @@ impl<T: Scalar> Face<T> {
             beta = beta + residual.dot(self.dual[1]);
             residual = relative.along(self.edges[0], -alpha).along(self.edges[1], -beta);
         }
-        let foot = self.at(alpha, beta);
-        Projection { foot, residual, inside: self.holds(alpha, beta), alpha, beta }
+        let foot = self.apex.along(self.edges[0], alpha).along(self.edges[1], beta);
+        Projection { foot, residual, inside: self.holds(alpha, beta) }
     }
 
-    /// The point of the plane with these coordinates along the edges from the apex.
+    /// Whether a point of the plane lies in the triangle. What one pass leaves out is within rounding of an edge.
     #[inline(always)]
-    pub(crate) fn at(&self, alpha: T, beta: T) -> Vec3<T> {
-        self.apex.along(self.edges[0], alpha).along(self.edges[1], beta)
+    pub(crate) fn holds_point(&self, point: Vec3<T>) -> T::Mask {
+        let relative = point - self.apex;
+        self.holds(relative.dot(self.dual[0]), relative.dot(self.dual[1]))
     }
 
-    /// Whether the coordinates are those of a point of the triangle.
+    /// Whether the coordinates along the edges from the apex are those of a point of the triangle.
     #[inline(always)]
-    pub(crate) fn holds(&self, alpha: T, beta: T) -> T::Mask {
+    fn holds(&self, alpha: T, beta: T) -> T::Mask {
         let zero = alpha.zero();
         self.has_area & zero.le(alpha) & zero.le(beta) & (alpha + beta).le(alpha.one())
     }
