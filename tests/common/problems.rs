@@ -194,7 +194,7 @@ impl Random {
             Family::Needle => {
                 let far = self.magnitude(0.5, 6.0);
                 let which = self.below(3) as usize;
-                problem.triangle[which] = problem.triangle[which] * far;
+                problem.triangle[which] *= far;
             }
             Family::SizeRatio => {
                 let ratio = self.magnitude(-9.0, 7.0);
