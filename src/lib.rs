@@ -5,7 +5,9 @@
 pub use parry3d_f64 as parry;
 
 pub mod distance;
+mod host;
 pub mod proximity;
 mod robot;
 
+pub use host::ContinuumDispatcher;
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

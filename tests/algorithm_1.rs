@@ -241,6 +241,11 @@ fn the_extremes_of_the_accepted_range() {
         let points = [0.0, 0.25, 0.5].map(|x| Vector::X * (x * scale));
         assert_eq!(centreline(&points, &[scale; 2]), "FF FF");
     }
+    // A tiny robot far out along another coordinate.
+    let points = [0.0, 1.0, 2.0].map(|x| Vector::new(x * 1e-300, -1e149, 1e149));
+    assert_eq!(centreline(&points, &[1e-300; 2]), "FT TF");
+    assert_eq!(centreline(&points, &[1.5e-300; 2]), "FF FF");
+    assert_eq!(centreline(&points, &[0.0; 2]), "FT TF");
 }
 
 #[test]

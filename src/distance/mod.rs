@@ -19,6 +19,7 @@
 mod bounds;
 mod face;
 mod frame;
+pub(crate) mod lanes;
 mod plane_disc;
 mod point_disc;
 mod point_modified_cylinder;

@@ -54,8 +54,8 @@ pub fn segment_disc<T: Scalar>(
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
     let line = Line::new(ends, normal);
-    let s = line.nearest_to_disc(radius);
-    line.closest_at(s, normal, radius)
+    let (s, pierces) = line.nearest_to_disc(radius);
+    line.closest_at(s, pierces, normal, radius)
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
@@ -126,9 +126,9 @@ impl<T: Scalar> Line<T> {
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
 
-    /// The s at which the line is closest to the solid disc.
+    /// The s at which the line is closest to the solid disc, and whether it meets the disc there.
     #[inline(always)]
-    fn nearest_to_disc(&self, radius: T) -> T {
+    fn nearest_to_disc(&self, radius: T) -> (T, T::Mask) {
         let zero = radius.zero();
         let one = radius.one();
         let root_m = self.m.sqrt();
@@ -170,14 +170,19 @@ impl<T: Scalar> Line<T> {
 
         // Case 1.
         let (rho_plane, _) = self.radial_at(plane);
-        (reaches_plane & rho_plane.le(radius)).select(plane, s)
+        let pierces = reaches_plane & rho_plane.le(radius);
+        (pierces.select(plane, s), pierces)
     }
 
-    /// The closest points for the line's minimiser `s`, clamped to the segment.
+    /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc
+    /// there and the segment gets that far, that point is common, whatever rounding says of its height.
     #[inline(always)]
-    fn closest_at(&self, s: T, normal: Vec3<T>, radius: T) -> Closest<T> {
+    fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
-        let t = s.mul_add(self.sign, self.foot).max(self.far_at.min(zero)).min(self.far_at.max(zero));
+        let along = s.mul_add(self.sign, self.foot);
+        let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));
+        let pierced = pierces & low.le(along) & along.le(high);
+        let t = along.max(low).min(high);
         // From the end nearer to it, so that the rounding of a long segment's direction counts least.
         let by_near_end = (t + t).abs().le(self.far_at.abs());
         let point = Vec3::select(
@@ -186,6 +191,7 @@ impl<T: Scalar> Line<T> {
             self.far.along(self.direction, t - self.far_at),
         );
         let (distance, on_disc) = super::point_disc::from_centre(point, normal, radius);
-        Closest { distance, point1: point, point2: on_disc }
+        let point1 = Vec3::select(pierced, on_disc, point);
+        Closest { distance: pierced.select(zero, distance), point1, point2: on_disc }
     }
 }

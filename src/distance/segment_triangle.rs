@@ -9,7 +9,8 @@
 //! The ends count only against the interior, and the edges by segment-segment, so the parameter is exact to
 //! rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
 
-use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame, segment_segment};
+use super::face::{Face, Projection};
+use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
 /// The distance between a segment and a triangle.
 #[inline(always)]
@@ -61,28 +62,34 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let (zero, one) = (end.x.zero(), end.x.one());
     let [a, b, c] = face.vertices;
     // Case 3.
-    let edge = |from: Vec3<T>, to: Vec3<T>| {
-        let found = segment_segment::parameters(-from, end, to - from);
-        AxisTriangle {
-            squared: found.gap.norm_squared(),
-            s: found.s,
-            on_triangle: from.along(to - from, found.t),
-        }
-    };
-    let nearest = edge(a, b).nearer(edge(b, c)).nearer(edge(c, a));
+    let nearest = edge(end, a, b).nearer(edge(end, b, c)).nearer(edge(end, c, a));
     // Case 2.
     let (low, high) = (face.project(Vec3::zero(zero)), face.project(end));
-    let above = |s: T, foot: &super::face::Projection<T>| AxisTriangle {
-        squared: foot.residual.norm_squared(),
-        s,
-        on_triangle: foot.foot,
-    };
-    let nearest =
-        nearest.nearer_where(low.inside, above(zero, &low)).nearer_where(high.inside, above(one, &high));
+    let nearest = nearest
+        .nearer_where(low.inside, above(face, zero, &low))
+        .nearer_where(high.inside, above(face, one, &high));
     // Case 1.
-    let (from, to) = (face.height_from(Vec3::zero(zero)), face.height_from(end));
-    let opposite = (from * to).lt(zero);
+    let normal = face.across();
+    let (from, to) = (-normal.dot(a), normal.dot(end - a));
+    let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };
     nearest.nearer_where(opposite & face.holds_point(end * s), pierced)
+}
+
+/// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)
+#[inline(always)]
+fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> {
+    let found = segment_segment::parameters(-from, end, to - from);
+    AxisTriangle {
+        squared: found.gap.norm_squared(),
+        s: found.s,
+        on_triangle: from.along(to - from, found.t),
+    }
+}
+
+/// Case 2, for the end at `s`.
+#[inline(always)]
+fn above<T: Scalar>(face: &Face<T>, s: T, foot: &Projection<T>) -> AxisTriangle<T> {
+    AxisTriangle { squared: foot.residual.norm_squared(), s, on_triangle: face.at(foot.alpha, foot.beta) }
 }

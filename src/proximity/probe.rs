@@ -3,7 +3,7 @@
 use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
-use crate::robot::{COORDINATE_LIMIT, Cap, ModifiedCylinder};
+use crate::robot::{COORDINATE_LIMIT, Cap, Envelope, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// What rounding can add to a bound on a box: all scaled numbers are below 2.
@@ -20,21 +20,16 @@ pub(crate) struct Probe {
     end: Vector,
     scale: Real,
     link: Link<f64>,
-    has_flat_cap: bool,
+    length: Real,
 }
 
 impl Probe {
-    fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
+    /// The link at `pose`, in the scale of [`scale_for`].
+    pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
         let (start, end) = (pose * link.start(), pose * link.end());
         let flat = link.caps().map(|cap| cap == Cap::Flat);
         let local = to_vec3((end - start) * scale);
-        Self {
-            start,
-            end,
-            scale,
-            link: Link::new(local, link.radius() * scale, flat),
-            has_flat_cap: flat[0] || flat[1],
-        }
+        Self { start, end, scale, length: local.norm(), link: Link::new(local, link.radius() * scale, flat) }
     }
 
     /// The ends of the axis, in the mesh's frame.
@@ -55,10 +50,14 @@ impl Probe {
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
-        let face = self.face(triangle);
+        let vertices = self.local(triangle);
+        if self.at_least(vertices) > bound {
+            return None;
+        }
+        let face = Face::new(vertices);
         let axial = Axial::new(&self.link, &face);
-        let closest = if !self.flat_cap_decides(&axial) {
-            axial.upper
+        let closest = if !axial.beyond_flat_cap() {
+            axial.without_caps(&self.link)
         } else if axial.plane_bound(&self.link, &face) >= bound {
             return None;
         } else {
@@ -67,27 +66,47 @@ impl Probe {
         (closest.distance < bound).then_some(closest)
     }
 
+    /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
+    fn at_least(&self, [a, b, c]: [Vec3<f64>; 3]) -> Real {
+        let centre = (a + b + c) * (1.0 / 3.0);
+        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
+        let foot = self.link.axis * t;
+        let normal = centre - foot;
+        let beyond = normal.dot(a - foot).min(normal.dot(b - foot)).min(normal.dot(c - foot));
+        beyond.over(normal.norm()) - self.link.radius - SLACK
+    }
+
     /// The closest points of the link and a triangle, in scaled units and from the link's start.
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
-        let face = self.face(triangle);
+        let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
-        if self.flat_cap_decides(&axial) { axial.with_caps(&self.link, &face) } else { axial.upper }
+        if axial.beyond_flat_cap() {
+            axial.with_caps(&self.link, &face)
+        } else {
+            axial.without_caps(&self.link)
+        }
     }
 
-    fn face(&self, triangle: [Vector; 3]) -> Face<f64> {
-        Face::new(triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale)))
+    fn local(&self, triangle: [Vector; 3]) -> [Vec3<f64>; 3] {
+        triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale))
     }
 
-    fn flat_cap_decides(&self, axial: &Axial<f64>) -> bool {
-        self.has_flat_cap && (axial.at_flat[0] || axial.at_flat[1])
-    }
-
-    /// A lower bound on the distance between the link and anything in the box, in scaled units: that of the
-    /// axis's own box, less the radius and what rounding may have added.
+    /// A lower bound on the distance between the link and anything in the box, in scaled units, less what
+    /// rounding may have added.
+    ///
+    /// With c the box's centre, p the axis point nearest to c and v = c - p, the whole axis lies behind the
+    /// plane through p with normal v, and the box beyond the one through its corner on that side. So the bound
+    /// is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
+    /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
+    /// badly.
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
-        let (low, high) = (self.start.min(self.end), self.start.max(self.end));
-        let gap = ((mins - high).max(low - maxs) * self.scale).max(Vector::ZERO);
-        (gap.length() - self.link.radius - SLACK).max(0.0)
+        let half = (maxs - mins) * (0.5 * self.scale);
+        let centre = to_vec3((mins - self.start) * self.scale + half);
+        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
+        let to_centre = centre.along(self.link.axis, -t);
+        let distance = to_centre.norm();
+        let corner = half.dot(Vector::from_array(to_centre.into()).abs());
+        (distance - corner.over(distance) - self.link.radius - SLACK).max(0.0)
     }
 
     /// An answer in the mesh's frame.
@@ -113,24 +132,47 @@ pub(crate) fn place(
     mesh_reach: Real,
     probes: &mut Vec<Probe>,
 ) -> Result<(), ProximityError> {
+    let scale = scale_for(links, None, pose, mesh_reach)?;
     probes.clear();
+    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
+    Ok(())
+}
+
+/// The power of two that brings mesh and robot near one. A capsule around all links spares looking at each.
+///
+/// # Errors
+/// The pose is not finite or moves a link out of range.
+pub(crate) fn scale_for(
+    links: &[ModifiedCylinder],
+    envelope: Option<&Envelope>,
+    pose: &Pose,
+    mesh_reach: Real,
+) -> Result<Real, ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
-    let mut reach = mesh_reach;
-    for (index, link) in links.iter().enumerate() {
-        for point in [pose * link.start(), pose * link.end()] {
-            // Written so that NaN is out of range too.
-            if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
-                return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
+    let mut reach = envelope.map_or(Real::INFINITY, |around| {
+        reach_of(pose * around.start).max(reach_of(pose * around.end)) + around.radius
+    });
+    // Link by link where the capsule is out of range, or there is none.
+    if reach.is_nan() || reach > COORDINATE_LIMIT {
+        reach = 0.0;
+        for (index, link) in links.iter().enumerate() {
+            for point in [pose * link.start(), pose * link.end()] {
+                // Written so that NaN is out of range too.
+                if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
+                    return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
+                }
+                reach = reach.max(reach_of(point)).max(link.radius());
             }
-            reach = reach.max(point.abs().max_element());
         }
-        reach = reach.max(link.radius());
     }
-    let scale = reach.power_of_two_to_unity();
-    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
-    Ok(())
+    Ok(reach.max(mesh_reach).power_of_two_to_unity())
+}
+
+/// The largest magnitude of a coordinate.
+fn reach_of(point: Vector) -> Real {
+    point.abs().max_element()
 }
 
 /// The largest magnitude of the vertices' coordinates.

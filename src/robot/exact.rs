@@ -16,72 +16,105 @@ const FILTER: Real = 64.0 * Real::EPSILON;
 
 /// Whether `p` and `q` are at least `radius` apart.
 pub(super) fn at_least_apart(p: Vector, q: Vector, radius: Real) -> bool {
-    let scale = to_unit((p - q).abs().max_element().max(radius));
-    compare_distance(p * scale, q * scale, radius * scale).is_ge()
+    let d = Difference::new(p, q);
+    let scale = to_unit(d.rounded.abs().max_element().max(radius));
+    d.scaled(scale).compare_length(radius * scale).is_ge()
 }
 
 /// Whether `p` is within `tolerance` of the segment from `a` to `b`, which has a length.
 ///
 /// The points that are make up two balls around the ends and a cylinder between them.
 pub(super) fn is_within(p: Vector, a: Vector, b: Vector, tolerance: Real) -> bool {
-    let size = (p - a).abs().max((b - a).abs()).max_element().max(tolerance);
-    let scale = to_unit(size);
-    let (p, a, b, tolerance) = (p * scale, a * scale, b * scale, tolerance * scale);
-    compare_distance(p, a, tolerance).is_le()
-        || compare_distance(p, b, tolerance).is_le()
-        || (is_ahead(a, p, b) && is_ahead(b, p, a) && is_within_of_line(p, a, b, tolerance))
+    let [from_a, from_b, chord] = [(p, a), (p, b), (b, a)].map(|(p, q)| Difference::new(p, q));
+    let scale = to_unit(from_a.rounded.abs().max(chord.rounded.abs()).max_element().max(tolerance));
+    let [from_a, from_b, chord] = [from_a, from_b, chord].map(|d| d.scaled(scale));
+    let tolerance = tolerance * scale;
+    from_a.compare_length(tolerance).is_le()
+        || from_b.compare_length(tolerance).is_le()
+        || (from_a.sign_of_dot(&chord).is_gt()
+            && from_b.sign_of_dot(&chord).is_lt()
+            && from_a.is_within_of_line(&chord, tolerance))
 }
 
-/// |p - q| against `radius`.
-fn compare_distance(p: Vector, q: Vector, radius: Real) -> Ordering {
-    let (squared, limit) = ((p - q).length_squared(), radius * radius);
-    sign(squared - limit, squared + limit, || {
-        let d = differences(p, q);
-        dot(&d, &d).minus(&Exact::product(radius, radius))
-    })
+/// The exact difference of two points: its rounded value, and what rounding lost.
+struct Difference {
+    rounded: Vector,
+    error: Vector,
 }
 
-/// Whether `p` lies ahead of `a` when looking from there at `b`.
-fn is_ahead(a: Vector, p: Vector, b: Vector) -> bool {
-    let (w, e) = (p - a, b - a);
-    sign(w.dot(e), w.length_squared() + e.length_squared(), || dot(&differences(p, a), &differences(b, a)))
-        .is_gt()
+impl Difference {
+    /// Taken before scaling: two coordinates of any size may lie close together.
+    fn new(p: Vector, q: Vector) -> Self {
+        let rounded = p - q;
+        let error = Vector::from([0, 1, 2].map(|i| two_sum(p[i], -q[i]).1));
+        Self { rounded, error }
+    }
+
+    fn scaled(&self, scale: Real) -> Self {
+        Self { rounded: self.rounded * scale, error: self.error * scale }
+    }
+
+    fn exact(&self) -> [Exact; 3] {
+        [0, 1, 2].map(|i| Exact::sum(self.error[i], self.rounded[i]))
+    }
+
+    /// The length against `radius`.
+    fn compare_length(&self, radius: Real) -> Ordering {
+        let (squared, limit) = (self.rounded.length_squared(), radius * radius);
+        sign(squared - limit, squared + limit, || {
+            let d = self.exact();
+            dot(&d, &d).minus(&Exact::product(radius, radius)).sign()
+        })
+    }
+
+    fn sign_of_dot(&self, other: &Self) -> Ordering {
+        let (w, e) = (self.rounded, other.rounded);
+        sign(w.dot(e), w.length_squared() + e.length_squared(), || dot(&self.exact(), &other.exact()).sign())
+    }
+
+    /// Whether the point at this difference from a line's origin is within `tolerance` of the line along `e`:
+    /// |w x e| <= tolerance |e|.
+    fn is_within_of_line(&self, e: &Self, tolerance: Real) -> bool {
+        let limit = tolerance * tolerance * e.rounded.length_squared();
+        let size = self.rounded.length_squared() * e.rounded.length_squared() + limit;
+        sign(self.rounded.cross(e.rounded).length_squared() - limit, size, || {
+            let (w, e) = (self.exact(), e.exact());
+            let normal = [(1, 2), (2, 0), (0, 1)].map(|(j, k)| w[j].times(&e[k]).minus(&w[k].times(&e[j])));
+            if tolerance == 0.0 {
+                // No square: it could underflow to a 0 that the component is not.
+                return if normal.iter().all(|n| n.sign().is_eq()) {
+                    Ordering::Equal
+                } else {
+                    Ordering::Greater
+                };
+            }
+            dot(&normal, &normal).minus(&dot(&e, &e).times(&Exact::product(tolerance, tolerance))).sign()
+        })
+        .is_le()
+    }
 }
 
-/// Whether `p` is within `tolerance` of the line through `a` and `b`: |w x e| <= tolerance |e|.
-fn is_within_of_line(p: Vector, a: Vector, b: Vector, tolerance: Real) -> bool {
-    let (w, e) = (p - a, b - a);
-    let limit = tolerance * tolerance * e.length_squared();
-    let size = w.length_squared() * e.length_squared();
-    sign(w.cross(e).length_squared() - limit, size + limit, || {
-        let (w, e) = (differences(p, a), differences(b, a));
-        let normal = [(1, 2), (2, 0), (0, 1)].map(|(j, k)| w[j].times(&e[k]).minus(&w[k].times(&e[j])));
-        if tolerance == 0.0 {
-            // The largest component decides; squares would only bring underflow nearer.
-            let is_zero = normal.iter().all(|component| component.sign().is_eq());
-            return Exact(if is_zero { vec![] } else { vec![1.0] });
-        }
-        dot(&normal, &normal).minus(&dot(&e, &e).times(&Exact::product(tolerance, tolerance)))
-    })
-    .is_le()
-}
-
-/// The sign of a number from its f64 value, the size of the terms that were added up to it, and its exact value.
-fn sign(value: Real, size: Real, exact: impl FnOnce() -> Exact) -> Ordering {
-    if value.abs() > FILTER * size { value.total_cmp(&0.0) } else { exact().sign() }
+/// The sign of a number from its f64 value and the size of the terms that were added up to it, or, where rounding
+/// or underflow could have made that value, from `exact`.
+fn sign(value: Real, size: Real, exact: impl FnOnce() -> Ordering) -> Ordering {
+    if value.abs() > FILTER * size + Real::MIN_POSITIVE { value.total_cmp(&0.0) } else { exact() }
 }
 
 /// A sum of f64 that stands for its exact value: no two terms overlap, none is zero, the last is the largest.
 struct Exact(Vec<Real>);
 
 impl Exact {
-    fn difference(a: Real, b: Real) -> Self {
-        Self(vec![]).plus_term(a).plus_term(-b)
+    fn zero() -> Self {
+        Self(vec![])
+    }
+
+    fn sum(a: Real, b: Real) -> Self {
+        Self::zero().plus_term(a).plus_term(b)
     }
 
     fn product(a: Real, b: Real) -> Self {
         let rounded = a * b;
-        Self(vec![]).plus_term(a.mul_add(b, -rounded)).plus_term(rounded)
+        Self::sum(a.mul_add(b, -rounded), rounded)
     }
 
     /// One term more: it passes along the others from the smallest, leaving its rounding errors behind.
@@ -111,7 +144,7 @@ impl Exact {
 
     fn times(&self, other: &Self) -> Self {
         let pairs = self.0.iter().flat_map(|&a| other.0.iter().map(move |&b| Self::product(a, b)));
-        pairs.fold(Self(vec![]), |sum, product| sum.plus(&product))
+        pairs.fold(Self::zero(), |sum, product| sum.plus(&product))
     }
 
     fn sign(&self) -> Ordering {
@@ -126,10 +159,6 @@ fn two_sum(a: Real, b: Real) -> (Real, Real) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-fn differences(p: Vector, q: Vector) -> [Exact; 3] {
-    [0, 1, 2].map(|i| Exact::difference(p[i], q[i]))
-}
-
 fn dot(a: &[Exact; 3], b: &[Exact; 3]) -> Exact {
-    a.iter().zip(b).fold(Exact(vec![]), |sum, (a, b)| sum.plus(&a.times(b)))
+    a.iter().zip(b).fold(Exact::zero(), |sum, (a, b)| sum.plus(&a.times(b)))
 }

@@ -15,7 +15,7 @@
 //! If a long chord fails a shorter one may fail too, and the reverse, so no greedy choice is safe. The fewest links
 //! are a shortest path over admissible chords, found breadth first between each two vertices that must stay. A
 //! vertex is settled by the first chord that reaches it. One that has just ruled out a chord is asked first about
-//! the next: most chords fail at once, and the search costs little more than the square of the number of vertices.
+//! the next: most chords fail at once, and the search usually costs about the square of the number of vertices.
 
 use super::RobotError;
 use super::chain::check;
@@ -29,7 +29,8 @@ use parry3d_f64::math::{Real, Vector};
 /// changes. Each new segment and the stretch of the input that it replaces are within `tolerance` of each other:
 /// no point of either is further than that from the other (Hausdorff distance). No other choice of points with
 /// these properties has fewer links. `tolerance` is in the unit of the points. With 0, only points exactly on the
-/// new segments go, and the centreline keeps its shape. Whether a point is within the tolerance is decided
+/// new segments go, and the centreline keeps its shape; points meant to be on an oblique straight line seldom are
+/// after rounding, so give those the rounding error as tolerance. Whether a point is within the tolerance is decided
 /// exactly, not after rounding.
 ///
 /// Repeated points are dropped first, together with the radius of the segment without length between them. (If

@@ -88,6 +88,7 @@ impl Div for DoubleDouble {
 impl Scalar for DoubleDouble {
     type Mask = bool;
     const UNIT_ROUNDOFF: f64 = 4.930380657631324e-32; // 2^-104
+    const FACE_PASSES: usize = 6;
     const HALLEY_STEPS: usize = 6;
 
     fn lit(self, value: f64) -> Self {

@@ -1,0 +1,344 @@
+//! Steers a concentric tube robot into a brain ventricle and tells how far each of its links is from the wall.
+//!
+//! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
+//! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
+//! there are a table, the time per query, and a picture. `--mesh` takes real anatomy instead (in millimetres, or with
+//! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
+
+#[path = "scene/mod.rs"]
+mod scene;
+
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::{Cap, Chain, RobotError, simplify};
+use scene::ctr::{Centreline, Joints, Robot, three_tubes};
+use scene::{command, figure, mesh_file, steer, timing, ventricle};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Steer a concentric tube robot into a brain ventricle and measure its clearance, link by link.
+#[derive(Parser)]
+struct Options {
+    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+
+    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        requires = "mesh",
+        allow_negative_numbers = true
+    )]
+    scale: Real,
+
+    /// Triangles of the generated ventricle, about
+    #[arg(long, value_name = "COUNT", default_value_t = ventricle::DEFAULT_TRIANGLES as u32, conflicts_with = "mesh",
+          value_parser = clap::value_parser!(u32).range(ventricle::DEFAULT_TRIANGLES as i64..=20_000_000))]
+    triangles: u32,
+
+    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    base: Option<Vector>,
+
+    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    axis: Option<Vector>,
+
+    /// Links with two round caps, with two flat caps, or each cap as Algorithm 1 says
+    #[arg(long, value_enum, default_value_t = Model::Modified)]
+    model: Model,
+
+    /// The fewest links that stay this close to the curve, in millimetres [default: 30 links]
+    #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true)]
+    tolerance: Option<Real>,
+
+    /// Steps on the way in
+    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    steps: u32,
+
+    /// Where to save the picture: a directory, or a file that ends in .png
+    #[arg(long, value_name = "PATH", default_value = "target/ventricle.png")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Model {
+    Capsule,
+    Cylinder,
+    Modified,
+}
+
+fn vector(text: &str) -> Result<Vector, String> {
+    let numbers: Result<Vec<Real>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if Vector::new(x, y, z).is_finite() => Ok(Vector::new(x, y, z)),
+        _ => Err("write three numbers, for example 68.6,105.2,104.6".into()),
+    }
+}
+
+fn direction(text: &str) -> Result<Vector, String> {
+    vector(text)?.try_normalize().ok_or("a direction needs a length; write for example 0,0,-1".into())
+}
+
+fn length(text: &str) -> Result<Real, String> {
+    match text.parse() {
+        Ok(length) if length >= 0.0 && Real::is_finite(length) => Ok(length),
+        _ => Err("write a length of at least 0, for example 0.1".into()),
+    }
+}
+
+fn main() -> ExitCode {
+    command::run(steer)
+}
+
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn steer(options: &Options) -> Result<(), String> {
+    let (points, triangles) = match &options.mesh {
+        Some(path) => mesh_file::load(path, options.scale)?,
+        None => ventricle::mesh(options.triangles as usize),
+    };
+    let mesh = TriMesh::new(points, triangles).map_err(text)?;
+    let mut search = BvhSearch::new(&mesh).map_err(text)?;
+    let mut exhaustive = Exhaustive::<Real>::new(&mesh).map_err(text)?;
+    let out = command::picture_path(&options.out, "ventricle.png")?;
+
+    let robot = three_tubes();
+    let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
+    let base = if planned { ventricle::entry() } else { placement(options, &mesh)? };
+    if !steer::is_inside(&mesh, base.translation) {
+        eprintln!("note: {} is outside the mesh; --base x,y,z places the robot", show(base.translation));
+    }
+    let goal = if planned {
+        ventricle::goal()
+    } else {
+        steer::find_goal(&robot, &mut search, &base).map_err(|none| no_goal(&none, &base))?
+    };
+    println!(
+        "{:.1} mm of robot, from {} along {}",
+        robot.length(&goal),
+        show(base.translation),
+        show(base.rotation * Vector::Z)
+    );
+
+    // The way in: both engines at every step.
+    let scale = mesh.local_aabb().extents().length() + mesh.local_aabb().center().abs().max_element();
+    let bar = ProgressBar::new(options.steps.into());
+    let style = ProgressStyle::with_template("{msg:>20} {wide_bar} {pos}/{len} steps").map_err(text)?;
+    bar.set_style(style.progress_chars("━╸ "));
+    let (mut found, mut checked) = (Vec::new(), Vec::new());
+    let (mut chains, mut apart) = (Vec::new(), 0.0);
+    for step in 1..=options.steps {
+        let share = Real::from(step) / Real::from(options.steps);
+        let chain = chain(options, &robot, &robot.on_the_way(&goal, share)).map_err(text)?;
+        search.per_link(&chain, &base, &mut found).map_err(text)?;
+        exhaustive.per_link(&chain, &base, &mut checked).map_err(text)?;
+        apart = disagreement(&found, &checked).max(apart);
+        let nearest = found.iter().map(|link| link.distance).fold(Real::INFINITY, Real::min);
+        bar.set_message(format!("clearance {nearest:.2} mm"));
+        bar.inc(1);
+        chains.push(chain);
+    }
+    bar.finish();
+    // Each engine promises 16 units in the last place of the problem's extent.
+    if apart > 32.0 * 0.5 * Real::EPSILON * scale {
+        return Err(format!(
+            "the engines differ by {apart:e} mm; please report it with the command that you ran"
+        ));
+    }
+    println!(
+        "{} triangles, {} steps: search and exhaustive engine agree to {apart:.0e} mm\n",
+        mesh.num_triangles(),
+        options.steps
+    );
+
+    let chain = &chains[chains.len() - 1];
+    print_table(chain, &found);
+    let times = print_times(&mesh, &chains, &base, &mut search, &mut exhaustive)?;
+
+    let caption = caption(options, &mesh, chain, &found, times);
+    let picture = figure::draw(&mesh, chain, &base, &found, &caption);
+    picture
+        .save(&out)
+        .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+    println!("\npicture: {}", out.display());
+    Ok(())
+}
+
+/// The robot's pose as asked for; what is not said is found in the mesh.
+fn placement(options: &Options, mesh: &TriMesh) -> Result<Pose, String> {
+    let base = match (options.base, &options.mesh) {
+        (Some(base), _) => base,
+        (None, None) => ventricle::entry().translation,
+        (None, Some(path)) => steer::deepest_point(mesh).ok_or(format!(
+            "{} encloses nothing, so a start inside cannot be found; name one with --base x,y,z and --axis x,y,z",
+            path.display()
+        ))?,
+    };
+    let axis = options.axis.unwrap_or_else(|| steer::clear_direction(mesh, base));
+    Ok(Pose::from_parts(base, Rot3::from_rotation_arc(Vector::Z, axis)))
+}
+
+fn no_goal(none: &steer::NoGoal, base: &Pose) -> String {
+    match none {
+        steer::NoGoal::NoRoom => format!(
+            "the robot has no room at {} along {}: every shape touches the wall; \
+             move it with --base and --axis, or bring the mesh to millimetres with --scale",
+            show(base.translation),
+            show(base.rotation * Vector::Z)
+        ),
+        steer::NoGoal::Robot(error) => error.to_string(),
+        steer::NoGoal::Query(error) => error.to_string(),
+    }
+}
+
+/// The robot at the given joints, of the model and fineness asked for.
+fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, RobotError> {
+    const LINKS: usize = 30;
+    const CURVE: usize = 400;
+    let (points, radii) = match options.tolerance {
+        None => {
+            let Centreline { points, radii } = robot.centreline(joints, LINKS);
+            (points, radii)
+        }
+        Some(tolerance) => {
+            let curve = robot.centreline(joints, CURVE);
+            simplify(&curve.points, &curve.radii, tolerance)?
+        }
+    };
+    match options.model {
+        Model::Capsule => Chain::capsules(&points, &radii),
+        Model::Cylinder => Chain::cylinders(&points, &radii),
+        Model::Modified => Chain::from_centreline(&points, &radii),
+    }
+}
+
+/// The largest difference in distance of two engines' answers.
+fn disagreement(one: &[LinkProximity], other: &[LinkProximity]) -> Real {
+    if one.len() != other.len() {
+        return Real::INFINITY;
+    }
+    one.iter().zip(other).map(|(a, b)| (a.distance - b.distance).abs()).fold(0.0, Real::max)
+}
+
+fn show(v: Vector) -> String {
+    format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z)
+}
+
+fn print_table(chain: &Chain, answers: &[LinkProximity]) {
+    println!(
+        "link  radius  caps         distance  triangle  closest point of link         closest point of wall"
+    );
+    let name = |cap| if cap == Cap::Flat { "flat" } else { "round" };
+    let place = |v: Vector| format!("{:9.3} {:9.3} {:9.3}", v.x, v.y, v.z);
+    for (link, answer) in chain.links().iter().zip(answers) {
+        let [start, end] = link.caps().map(name);
+        println!(
+            "{:4}  {:6.2}  {start:<5} {end:<5}  {:8.4}  {:8}  {}  {}",
+            answer.link,
+            link.radius(),
+            answer.distance,
+            answer.triangle,
+            place(answer.on_robot),
+            place(answer.on_mesh),
+        );
+    }
+}
+
+/// Times each engine and parry in turns, and prints them. Returns search (cold), exhaustive and parry.
+fn print_times(
+    mesh: &TriMesh,
+    chains: &[Chain],
+    base: &Pose,
+    search: &mut BvhSearch,
+    exhaustive: &mut Exhaustive<Real>,
+) -> Result<[Duration; 3], String> {
+    let chain = &chains[chains.len() - 1];
+    let before = &chains[chains.len().saturating_sub(2)];
+    let cylinders = timing::cylinders(chain);
+    let mut warm = BvhSearch::new(mesh).map_err(text)?;
+    let [mut a, mut b, mut c] = [Vec::new(), Vec::new(), Vec::new()];
+    let mut turn = false;
+    let medians = timing::medians::<String>(
+        &mut [
+            &mut || {
+                search.forget();
+                search.per_link(chain, base, &mut a).map_err(text)
+            },
+            &mut || {
+                turn = !turn;
+                warm.per_link(if turn { before } else { chain }, base, &mut b).map_err(text)
+            },
+            &mut || exhaustive.per_link(chain, base, &mut c).map_err(text),
+            &mut || timing::parry(mesh, &cylinders, base).map(drop).map_err(text),
+        ],
+        Duration::from_secs(1),
+    )?;
+    let [cold, warm, all, parry] = medians[..] else { return Err("a time is missing".into()) };
+    println!("\ntime per query of all {} links (median, taken in turns)", chain.links().len());
+    let row = |name: &str, time: Duration| {
+        println!("  {name:<46} {:>11.1} us   {:>8.2} x", time.as_secs_f64() * 1e6, ratio(parry, time));
+    };
+    row("parry distance(Cylinder, TriMesh), link by link", parry);
+    row("search, cold", cold);
+    row("search, warm from the step before", warm);
+    row("exhaustive, every triangle", all);
+    Ok([cold, all, parry])
+}
+
+fn ratio(of: Duration, to: Duration) -> f64 {
+    of.as_secs_f64() / to.as_secs_f64()
+}
+
+fn caption(
+    options: &Options,
+    mesh: &TriMesh,
+    chain: &Chain,
+    answers: &[LinkProximity],
+    [search, exhaustive, parry]: [Duration; 3],
+) -> figure::Caption {
+    let (one, many) = match options.model {
+        Model::Capsule => ("capsule", "capsules"),
+        Model::Cylinder => ("cylinder", "cylinders"),
+        Model::Modified => ("modified cylinder", "modified cylinders"),
+    };
+    let count = chain.links().len();
+    let links = format!("{count} {}", if count == 1 { one } else { many });
+    let mut notes = Vec::new();
+    if let Some(nearest) = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) {
+        notes.push(format!(
+            "closest: link {} and triangle {}, {:.3} mm apart",
+            nearest.link, nearest.triangle, nearest.distance
+        ));
+    }
+    notes.push(format!(
+        "all links: search {}, exhaustive {}, parry {}",
+        clock(search),
+        clock(exhaustive),
+        clock(parry)
+    ));
+    figure::Caption {
+        title: "A concentric tube robot in a brain ventricle".into(),
+        subtitle: format!("{links} against {} triangles", mesh.num_triangles()),
+        notes,
+    }
+}
+
+/// A time in the unit that suits it.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    let (value, unit) = match seconds {
+        s if s < 1e-3 => (s * 1e6, "us"),
+        s if s < 1.0 => (s * 1e3, "ms"),
+        s => (s, "s"),
+    };
+    if value < 10.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}

@@ -1,0 +1,94 @@
+//! A link in its own axial frame: where a point lies along the axis and how far from it.
+//!
+//! Every closed form of this folder is written in two coordinates: `z` along the unit axis from the start
+//! point and `rho` away from it. Two choices keep them accurate to the rounding of the problem's extent:
+//!
+//! 1. Coordinates are differences from the link's start point, so that a link far from the origin loses
+//!    nothing.
+//! 2. They are halved before they are subtracted and then scaled by a power of two, so that the largest is
+//!    about 1: nothing overflows, no square underflows that matters, and a problem multiplied by 2^k gives
+//!    the same bits.
+//! 3. The axis is normalised by its own power of two, so that a short link seen from far away keeps its
+//!    direction.
+
+use crate::ModifiedCylinder;
+use parry3d_f64::math::{Real, Vector};
+
+/// A power of two `down` and its inverse, such that `x * down` lies in [1, 2), or between 2^-52 and 1 for a
+/// subnormal `x`.
+///
+/// Both are normal numbers for every finite `x`, 0 included.
+pub(super) fn power_of_two(x: Real) -> (Real, Real) {
+    let exponent = ((x.to_bits() >> 52) & 0x7ff).clamp(1, 2045);
+    (Real::from_bits((2046 - exponent) << 52), Real::from_bits(exponent << 52))
+}
+
+/// The unit vector along `v`, or nothing when `v` is zero or not finite.
+pub(super) fn unit(v: Vector) -> Option<Vector> {
+    let largest = v.abs().max_element();
+    if !v.is_finite() || largest == 0.0 {
+        return None;
+    }
+    let v = v * power_of_two(largest).0;
+    Some(v / v.length())
+}
+
+/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is
+/// along the axis as far as rounding can tell.
+pub(super) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
+    let first = unit(v - axis * v.dot(axis))?;
+    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is
+    // far shorter then, and otherwise perpendicular to the last digit.
+    let second = first - axis * first.dot(axis);
+    let length = second.length();
+    (length > 0.5).then(|| second / length)
+}
+
+/// Some unit vector perpendicular to the unit vector `axis`.
+pub(super) fn perpendicular(axis: Vector) -> Vector {
+    axis.any_orthonormal_vector()
+}
+
+/// The unit axis of `link`; any unit vector for a ball.
+pub(super) fn axis_or_x(link: &ModifiedCylinder) -> Vector {
+    let axis = link.axis();
+    if axis == Vector::ZERO { Vector::X } else { axis }
+}
+
+/// A link, scaled and seen from its start point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axial {
+    /// Unit axis; any unit vector when the length is zero.
+    pub axis: Vector,
+    /// End point minus start point, in scaled units.
+    pub span: Vector,
+    /// Length of the axis, in scaled units.
+    pub length: Real,
+    /// Radius, in scaled units.
+    pub radius: Real,
+    up: Real,
+}
+
+impl Axial {
+    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing when
+    /// `point` is not finite.
+    pub fn around(link: &ModifiedCylinder, point: Vector) -> Option<(Self, Vector)> {
+        if !point.is_finite() {
+            return None;
+        }
+        let from_start = 0.5 * point - 0.5 * link.start();
+        let span = 0.5 * link.end() - 0.5 * link.start();
+        let radius = 0.5 * link.radius();
+        let largest = from_start.abs().max_element().max(span.abs().max_element()).max(radius);
+        let (down, up) = power_of_two(largest);
+        let axis = axis_or_x(link);
+        let span = span * down;
+        let frame = Self { axis, span, length: span.dot(axis), radius: radius * down, up };
+        Some((frame, from_start * down))
+    }
+
+    /// A length or an offset of the frame in the caller's unit.
+    pub fn restore<T: std::ops::Mul<Real, Output = T>>(&self, scaled: T) -> T {
+        scaled * self.up * 2.0
+    }
+}

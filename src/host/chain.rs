@@ -1,0 +1,197 @@
+//! The chain as one of parry's composite shapes: its parts are its links.
+//!
+//! Neighbouring links overlap, and what a query means then depends on the side it comes from. **From
+//! outside** the chain is the union of its links: the closest point and the first hit of the union are the
+//! best over the links, so they are exact. **From inside** queries see the links one by one, like those of
+//! parry's `Compound`: a hollow ray stops at the next surface of any link, a point is projected to the
+//! nearest surface of any link, also where that surface lies within another link. So the depth of a point
+//! inside is never overstated. Whether a point is inside is exact everywhere.
+
+use crate::{Chain, ModifiedCylinder};
+use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
+use parry3d_f64::mass_properties::MassProperties;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::partitioning::Bvh;
+use parry3d_f64::query::details::NormalConstraints;
+use parry3d_f64::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
+use parry3d_f64::shape::{
+    CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, SubShapeId, TypedCompositeShape,
+    TypedShape,
+};
+use std::f64::consts::FRAC_PI_2;
+
+/// A composite custom shape; part i is link i.
+impl Shape for Chain {
+    fn compute_local_aabb(&self) -> Aabb {
+        self.local_aabb()
+    }
+
+    /// Around the middle of the chain's box, reaching to the farthest of the balls around its links.
+    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
+        let center = self.local_aabb().center();
+        let reach = |link: &ModifiedCylinder| {
+            let ball = link.compute_local_bounding_sphere();
+            (ball.center - center).length() + ball.radius
+        };
+        BoundingSphere::new(center, self.links().iter().map(reach).fold(0.0, Real::max))
+    }
+
+    fn clone_dyn(&self) -> Box<dyn Shape> {
+        Box::new(self.clone())
+    }
+
+    /// The chain of the scaled links, if every link has one: see the link's `scale_dyn`.
+    fn scale_dyn(&self, scale: Vector, num_subdivisions: u32) -> Option<Box<dyn Shape>> {
+        let image = self.try_map(|link| link.scale_dyn(scale, num_subdivisions)?.as_shape().copied())?;
+        Some(Box::new(image))
+    }
+
+    fn compute_aabb(&self, position: &Pose) -> Aabb {
+        let boxes = self.links().iter().map(|link| link.aabb(position));
+        boxes.reduce(|all, one| all.merged(&one)).unwrap_or_else(Aabb::new_invalid)
+    }
+
+    /// The sum over the links, so that what two links share counts twice: for a tube, about the half balls
+    /// and wedges at its joints.
+    fn mass_properties(&self, density: Real) -> MassProperties {
+        self.links().iter().map(|link| link.mass_properties(density)).sum()
+    }
+
+    fn shape_type(&self) -> ShapeType {
+        ShapeType::Custom
+    }
+
+    fn as_typed_shape(&self) -> TypedShape<'_> {
+        TypedShape::Custom(self)
+    }
+
+    fn ccd_thickness(&self) -> Real {
+        self.links().iter().map(Shape::ccd_thickness).fold(Real::INFINITY, Real::min)
+    }
+
+    fn ccd_angular_thickness(&self) -> Real {
+        FRAC_PI_2
+    }
+
+    fn as_composite_shape(&self) -> Option<&(dyn CompositeShape + Sync)> {
+        Some(self)
+    }
+
+    fn feature_normal_at_point(
+        &self,
+        subshape: SubShapeId,
+        feature: FeatureId,
+        point: Vector,
+    ) -> Option<Vector> {
+        self.links().get(subshape as usize)?.feature_normal_at_point(0, feature, point)
+    }
+}
+
+impl CompositeShape for Chain {
+    fn map_part_at(
+        &self,
+        shape_id: u32,
+        f: &mut dyn FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>),
+    ) {
+        if let Some(link) = self.links().get(shape_id as usize) {
+            f(None, link, None);
+        }
+    }
+
+    fn bvh(&self) -> &Bvh {
+        Chain::bvh(self)
+    }
+}
+
+impl TypedCompositeShape for Chain {
+    type PartShape = ModifiedCylinder;
+    type PartNormalConstraints = ();
+
+    fn map_typed_part_at<T>(
+        &self,
+        shape_id: u32,
+        mut f: impl FnMut(Option<&Pose>, &ModifiedCylinder, Option<&()>) -> T,
+    ) -> Option<T> {
+        self.links().get(shape_id as usize).map(|link| f(None, link, None))
+    }
+
+    fn map_untyped_part_at<T>(
+        &self,
+        shape_id: u32,
+        mut f: impl FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>) -> T,
+    ) -> Option<T> {
+        self.links().get(shape_id as usize).map(|link| f(None, link, None))
+    }
+}
+
+/// The link whose surface, or whose solid, is nearest to a point.
+struct NearestLink {
+    link: usize,
+    /// Not negative.
+    distance: Real,
+    /// Whether any link holds the point.
+    is_inside: bool,
+}
+
+/// Nothing when `point` is not finite.
+fn nearest_link(chain: &Chain, point: Vector, solid: bool) -> Option<NearestLink> {
+    let (mut nearest, mut is_inside) = (None, false);
+    for (link, shape) in chain.links().iter().enumerate() {
+        let signed = shape.distance_to_local_point(point, false);
+        let distance = if solid { signed.max(0.0) } else { signed.abs() };
+        is_inside |= signed <= 0.0;
+        if nearest.is_none_or(|(_, best)| distance < best) {
+            nearest = Some((link, distance));
+        }
+    }
+    let (link, distance) = nearest.filter(|_| point.is_finite())?;
+    Some(NearestLink { link, distance, is_inside })
+}
+
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a projection is
+/// its link.
+impl PointQuery for Chain {
+    fn project_local_point(&self, pt: Vector, solid: bool) -> PointProjection {
+        let Some(nearest) = nearest_link(self, pt, solid) else { return PointProjection::new(false, pt) };
+        let mut projection = self.links()[nearest.link].project_local_point(pt, solid);
+        projection.is_inside = nearest.is_inside;
+        projection.with_subshape(nearest.link as u32)
+    }
+
+    fn project_local_point_and_get_feature(&self, pt: Vector) -> (PointProjection, FeatureId) {
+        let Some(nearest) = nearest_link(self, pt, false) else {
+            return (PointProjection::new(false, pt), FeatureId::Unknown);
+        };
+        let (mut projection, feature) = self.links()[nearest.link].project_local_point_and_get_feature(pt);
+        projection.is_inside = nearest.is_inside;
+        (projection.with_subshape(nearest.link as u32), feature)
+    }
+
+    fn distance_to_local_point(&self, pt: Vector, solid: bool) -> Real {
+        match nearest_link(self, pt, solid) {
+            Some(nearest) if nearest.is_inside => 0.0 - nearest.distance,
+            Some(nearest) => nearest.distance,
+            None => pt.length(),
+        }
+    }
+
+    fn contains_local_point(&self, pt: Vector) -> bool {
+        self.links().iter().any(|link| link.contains_local_point(pt))
+    }
+}
+
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a hit is its
+/// link.
+impl RayCast for Chain {
+    fn cast_local_ray_and_get_normal(
+        &self,
+        ray: &Ray,
+        max_time_of_impact: Real,
+        solid: bool,
+    ) -> Option<RayIntersection> {
+        // The search wants hits strictly before its bound.
+        let bound = max_time_of_impact.next_up();
+        let hit = CompositeShapeRef(self).cast_local_ray_and_get_normal(ray, bound, solid);
+        hit.map(|(link, hit)| hit.with_subshape(link))
+    }
+}

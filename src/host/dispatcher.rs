@@ -1,0 +1,322 @@
+//! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
+
+use super::field::{self, FieldPair};
+use super::parts::{Parts, has_parts};
+use super::robot_pair::{RobotPair, links_of};
+use super::watched::Watched;
+use crate::robot::COORDINATE_LIMIT;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{
+    ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
+    ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
+};
+use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+
+/// Answers parry's queries for links and chains, and passes the rest to `L`.
+///
+/// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers,
+/// because parry's own dispatcher never comes back from within a composite shape. Put yours in as `L`.
+///
+/// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
+/// |---|---|
+/// | `distance`, `closest_points`, `intersection_test` | exact |
+/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not promised to be the shortest |
+/// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
+/// | contact manifolds | parry's, on polygons that stand for the link's surface |
+///
+/// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
+/// `Intersecting`, and a margin is kept only by what is further away than it.
+///
+/// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
+/// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about
+/// pairs that cannot be taken apart. The sub-shape ids of an answer name the link, the triangle or the part
+/// on either side.
+///
+/// # Errors
+/// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
+/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN,
+/// and for the queries that parry has not got for voxels.
+///
+/// ```
+/// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
+/// use parry_continuum::parry::{math::{Pose, Vector}, query::QueryDispatcher, shape::Triangle};
+///
+/// let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z, 0.5)?;
+/// let wall = Triangle::new(Vector::new(2.0, -9.0, -9.0), Vector::new(2.0, 9.0, -9.0), Vector::new(2.0, 0.0, 9.0));
+/// let apart = ContinuumDispatcher::default().distance(&Pose::IDENTITY, &link, &wall)?;
+/// assert_eq!(apart.distance, 1.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ContinuumDispatcher<L = DefaultQueryDispatcher>(pub L);
+
+impl Default for ContinuumDispatcher {
+    fn default() -> Self {
+        Self(DefaultQueryDispatcher)
+    }
+}
+
+impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        check_pose(pos12)?;
+        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.intersection_test();
+        }
+        // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
+        if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
+            return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
+        }
+        if let (true, Some(ball)) = (has_parts(g1), g2.as_ball()) {
+            return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
+        }
+        match Parts::of(g1, g2) {
+            Parts::Composite(parts) => Watched::ask(self, |watched| {
+                details::intersection_test_composite_shape_shape(watched, pos12, parts, g2)
+            }),
+            Parts::Field(field) => {
+                FieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
+            }
+            Parts::Voxels(voxels) => field::intersection_test_voxels(self, pos12, voxels, g2),
+            Parts::OfSecond => {
+                self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
+            }
+            Parts::None => self.0.intersection_test(pos12, g1, g2),
+        }
+    }
+
+    fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+        check_pose(pos12)?;
+        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.distance();
+        }
+        match Parts::of(g1, g2) {
+            Parts::Composite(parts) => {
+                let answer = Watched::ask(self, |watched| {
+                    details::distance_composite_shape_shape(watched, pos12, parts, g2)
+                })?;
+                // What parry says where no part was near enough to be looked at.
+                if answer.distance < Real::MAX { Ok(answer) } else { Err(Unsupported) }
+            }
+            Parts::Field(field) => FieldPair { dispatcher: self, field, pos12, other: g2 }.distance(),
+            Parts::Voxels(_) => Err(Unsupported),
+            Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
+            Parts::None => self.0.distance(pos12, g1, g2),
+        }
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        check_pose(pos12)?;
+        check_margin(prediction)?;
+        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.contact(prediction);
+        }
+        match Parts::of(g1, g2) {
+            // A negative prediction asks for an overlap; parry's composites want it positive.
+            Parts::Composite(parts) => Watched::ask(self, |watched| {
+                details::contact_composite_shape_shape(watched, pos12, parts, g2, prediction.max(0.0))
+            })
+            .map(|contact| contact.filter(|contact| contact.dist <= prediction)),
+            Parts::Field(field) => {
+                FieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
+            }
+            Parts::Voxels(_) => Err(Unsupported),
+            Parts::OfSecond => {
+                let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
+                Ok(contact.map(Contact::flipped))
+            }
+            Parts::None => self.0.contact(pos12, g1, g2, prediction),
+        }
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        check_pose(pos12)?;
+        check_margin(max_dist)?;
+        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.closest_points(max_dist);
+        }
+        match Parts::of(g1, g2) {
+            Parts::Composite(parts) => Watched::ask(self, |watched| {
+                // The search wants parts strictly nearer than its bound.
+                let bound = max_dist.max(0.0).next_up();
+                details::closest_points_composite_shape_shape(watched, pos12, parts, g2, bound)
+            }),
+            Parts::Field(field) => {
+                FieldPair { dispatcher: self, field, pos12, other: g2 }.closest_points(max_dist)
+            }
+            Parts::Voxels(_) => Err(Unsupported),
+            Parts::OfSecond => {
+                self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
+            }
+            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist),
+        }
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        check_pose(pos12)?;
+        check_margin(options.max_time_of_impact)?;
+        check_margin(options.target_distance)?;
+        if !local_vel12.is_finite() {
+            return Err(Unsupported);
+        }
+        match Parts::of(g1, g2) {
+            Parts::Composite(parts) => Watched::ask(self, |watched| {
+                details::cast_shapes_composite_shape_shape(watched, pos12, local_vel12, parts, g2, options)
+            }),
+            Parts::Field(field) => {
+                FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
+            }
+            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
+                details::cast_shapes_voxels_shape(watched, pos12, local_vel12, voxels, g2, options)
+            }),
+            Parts::OfSecond => {
+                let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
+                let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
+                Ok(hit.map(ShapeCastHit::swapped))
+            }
+            Parts::None => match as_link_and_triangle(g1, g2)? {
+                Some((s1, s2)) => {
+                    let hit =
+                        details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
+                    Ok(hit)
+                }
+                None => self.0.cast_shapes(pos12, local_vel12, g1, g2, options),
+            },
+        }
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        for motion in [motion1, motion2] {
+            check_pose(&motion.position_at_time(start_time))?;
+            check_pose(&motion.position_at_time(end_time))?;
+        }
+        match Parts::of(g1, g2) {
+            Parts::Composite(parts) => Watched::ask(self, |watched| {
+                details::cast_shapes_nonlinear_composite_shape_shape(
+                    watched,
+                    motion1,
+                    parts,
+                    motion2,
+                    g2,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )
+            }),
+            Parts::Field(field) => field::cast_nonlinear(
+                self,
+                (motion1, field),
+                (motion2, g2),
+                (start_time, end_time),
+                stop_at_penetration,
+            ),
+            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
+                details::cast_shapes_nonlinear_voxels_shape(
+                    watched,
+                    motion1,
+                    voxels,
+                    motion2,
+                    g2,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )
+            }),
+            Parts::OfSecond => {
+                let hit = self.cast_shapes_nonlinear(
+                    motion2,
+                    g2,
+                    motion1,
+                    g1,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )?;
+                Ok(hit.map(ShapeCastHit::swapped))
+            }
+            Parts::None => match as_link_and_triangle(g1, g2)? {
+                Some((s1, s2)) => Watched::ask(self, |watched| {
+                    let mode = if stop_at_penetration {
+                        details::NonlinearShapeCastMode::StopAtPenetration
+                    } else {
+                        details::NonlinearShapeCastMode::directional_toi(g1, g2)
+                    };
+                    details::cast_shapes_nonlinear_support_map_support_map(
+                        watched, motion1, s1, g1, motion2, s2, g2, start_time, end_time, mode,
+                    )
+                }),
+                None => self.0.cast_shapes_nonlinear(
+                    motion1,
+                    g1,
+                    motion2,
+                    g2,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                ),
+            },
+        }
+    }
+}
+
+/// A pose that every shape can be moved by.
+pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
+    let largest = pose.translation.abs().max_element();
+    if pose.is_finite() && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
+}
+
+/// A number that distances or times can be compared with.
+pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
+    if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
+}
+
+/// The support maps of a link and a triangle in either order, if the shapes are that; refused if the triangle
+/// is not finite.
+pub(super) fn as_link_and_triangle<'a>(
+    g1: &'a dyn Shape,
+    g2: &'a dyn Shape,
+) -> Result<Option<(&'a dyn SupportMap, &'a dyn SupportMap)>, Unsupported> {
+    let is_finite = |triangle: &Triangle| triangle.vertices().iter().all(|vertex| vertex.is_finite());
+    let triangle = match (links_of(g1), links_of(g2)) {
+        (Some(_), None) => g2.as_triangle(),
+        (None, Some(_)) => g1.as_triangle(),
+        _ => None,
+    };
+    match triangle {
+        Some(triangle) if !is_finite(triangle) => Err(Unsupported),
+        Some(_) => Ok(g1.as_support_map().zip(g2.as_support_map())),
+        None => Ok(None),
+    }
+}

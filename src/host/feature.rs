@@ -1,0 +1,38 @@
+//! The pieces of a link's surface: their names, as every query reports them, and their normals.
+
+use super::axial::{Axial, unit, unit_across};
+use crate::{Cap, ModifiedCylinder};
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::FeatureId;
+
+/// The barrel: the points at one radius from the inside of the axis.
+pub(super) const BARREL: FeatureId = FeatureId::Face(0);
+/// The start and the end cap, a disc or a half ball.
+pub(super) const CAP: [FeatureId; 2] = [FeatureId::Face(1), FeatureId::Face(2)];
+/// The circle around a flat start or end.
+pub(super) const RIM: [FeatureId; 2] = [FeatureId::Edge(0), FeatureId::Edge(1)];
+/// The edge that stands for the barrel in the polygonal features.
+pub(super) const BARREL_LINE: u32 = 2;
+/// The first of the eight vertices and edges of the squares that stand for flat caps there.
+pub(super) const SQUARE: u32 = 3;
+
+/// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces that meet
+/// there. Nothing for a feature that the link does not have, and where there is no normal (on a wire).
+pub(super) fn normal(link: &ModifiedCylinder, feature: FeatureId, point: Vector) -> Option<Vector> {
+    let (frame, from_start) = Axial::around(link, point)?;
+    let lateral = || unit_across(from_start, frame.axis);
+    if feature == BARREL {
+        return lateral();
+    }
+    let centres = [from_start, from_start - frame.span];
+    let outwards = [-frame.axis, frame.axis];
+    for end in 0..2 {
+        match link.caps()[end] {
+            Cap::Flat if feature == CAP[end] => return Some(outwards[end]),
+            Cap::Flat if feature == RIM[end] => return unit(lateral()? + outwards[end]),
+            Cap::Round if feature == CAP[end] => return unit(centres[end]),
+            _ => {}
+        }
+    }
+    None
+}

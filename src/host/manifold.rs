@@ -1,0 +1,140 @@
+//! Contact manifolds: parry's own, led through this crate's dispatcher.
+//!
+//! A pair is taken apart as everywhere in this folder, by parry's routines for the shapes that it knows,
+//! because they keep the manifolds of a pair from one step to the next. What is left, a link against a
+//! triangle or another convex shape, is answered by `L`: parry clips the polygons that stand for the link's
+//! surface.
+
+use super::dispatcher::{ContinuumDispatcher, as_link_and_triangle, check_margin, check_pose};
+use super::watched::Watched;
+use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::query::details::{self, NormalConstraints};
+use parry3d_f64::query::{
+    ContactManifold, ContactManifoldsWorkspace, PersistentQueryDispatcher, Unsupported,
+};
+use parry3d_f64::shape::{Shape, ShapeType};
+
+impl<M, C, L> PersistentQueryDispatcher<M, C> for ContinuumDispatcher<L>
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+    L: PersistentQueryDispatcher<M, C>,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        check_pose(pos12)?;
+        check_margin(prediction)?;
+        // parry loosens boxes by the prediction, and wants it positive.
+        let prediction = prediction.max(0.0);
+        let pos21 = pos12.inverse();
+        let parts = (g1.as_composite_shape(), g2.as_composite_shape());
+        let fields = (g1.as_heightfield(), g2.as_heightfield());
+        let is_either = |kind| g1.shape_type() == kind || g2.shape_type() == kind;
+        Watched::ask(self, |watched| {
+            match (parts, fields) {
+                ((Some(parts1), Some(parts2)), _) => {
+                    details::contact_manifolds_composite_shape_composite_shape(
+                        watched, pos12, parts1, parts2, prediction, manifolds, workspace,
+                    );
+                }
+                ((_, Some(parts2)), (Some(field1), _)) => {
+                    details::contact_manifolds_heightfield_composite_shape(
+                        watched, pos12, &pos21, field1, parts2, prediction, manifolds, workspace, false,
+                    );
+                }
+                ((Some(parts1), _), (_, Some(field2))) => {
+                    details::contact_manifolds_heightfield_composite_shape(
+                        watched, &pos21, pos12, field2, parts1, prediction, manifolds, workspace, true,
+                    );
+                }
+                (_, (Some(_), _) | (_, Some(_))) => details::contact_manifolds_heightfield_shape_shapes(
+                    watched, pos12, g1, g2, prediction, manifolds, workspace,
+                ),
+                _ if is_either(ShapeType::TriMesh) => details::contact_manifolds_trimesh_shape_shapes(
+                    watched, pos12, g1, g2, prediction, manifolds, workspace,
+                ),
+                _ if is_either(ShapeType::Voxels) => {
+                    voxels(watched, pos12, g1, g2, prediction, manifolds, workspace);
+                }
+                ((Some(parts1), _), _) => details::contact_manifolds_composite_shape_shape(
+                    watched, pos12, parts1, g2, prediction, manifolds, workspace, false,
+                ),
+                ((_, Some(parts2)), _) => details::contact_manifolds_composite_shape_shape(
+                    watched, &pos21, parts2, g1, prediction, manifolds, workspace, true,
+                ),
+                ((None, None), _) => {
+                    if manifolds.is_empty() {
+                        manifolds.push(ContactManifold::new());
+                    }
+                    let manifold = &mut manifolds[0];
+                    return self
+                        .contact_manifold_convex_convex(pos12, g1, g2, None, None, prediction, manifold);
+                }
+            }
+            Ok(())
+        })?
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        check_pose(pos12)?;
+        check_margin(prediction)?;
+        // Refuses a triangle that is not finite.
+        as_link_and_triangle(g1, g2)?;
+        self.0.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            normal_constraints1,
+            normal_constraints2,
+            prediction,
+            manifold,
+        )
+    }
+}
+
+/// The routines that parry has for voxels.
+fn voxels<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let has_parts = |shape: &dyn Shape| shape.as_composite_shape().is_some();
+    if g1.as_voxels().is_some() && g2.as_voxels().is_some() {
+        details::contact_manifolds_voxels_voxels_shapes(
+            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
+        );
+    } else if g1.as_ball().is_some() || g2.as_ball().is_some() {
+        details::contact_manifolds_voxels_ball_shapes(pos12, g1, g2, prediction, manifolds);
+    } else if has_parts(g1) || has_parts(g2) {
+        details::contact_manifolds_voxels_composite_shape_shapes(
+            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
+        );
+    } else {
+        details::contact_manifolds_voxels_shape_shapes(
+            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
+        );
+    }
+}

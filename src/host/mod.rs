@@ -1,0 +1,20 @@
+//! What parry and rapier see: links and chains as shapes with exact point and ray queries, and the dispatcher
+//! that answers for pairs of shapes.
+
+mod axial;
+mod chain;
+mod dispatcher;
+mod feature;
+mod field;
+mod link_contact;
+mod manifold;
+mod mass;
+mod parts;
+mod point;
+mod ray;
+mod robot_pair;
+mod shape;
+mod support_map;
+mod watched;
+
+pub use dispatcher::ContinuumDispatcher;

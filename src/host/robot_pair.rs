@@ -1,0 +1,260 @@
+//! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers exactly.
+//!
+//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays
+//! where it is and the robot is moved into its frame. Answers go back to the frames of the two shapes at the
+//! end.
+
+use super::link_contact::{self, LinkContact};
+use crate::distance::{Scalar, Vec3, triangle_modified_cylinder};
+use crate::proximity::{Found, Probe, Until, search};
+use crate::robot::COORDINATE_LIMIT;
+use crate::{Cap, Chain, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
+use parry3d_f64::shape::{Shape, TriMesh, Triangle};
+
+/// The links of a robot, be it a chain or a single link.
+pub(super) fn links_of(shape: &dyn Shape) -> Option<&[ModifiedCylinder]> {
+    let link = shape.as_shape::<ModifiedCylinder>().map(std::slice::from_ref);
+    link.or_else(|| shape.as_shape::<Chain>().map(Chain::links))
+}
+
+#[derive(Clone, Copy)]
+enum Surface<'a> {
+    Triangle(&'a Triangle),
+    Mesh(&'a TriMesh),
+}
+
+impl<'a> Surface<'a> {
+    fn of(shape: &'a dyn Shape) -> Option<Self> {
+        shape.as_triangle().map(Self::Triangle).or_else(|| shape.as_trimesh().map(Self::Mesh))
+    }
+}
+
+/// A robot and a surface, in either order.
+pub(super) struct RobotPair<'a> {
+    links: &'a [ModifiedCylinder],
+    surface: Surface<'a>,
+    pos12: &'a Pose,
+    robot_is_first: bool,
+}
+
+/// The closest points of a robot and a surface, in the frame that the pair is measured in.
+struct Nearest {
+    link: usize,
+    triangle: u32,
+    distance: Real,
+    on_robot: Vector,
+    on_surface: Vector,
+}
+
+impl<'a> RobotPair<'a> {
+    /// The pair, if the shapes are one.
+    pub fn of(pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
+        let pair = |robot, surface, robot_is_first| {
+            Some(Self { links: links_of(robot)?, surface: Surface::of(surface)?, pos12, robot_is_first })
+        };
+        pair(g1, g2, true).or_else(|| pair(g2, g1, false))
+    }
+
+    pub fn distance(&self) -> Result<ShapeDistance, Unsupported> {
+        let nearest = self.nearest(Real::INFINITY, Until::Nearest)?.ok_or(Unsupported)?;
+        let (subshape1, subshape2) = self.subshapes(nearest.link, nearest.triangle);
+        Ok(ShapeDistance::new(nearest.distance).with_subshapes(subshape1, subshape2))
+    }
+
+    pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
+        Ok(match self.nearest(0.0, Until::FirstWithinBound)? {
+            Some(touching) => {
+                let (subshape1, subshape2) = self.subshapes(touching.link, touching.triangle);
+                ShapeIntersection::new(true).with_subshapes(subshape1, subshape2)
+            }
+            None => ShapeIntersection::new(false),
+        })
+    }
+
+    pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
+        Ok(match self.nearest(within(max_dist)?, Until::Nearest)? {
+            None => ClosestPoints::Disjoint,
+            Some(nearest) if nearest.distance > 0.0 => {
+                let (point1, point2) = self.points(nearest.on_robot, nearest.on_surface);
+                ClosestPoints::WithinMargin(point1, point2)
+            }
+            Some(_) => ClosestPoints::Intersecting,
+        })
+    }
+
+    pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
+        let Some(nearest) = self.nearest(within(prediction)?, Until::Nearest)? else { return Ok(None) };
+        let mut best = (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
+        if nearest.distance <= 0.0 {
+            // They overlap in more places than the search has to look at; the deepest counts.
+            for link in 0..self.links.len() {
+                for triangle in self.triangles_near(link) {
+                    let contact = self.contact_of(link, triangle)?;
+                    if contact.distance < best.0.distance {
+                        best = (contact, link, triangle);
+                    }
+                }
+            }
+        }
+        let (contact, link, triangle) = best;
+        let (subshape1, subshape2) = self.subshapes(link, triangle);
+        let report = || self.report(&contact).with_subshapes(subshape1, subshape2);
+        Ok((contact.distance <= prediction).then(report))
+    }
+
+    /// The closest link and triangle at most `margin` apart.
+    fn nearest(&self, margin: Real, until: Until) -> Result<Option<Nearest>, Unsupported> {
+        match self.surface {
+            Surface::Triangle(_) => self.nearest_to_triangle(margin),
+            Surface::Mesh(mesh) => self.nearest_in_mesh(mesh, margin, until),
+        }
+    }
+
+    fn nearest_to_triangle(&self, margin: Real) -> Result<Option<Nearest>, Unsupported> {
+        let triangle = self.triangle(0)?;
+        let mut best: Option<Nearest> = None;
+        for (index, link) in self.links.iter().enumerate() {
+            let link = self.placed(link)?;
+            let flat = link.caps().map(|cap| cap == Cap::Flat);
+            let (start, end) = (to_vec3(link.start()), to_vec3(link.end()));
+            let closest = triangle_modified_cylinder(triangle.map(to_vec3), start, end, link.radius(), flat);
+            let is_nearer = best.as_ref().is_none_or(|best| closest.distance < best.distance);
+            if closest.distance <= margin && is_nearer {
+                best = Some(Nearest {
+                    link: index,
+                    triangle: 0,
+                    distance: closest.distance,
+                    on_robot: Vector::from_array(closest.point2.into()),
+                    on_surface: Vector::from_array(closest.point1.into()),
+                });
+            }
+        }
+        Ok(best)
+    }
+
+    fn nearest_in_mesh(
+        &self,
+        mesh: &TriMesh,
+        margin: Real,
+        until: Until,
+    ) -> Result<Option<Nearest>, Unsupported> {
+        let (bounds, pose) = (mesh.bvh().root_aabb(), self.robot_pose());
+        let mut reach = in_range(bounds.mins)?.max(in_range(bounds.maxs)?);
+        for link in self.links {
+            let link = self.placed(link)?;
+            reach = reach.max(in_range(link.start())?).max(in_range(link.end())?).max(link.radius());
+        }
+        let scale = reach.power_of_two_to_unity();
+
+        let mut best: Option<(usize, Probe, Found)> = None;
+        for (index, link) in self.links.iter().enumerate() {
+            let probe = Probe::new(link, &pose, scale);
+            // The search wants triangles strictly nearer than its bound. All probes have the same scale.
+            let bound = match &best {
+                Some((_, _, found)) => found.closest.distance,
+                None => probe.scaled(margin).next_up(),
+            };
+            if let Some(found) = search(mesh, &probe, bound, until).map_err(|_| Unsupported)? {
+                best = Some((index, probe, found));
+                if until == Until::FirstWithinBound {
+                    break;
+                }
+            }
+        }
+        Ok(best.map(|(link, probe, found)| {
+            let answer = probe.report(link, &found);
+            Nearest {
+                link,
+                triangle: answer.triangle,
+                distance: answer.distance,
+                on_robot: answer.on_robot,
+                on_surface: answer.on_mesh,
+            }
+        }))
+    }
+
+    fn contact_of(&self, link: usize, triangle: u32) -> Result<LinkContact, Unsupported> {
+        link_contact::contact(&self.placed(&self.links[link])?, self.triangle(triangle)?).ok_or(Unsupported)
+    }
+
+    /// The triangles whose boxes meet the link's.
+    fn triangles_near(&self, link: usize) -> Vec<u32> {
+        match self.surface {
+            Surface::Triangle(_) => vec![0],
+            Surface::Mesh(mesh) => {
+                mesh.bvh().intersect_aabb(&self.links[link].aabb(&self.robot_pose())).collect()
+            }
+        }
+    }
+
+    /// The robot's pose in the frame that the pair is measured in.
+    fn robot_pose(&self) -> Pose {
+        match (self.surface, self.robot_is_first) {
+            (_, false) => *self.pos12,
+            (Surface::Triangle(_), true) => Pose::IDENTITY,
+            (Surface::Mesh(_), true) => self.pos12.inverse(),
+        }
+    }
+
+    /// A link in the frame that the pair is measured in.
+    fn placed(&self, link: &ModifiedCylinder) -> Result<ModifiedCylinder, Unsupported> {
+        let placed = link.transformed(&self.robot_pose());
+        in_range(placed.start()).and(in_range(placed.end())).map(|_| placed)
+    }
+
+    /// A triangle in the frame that the pair is measured in.
+    fn triangle(&self, index: u32) -> Result<[Vector; 3], Unsupported> {
+        let vertices = match self.surface {
+            Surface::Triangle(triangle) if self.robot_is_first => triangle.transformed(self.pos12),
+            Surface::Triangle(triangle) => *triangle,
+            Surface::Mesh(mesh) => mesh.triangle(index),
+        };
+        let [a, b, c] = [vertices.a, vertices.b, vertices.c];
+        in_range(a).and(in_range(b)).and(in_range(c)).map(|_| [a, b, c])
+    }
+
+    /// The sub-shapes of the first and the second shape. A lone link or triangle is sub-shape 0.
+    fn subshapes(&self, link: usize, triangle: u32) -> (u32, u32) {
+        let link = link as u32;
+        if self.robot_is_first { (link, triangle) } else { (triangle, link) }
+    }
+
+    /// A point of each in the frame of the shape that it belongs to, the first shape's first.
+    fn points(&self, on_robot: Vector, on_surface: Vector) -> (Vector, Vector) {
+        match (self.surface, self.robot_is_first) {
+            (Surface::Triangle(_), true) => (on_robot, self.pos12.inverse_transform_point(on_surface)),
+            (Surface::Mesh(_), true) => (self.pos12 * on_robot, on_surface),
+            (_, false) => (on_surface, self.pos12.inverse_transform_point(on_robot)),
+        }
+    }
+
+    fn report(&self, contact: &LinkContact) -> Contact {
+        let (point1, point2) = self.points(contact.on_link, contact.on_triangle);
+        // Out of the first shape, in the frame that the pair is measured in.
+        let outward = if self.robot_is_first { contact.normal } else { -contact.normal };
+        let rotation = self.pos12.rotation;
+        let (normal1, normal2) = match (self.surface, self.robot_is_first) {
+            (Surface::Mesh(_), true) => (rotation * outward, -outward),
+            _ => (outward, rotation.inverse() * -outward),
+        };
+        Contact::new(point1, point2, normal1, normal2, contact.distance)
+    }
+}
+
+/// How far to look for something at most `margin` away, a negative margin asking for overlap.
+fn within(margin: Real) -> Result<Real, Unsupported> {
+    if margin.is_nan() { Err(Unsupported) } else { Ok(margin.max(0.0)) }
+}
+
+/// The largest coordinate, if all are within the range that is answered.
+fn in_range(point: Vector) -> Result<Real, Unsupported> {
+    let largest = point.abs().max_element();
+    // Written so that NaN is out of range too.
+    if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
+}
+
+fn to_vec3(vector: Vector) -> Vec3<f64> {
+    Vec3::from(vector.to_array())
+}

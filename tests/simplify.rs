@@ -1,0 +1,365 @@
+//! `simplify` returns the fewest links that stay within the tolerance.
+//!
+//! The judge of what stays within it is a dense sampling of both curves, in both directions; the judge of what is
+//! fewest tries every subset of the vertices.
+
+use parry_continuum::parry::math::{Real, Vector};
+use parry_continuum::{Chain, RobotError, simplify};
+
+/// A small seeded generator (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn unit(&mut self) -> Real {
+        (self.bits() >> 11) as Real / Real::powi(2.0, 53)
+    }
+
+    fn within(&mut self, low: Real, high: Real) -> Real {
+        low + (high - low) * self.unit()
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    fn vector(&mut self, size: Real) -> Vector {
+        Vector::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
+    }
+}
+
+const SAMPLES: usize = 64;
+
+fn sample(polyline: &[Vector]) -> Vec<Vector> {
+    let on_segment = |ends: &[Vector]| {
+        let (a, b) = (ends[0], ends[1]);
+        (0..=SAMPLES).map(move |i| a.lerp(b, i as Real / SAMPLES as Real))
+    };
+    polyline.windows(2).flat_map(on_segment).collect()
+}
+
+fn distance_to(polyline: &[Vector], p: Vector) -> Real {
+    let to_segment = |ends: &[Vector]| {
+        let (w, e) = (p - ends[0], ends[1] - ends[0]);
+        let t = (w.dot(e) / e.dot(e)).clamp(0.0, 1.0);
+        (w - e * t).length()
+    };
+    polyline.windows(2).map(to_segment).fold(Real::INFINITY, Real::min)
+}
+
+/// The Hausdorff distance, too small by at most half a sampling step.
+fn hausdorff(a: &[Vector], b: &[Vector]) -> Real {
+    let one_way =
+        |a: &[Vector], b: &[Vector]| sample(a).iter().map(|&p| distance_to(b, p)).fold(0.0, Real::max);
+    one_way(a, b).max(one_way(b, a))
+}
+
+/// The fewest links over every subset, or None if a chord is too near the tolerance for sampling to tell.
+fn brute_force(points: &[Vector], radii: &[Real], tolerance: Real, seen: &mut Seen) -> Option<usize> {
+    let n = points.len();
+    let mut admissible = vec![vec![true; n]; n];
+    for from in 0..n {
+        for to in from + 2..n {
+            let (stretch, chord) = (&points[from..=to], [points[from], points[to]]);
+            let longest = points.windows(2).chain([&chord[..]]).map(|ends| (ends[1] - ends[0]).length());
+            let margin = longest.fold(0.0, Real::max) / (2 * SAMPLES) as Real;
+            let distance = hausdorff(stretch, &chord);
+            if (distance..=distance + margin).contains(&tolerance) {
+                return None;
+            }
+            admissible[from][to] = distance < tolerance;
+        }
+    }
+    let fixed = |k: usize| k == 0 || k == n - 1 || radii[k - 1] != radii[k];
+    let mut fewest = n;
+    for subset in 0_u32..1 << n {
+        let kept: Vec<_> = (0..n).filter(|k| subset >> k & 1 == 1).collect();
+        let keeps_all_fixed = (0..n).all(|k| !fixed(k) || kept.contains(&k));
+        if keeps_all_fixed && kept.windows(2).all(|ends| admissible[ends[0]][ends[1]]) {
+            fewest = fewest.min(kept.len() - 1);
+        }
+    }
+    seen.record(&admissible, (1..n - 1).all(|k| !fixed(k)), fewest);
+    Some(fewest)
+}
+
+/// What a sample of problems has visited.
+#[derive(Default)]
+struct Seen {
+    problems: usize,
+    /// Some links were spared, but not all that radii allow.
+    neither_all_nor_nothing: usize,
+    /// The radius changes along the way.
+    steps: usize,
+    /// A chord is not admissible but a longer one from the same vertex is.
+    not_monotone: usize,
+    /// The farthest admissible chord from each vertex in turn needs more links than necessary.
+    greedy_fails: usize,
+}
+
+impl Seen {
+    fn record(&mut self, admissible: &[Vec<bool>], one_radius: bool, fewest: usize) {
+        let n = admissible.len();
+        self.problems += 1;
+        self.neither_all_nor_nothing += usize::from(fewest > 1 && fewest < n - 1);
+        let fails_then_holds = |row: &Vec<bool>| row.windows(2).any(|pair| !pair[0] && pair[1]);
+        self.not_monotone += usize::from(admissible.iter().any(fails_then_holds));
+        self.steps += usize::from(!one_radius);
+        if one_radius {
+            let next = |&from: &usize| (from + 1..n).rev().find(|&to| admissible[from][to]);
+            let greedy = std::iter::successors(Some(0), next).count() - 1;
+            self.greedy_fails += usize::from(greedy > fewest);
+        }
+    }
+}
+
+/// Small robots that bend, hook, run back on themselves and cross themselves.
+fn robot(random: &mut Random) -> (Vec<Vector>, Vec<Real>) {
+    let n = [3, 5, 7, 8, 9][random.below(5)];
+    let noise = [0.02, 0.1, 0.3][random.below(3)];
+    let kind = random.below(3);
+    let mut points = vec![random.vector(1.0)];
+    let direction = random.vector(1.0);
+    for _ in 1..n {
+        let step = match kind {
+            0 => random.vector(1.0),
+            // Forward, with noise.
+            1 => direction * random.within(0.2, 1.0) + random.vector(noise),
+            // To and fro along a line, with noise.
+            _ => direction * random.within(-0.8, 1.0) + random.vector(noise),
+        };
+        points.push(points[points.len() - 1] + step);
+    }
+    let change = if random.below(3) == 0 { 4 } else { usize::MAX };
+    let mut radius = 1.0;
+    let radii = (1..n).map(|_| {
+        radius = if random.below(change) == 0 { random.unit() } else { radius };
+        radius
+    });
+    let radii = radii.collect();
+    (points, radii)
+}
+
+#[test]
+fn as_few_links_as_brute_force_finds() {
+    let mut random = Random(1);
+    let (mut seen, mut unclear) = (Seen::default(), 0);
+    while seen.problems < 4000 {
+        let (points, radii) = robot(&mut random);
+        // From a fraction of the steps to the size of the whole robot.
+        let tolerance = Real::powf(10.0, random.within(-1.0, 0.3));
+        let Some(fewest) = brute_force(&points, &radii, tolerance, &mut seen) else {
+            unclear += 1;
+            continue;
+        };
+        let (kept, kept_radii) = simplify(&points, &radii, tolerance).unwrap();
+        assert_eq!(kept_radii.len(), fewest, "{points:?} {radii:?} {tolerance}");
+        assert_follows(&points, &radii, &kept, &kept_radii, tolerance);
+    }
+    assert!(unclear * 5 < seen.problems, "{unclear}");
+    assert!(seen.neither_all_nor_nothing * 4 > seen.problems, "{}", seen.neither_all_nor_nothing);
+    assert!(seen.steps * 10 > seen.problems, "{}", seen.steps);
+    assert!(seen.not_monotone * 40 > seen.problems, "{}", seen.not_monotone);
+    assert!(seen.greedy_fails > 5, "{}", seen.greedy_fails);
+}
+
+/// The kept points are input points in order with both ends and every change of radius, and each link and the
+/// stretch it replaces are within the tolerance by sampling.
+fn assert_follows(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii: &[Real], tolerance: Real) {
+    assert_eq!(kept.len(), kept_radii.len() + 1);
+    let mut indices = vec![0];
+    for &point in &kept[1..] {
+        let from = indices[indices.len() - 1];
+        indices.push((from + 1..points.len()).find(|&k| points[k] == point).expect("an input point"));
+    }
+    assert_eq!(points[0], kept[0]);
+    assert_eq!(indices.last(), Some(&(points.len() - 1)));
+    for (ends, &radius) in indices.windows(2).zip(kept_radii) {
+        assert!(radii[ends[0]..ends[1]].iter().all(|&r| r == radius), "the radius changes within a link");
+        let chord = [points[ends[0]], points[ends[1]]];
+        let distance = hausdorff(&points[ends[0]..=ends[1]], &chord);
+        let extent = chord[0].distance(chord[1]) + tolerance;
+        assert!(distance <= tolerance + 4.0 * Real::EPSILON * extent, "{distance} > {tolerance}");
+    }
+}
+
+#[test]
+fn long_centrelines() {
+    let mut random = Random(2);
+    let mut spared = 0;
+    for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
+        let helix = |i: i32| {
+            let t = f64::from(i) * 0.05;
+            Vector::new(t.cos(), t.sin(), 0.1 * t) + random.vector(1e-3)
+        };
+        let points: Vec<_> = (0..200).map(helix).collect();
+        let radii: Vec<_> = (0..199).map(|k| if k < 90 { 0.2 } else { 0.1 }).collect();
+        let (kept, kept_radii) = simplify(&points, &radii, tolerance).unwrap();
+        assert_follows(&points, &radii, &kept, &kept_radii, tolerance);
+        assert!(kept.contains(&points[90]));
+        spared += 199 - kept_radii.len();
+        assert!(Chain::from_centreline(&kept, &kept_radii).is_ok());
+    }
+    assert!(spared > 300, "{spared}");
+}
+
+/// n evenly spaced points of a circle of radius 1: a chord over m steps is off by 1 - cos(m angle / 2).
+#[test]
+fn an_arc_as_geometry_says() {
+    let angle = 0.01;
+    let points: Vec<_> =
+        (0..=240).map(|i| (angle * f64::from(i)).sin_cos()).map(|(y, x)| Vector::new(x, y, 0.0)).collect();
+    for steps in [2_u32, 7, 24, 60] {
+        let sagitta = |steps: u32| 1.0 - (angle * f64::from(steps) / 2.0).cos();
+        // The deepest vertex is off the middle by half a step if the number of steps is odd.
+        let depth = |steps| sagitta(steps) - if steps % 2 == 1 { sagitta(1) } else { 0.0 };
+        let tolerance = (depth(steps) + depth(steps + 1)) / 2.0;
+        let (kept, _) = simplify(&points, &[0.1; 240], tolerance).unwrap();
+        assert_eq!(kept.len() as u32 - 1, 240_u32.div_ceil(steps), "{steps}");
+    }
+}
+
+fn on_a_line(xs: &[Real]) -> Vec<Vector> {
+    xs.iter().map(|&x| Vector::new(x, 2.0 * x, 3.0 * x)).collect()
+}
+
+fn links(points: &[Vector], tolerance: Real) -> usize {
+    simplify(points, &vec![0.1; points.len() - 1], tolerance).unwrap().1.len()
+}
+
+#[test]
+fn tolerance_0_drops_only_what_is_exactly_collinear() {
+    let m = 123_456_789.0;
+    let points = on_a_line(&[0.0, m, 2.0 * m, 5.0 * m, 7.0 * m]);
+    assert_eq!(links(&points, 0.0), 1);
+    for k in 1..4 {
+        for axis in 0..3 {
+            for nudge in [Real::next_up, Real::next_down] {
+                let mut points = points.clone();
+                points[k][axis] = nudge(points[k][axis]);
+                assert_eq!(links(&points, 0.0), [3, 4, 3][k - 1]);
+            }
+        }
+    }
+    // Neighbouring Fibonacci numbers: the cross product is 1, but its two products round to the same f64.
+    let (mut f, mut g): (u64, u64) = (1, 1);
+    while f + 2 * g < 1 << 53 {
+        (f, g) = (g, f + g);
+    }
+    let (w, e) = (Vector::new(f as Real, g as Real, 0.0), Vector::new(g as Real, (f + g) as Real, 0.0));
+    assert_eq!(w.cross(e), Vector::ZERO);
+    assert_eq!(links(&[Vector::ZERO, w, e], 0.0), 2);
+    // Off by so little that its square underflows.
+    let nearly = [Vector::ZERO, Vector::new(0.5, 1e-170, 0.0), Vector::X];
+    assert_eq!(links(&nearly, 0.0), 2);
+    // On one line, though the rounded differences of the coordinates mostly say otherwise.
+    let mut random = Random(4);
+    let mut naive_is_wrong = 0;
+    for _ in 0..100 {
+        let a = Vector::new(1.0, 3.0, 7.0) * (random.bits() >> 17) as Real;
+        let points = [a, a * Real::powi(2.0, -30), -a * Real::powi(2.0, -40)];
+        naive_is_wrong += usize::from((points[1] - points[0]).cross(points[2] - points[0]) != Vector::ZERO);
+        assert_eq!(links(&points, 0.0), 1);
+    }
+    assert!(naive_is_wrong > 50, "{naive_is_wrong}");
+}
+
+#[test]
+fn hooks_and_runs_back_on_a_line() {
+    // Runs back, but never leaves the chord.
+    assert_eq!(links(&on_a_line(&[0.0, 2.0, 1.0, 3.0]), 0.0), 1);
+    // Overshoots the end, or starts backwards.
+    assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), 0.0), 2);
+    assert_eq!(links(&on_a_line(&[0.0, -1.0, 2.0]), 0.0), 2);
+    assert_eq!(links(&on_a_line(&[0.0, -1.0, 3.0, 2.0]), 0.0), 3);
+    // The hook counts with its length.
+    let overshoot = 14.0_f64.sqrt();
+    assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 1.000001), 1);
+    assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 0.999999), 2);
+    // A loop that closes is kept open by one vertex, whatever the tolerance.
+    let (kept, _) = simplify(&on_a_line(&[0.0, 1.0, 2.0, 0.0]), &[0.1; 3], 1e9).unwrap();
+    assert_eq!(kept.len(), 3);
+}
+
+/// The vertex (m, 2m) is exactly m from the line through (0, 0) and (4m, 3m). Its squares need more than 53 bits.
+#[test]
+fn ties_are_decided_exactly() {
+    for i in 0..100_u32 {
+        let m = Real::from(2 * i + 1) * 1_234_567.0 + Real::powi(2.0, 47);
+        for exponent in [-300, 0, 250] {
+            let m = m * Real::powi(2.0, exponent);
+            let points = [(0.0, 0.0), (1.0, 2.0), (4.0, 3.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
+            assert_eq!(links(&points, m), 1);
+            assert_eq!(links(&points, m.next_down()), 2);
+            let points = [(0.0, 0.0), (-3.0, 4.0), (1.0, 0.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
+            assert_eq!(links(&points, 5.0 * m), 1);
+            assert_eq!(links(&points, (5.0 * m).next_down()), 2);
+        }
+    }
+}
+
+#[test]
+fn the_unit_does_not_matter() {
+    let mut random = Random(3);
+    for _ in 0..200 {
+        let (points, radii) = robot(&mut random);
+        let tolerance = random.within(0.01, 0.5);
+        let (kept, kept_radii) = simplify(&points, &radii, tolerance).unwrap();
+        for exponent in [-300, 300] {
+            let scale = Real::powi(2.0, exponent);
+            let scaled: Vec<_> = points.iter().map(|&point| point * scale).collect();
+            let (again, again_radii) = simplify(&scaled, &radii, tolerance * scale).unwrap();
+            assert_eq!(again, kept.iter().map(|&point| point * scale).collect::<Vec<_>>());
+            assert_eq!(again_radii, kept_radii);
+        }
+    }
+}
+
+#[test]
+fn a_tiny_robot_far_out() {
+    let points = [0.0, 1.0, 2.0].map(|x: Real| Vector::new(x * 1e-300, x * (2.0 - x) * 1e-300, 1e149));
+    assert_eq!(links(&points, 1e-300), 1);
+    assert_eq!(links(&points, 0.99e-300), 2);
+}
+
+#[test]
+fn repeated_points() {
+    let points = [0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0].map(|x| Vector::X * x);
+    // Without a change of radius, nothing stays of the repeated points.
+    let (kept, radii) = simplify(&points, &[0.1; 6], 0.0).unwrap();
+    assert_eq!((kept, radii), (vec![Vector::ZERO, Vector::X * 2.0], vec![0.1]));
+    // A change of radius between or on them keeps the point, once.
+    for radii in
+        [[0.1, 0.1, 0.1, 0.2, 0.2, 0.2], [0.1, 0.1, 0.2, 0.2, 0.2, 0.2], [0.3, 0.1, 0.3, 0.3, 0.2, 0.4]]
+    {
+        let (kept, kept_radii) = simplify(&points, &radii, 10.0).unwrap();
+        assert_eq!((kept, kept_radii), (vec![Vector::ZERO, Vector::X, Vector::X * 2.0], vec![0.1, 0.2]));
+    }
+    // A radius of its own on a segment without length is a change of radius too.
+    let (kept, kept_radii) = simplify(&points, &[0.1, 0.1, 0.1, 0.5, 0.1, 0.1], 10.0).unwrap();
+    assert_eq!((kept.len(), kept_radii), (3, vec![0.1, 0.1]));
+}
+
+#[test]
+fn bad_input_is_named() {
+    let points = [Vector::ZERO, Vector::X, Vector::X * 2.0];
+    for tolerance in [-1.0, Real::NAN, Real::INFINITY] {
+        let error = simplify(&points, &[0.1; 2], tolerance).unwrap_err();
+        assert!(error.to_string().contains(&tolerance.to_string()), "{error}");
+    }
+    assert_eq!(simplify(&points[..1], &[], 0.1), Err(RobotError::TooFewPoints { count: 1 }));
+    let differ = RobotError::LengthsDiffer { points: 3, expected: 2, radii: 1 };
+    assert_eq!(simplify(&points, &[0.1], 0.1), Err(differ));
+    assert_eq!(simplify(&[Vector::X; 3], &[0.1; 2], 0.1), Err(RobotError::AllPointsEqual));
+    let nan = simplify(&[Vector::ZERO, Vector::NAN], &[0.1], 0.1).unwrap_err();
+    assert!(matches!(nan, RobotError::PointNotFinite { index: 1, .. }));
+    let negative = simplify(&points, &[0.1, -2.0], 0.1).unwrap_err();
+    assert!(matches!(negative, RobotError::BadRadius { index: 1, value: -2.0, .. }));
+}
