@@ -17,14 +17,14 @@
 use super::{Mask, Scalar, Vec3};
 
 /// The plane's lower bound on the distance between a triangle and a link whose flat cap lies around the
-/// origin with the outward unit normal `outward`, less what rounding can have added to it.
+/// origin with the outward unit normal `outward`, less what rounding can have added to it; and U.
 #[inline(always)]
 pub(crate) fn separating_plane<T: Scalar>(
     vertices: [Vec3<T>; 3],
     on_triangle: Vec3<T>,
     outward: Vec3<T>,
     radius: T,
-) -> T {
+) -> (T, T) {
     let zero = radius.zero();
     let height = on_triangle.dot(outward);
     let radial = on_triangle.along(outward, -height);
@@ -39,5 +39,5 @@ pub(crate) fn separating_plane<T: Scalar>(
     let ahead = normal.dot(a - support).min(normal.dot(b - support)).min(normal.dot(c - support));
     let extent = a.largest().max(b.largest()).max(c.largest()).max(radius);
     let bound = ahead.over(upper) - extent * zero.lit(16.0 * T::UNIT_ROUNDOFF);
-    zero.lt(upper).select(bound.max(zero), zero)
+    (zero.lt(upper).select(bound.max(zero), zero), upper)
 }

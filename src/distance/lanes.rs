@@ -159,7 +159,7 @@ lanes!(F32s, F32Mask, f32, f32s, mask32s, u32, 23, 127, CBRT_BITS_F32);
 lanes!(F64s, F64Mask, f64, f64s, mask64s, u64, 52, 1023, CBRT_BITS_F64);
 
 /// A precision in which packs exist.
-pub(crate) trait Lane: Scalar<Mask = bool> + Default + Send + Sync + 'static {
+pub(crate) trait Lane: Scalar<Mask = bool> + Default + Into<f64> + Send + Sync + 'static {
     /// The pack of an instruction set.
     type Pack<S: Simd>: Pack<Element = Self, Token = S>;
 

@@ -96,9 +96,9 @@ impl<T: Scalar> Axial<T> {
         }
     }
 
-    /// A lower bound on the answer in case 2. It stands against rounding.
+    /// A lower and an upper bound on the answer in case 2. The lower one stands against rounding.
     #[inline(always)]
-    pub(crate) fn plane_bound(&self, link: &Link<T>, face: &Face<T>) -> T {
+    pub(crate) fn cap_bounds(&self, link: &Link<T>, face: &Face<T>) -> (T, T) {
         let (centre, outward) = self.cap(link);
         let vertices = face.seen_from(centre).vertices;
         bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius)

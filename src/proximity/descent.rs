@@ -1,9 +1,10 @@
 //! The nearest triangle of one link by the wide hierarchy: nearer patches first.
 //!
-//! All comparisons are of axis distances in single precision. A triangle whose axis distance F was computed is
-//! nearer than F - r + e, with e the link's `error`; so another one can only win if its own F is below F + 2 e.
-//! Such candidates are put off: at the end the few that are left are measured in double precision, most often
-//! one. Only where a flat cap decides, and F says little, is a triangle measured at once.
+//! All comparisons are in single precision and of distances from the axis, the link's own distance and its radius.
+//! Where no flat cap decides that is the axis distance F; beyond a flat cap it lies between two bounds. A triangle
+//! whose upper bound was computed as u is nearer than u - r + e, with e the link's `error`; so another one can only
+//! win if its own lower bound is below u + 2 e. Such candidates are put off: at the end the few that are left are
+//! measured in double precision.
 
 use super::coarse::CoarseLink;
 use super::packed::{BLOCK, PackedLink};
@@ -58,7 +59,7 @@ pub(super) struct Scratch {
     pub visits: Visits,
     /// Patches that wait for their turn, the nearest last.
     stack: Vec<(f32, u32)>,
-    /// Triangles that may be the nearest, with their axis distances.
+    /// Triangles that may be the nearest, with their lower bounds.
     candidates: Vec<(f32, u32)>,
 }
 
@@ -214,8 +215,8 @@ impl Descent<'_> {
         self.scratch.visits.leaves += 1;
         let leaf: &Leaf = &self.mesh.tree.leaves[leaf as usize];
         let triangles = leaf.triangles;
-        let mut distances = [0.0; BLOCK];
-        let (mut near, mut at_cap) = (0, 0);
+        let (mut lower, mut upper) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let mut near = 0;
         let limit = L::splat(token, quest.limit);
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
@@ -223,23 +224,22 @@ impl Descent<'_> {
                 continue;
             }
             let bounds = packed.may_be_nearer(&Face::new(vertices), limit);
-            bounds.axis_squared.sqrt().store(&mut distances[lane..]);
+            bounds.lower.store(&mut lower[lane..]);
+            bounds.upper.store(&mut upper[lane..]);
             near |= bounds.nearer << lane;
-            at_cap |= bounds.beyond_flat_cap << lane;
         }
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
-            let (distance, triangle) = (distances[lane], triangles[lane]);
-            if distance >= quest.limit {
+            if lower[lane] >= quest.limit {
                 continue;
             }
-            let overlaps = distance + quest.link.error < quest.link.radius;
-            if overlaps || at_cap >> lane & 1 == 1 {
-                self.measure(quest, triangle);
+            if upper[lane] + quest.link.error < quest.link.radius {
+                // They overlap: the distance is 0, and the search is at its end.
+                self.measure(quest, triangles[lane]);
             } else {
-                self.scratch.candidates.push((distance, triangle));
-                quest.limit = quest.limit.min(distance + 2.0 * quest.link.error);
+                self.scratch.candidates.push((lower[lane], triangles[lane]));
+                quest.limit = quest.limit.min(upper[lane] + 2.0 * quest.link.error);
             }
         }
     }

@@ -141,6 +141,9 @@ impl<T: Precision> Exhaustive<T> {
         findings.resize_with(threads, Findings::default);
 
         let (level, next) = (self.level, AtomicUsize::new(0));
+        if self.culling && aim != Aim::Any {
+            dispatch!(level, simd => job.first_bounds::<T::Pack<_>>(simd));
+        }
         let run = |findings: &mut Findings| {
             findings.work = Work::default();
             findings.nearest.clear();

@@ -2,7 +2,7 @@
 
 use super::coarse::CoarseLink;
 use crate::distance::lanes::Pack;
-use crate::distance::{Axial, Face, Link, Scalar, Vec3};
+use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
 
 /// How many triangles stand together in memory: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
@@ -21,14 +21,13 @@ pub(super) struct Patches<L> {
     pub radius: L,
 }
 
-/// What a pack of triangles is to a link; one bit per lane.
+/// What a pack of triangles is to a link. All distances are counted from the axis: the link's own and the radius.
 pub(super) struct Nearer<L> {
-    /// Which may be nearer than a bound.
+    /// Which may be nearer than a bound, one bit per lane.
     pub nearer: u64,
-    /// Of those, for which a flat cap decides.
-    pub beyond_flat_cap: u64,
-    /// The squared axis distances.
-    pub axis_squared: L,
+    /// Bounds on how near they are: twice the axis distance where no flat cap decides.
+    pub lower: L,
+    pub upper: L,
 }
 
 /// A link in every lane.
@@ -64,6 +63,14 @@ impl<L: Pack> PackedLink<L> {
         let relative = point - self.start;
         let t = relative.dot(self.link.axis).max(self.length.zero()).min(self.length);
         relative.along(self.link.axis, -t)
+    }
+
+    /// Upper bounds on the axis limits of what is in spheres: some point of it is that near.
+    #[inline(always)]
+    pub(super) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
+        // Any point of a triangle is an upper bound on F; beyond a flat cap that is one on the distance alone.
+        let beyond = if self.has_flat_cap { self.link.radius } else { self.length.zero() };
+        self.offset_from_axis(centre).norm() + radius + beyond
     }
 
     /// Which spheres around triangles come within `limit` of the axis, as bits.
@@ -113,15 +120,16 @@ impl<L: Pack> PackedLink<L> {
     pub(super) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);
         let axial = Axial::new(&self.link, &face);
-        let squared_limit = limit * limit;
-        let mut nearer = L::bits(axial.axis_squared.lt(squared_limit));
-        let mut beyond_flat_cap = 0;
-        if nearer != 0 && self.has_flat_cap {
-            beyond_flat_cap = L::bits(axial.beyond_flat_cap());
-            let plane = axial.plane_bound(&self.link, &face) + self.link.radius;
-            nearer &= !(beyond_flat_cap & L::bits(limit.le(plane)));
+        let axis = axial.axis_squared.sqrt();
+        let nearer = L::bits(axis.lt(limit));
+        if nearer == 0 || !self.has_flat_cap {
+            return Nearer { nearer, lower: axis, upper: axis };
         }
-        Nearer { nearer, beyond_flat_cap, axis_squared: axial.axis_squared }
+        let (lower, upper) = axial.cap_bounds(&self.link, &face);
+        let beyond_cap = axial.beyond_flat_cap();
+        let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
+        let upper = beyond_cap.select(upper + self.link.radius, axis);
+        Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
     }
 
     /// The distances of triangles with every disc that decides one: the paper's work for a pair.

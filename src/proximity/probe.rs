@@ -58,7 +58,7 @@ impl Probe {
         let axial = Axial::new(&self.link, &face);
         let closest = if !axial.beyond_flat_cap() {
             axial.without_caps(&self.link)
-        } else if axial.plane_bound(&self.link, &face) >= bound {
+        } else if axial.cap_bounds(&self.link, &face).0 >= bound {
             return None;
         } else {
             axial.with_caps(&self.link, &face)

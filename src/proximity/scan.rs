@@ -5,6 +5,7 @@ use super::packed::{BLOCK, PackedLink};
 use super::probe::Probe;
 use super::search::Found;
 use super::soa::SoaMesh;
+use crate::distance::Scalar;
 use crate::distance::lanes::{Lane, Pack};
 use parry3d_f64::math::{Real, Vector};
 use std::ops::Range;
@@ -12,6 +13,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest cache.
 pub(super) const CHUNK: usize = 64;
+
+/// One block in so many gives a first bound.
+const STRIDE: usize = 16;
 
 /// What one query asks of the mesh.
 pub(super) struct Job<'a, E> {
@@ -92,6 +96,28 @@ impl<E: Lane> Job<'_, E> {
     /// How many chunks there are.
     pub(super) fn chunks(&self) -> usize {
         self.mesh.blocks().div_ceil(CHUNK)
+    }
+
+    /// For each link, a bound from every so many of the spheres: without it, an order in which the triangles come
+    /// nearer and nearer would have them all measured.
+    #[inline(always)]
+    pub(super) fn first_bounds<L: Pack<Element = E>>(&self, token: L::Token) {
+        for (number, (_, link)) in self.links.iter().enumerate() {
+            if let Some(link) = link {
+                let packed = PackedLink::<L>::new(token, link);
+                let mut reach = L::splat(token, E::round(Real::INFINITY));
+                for block in (0..self.mesh.blocks()).step_by(STRIDE) {
+                    for lane in (0..BLOCK).step_by(L::LANES) {
+                        let (centre, radius) = self.mesh.spheres::<L>(token, block, lane);
+                        reach = reach.min(packed.reach_of_spheres(centre, radius));
+                    }
+                }
+                let mut lanes = [E::round(Real::INFINITY); BLOCK];
+                reach.store(&mut lanes);
+                let least = lanes.into_iter().fold(E::round(Real::INFINITY), Scalar::min);
+                self.bounds[number.min(self.bounds.len() - 1)].shrink_to(link.bound_within(least));
+            }
+        }
     }
 
     /// All links against one chunk of the mesh.
