@@ -47,11 +47,13 @@ fn measure(options: &Options) -> Result<(), String> {
         machine::description()
     );
     page.push_str(&head);
+    let memory = exhaustive::memory()?;
     for chapter in [
         search::chapter()?,
         exhaustive::chapter()?,
         growth::chapter(options.largest, &options.out)?,
         moving::chapter()?,
+        memory,
     ] {
         write!(page, "\n{chapter}").map_err(|error| error.to_string())?;
     }

@@ -101,7 +101,8 @@ impl<E: Lane> CoarseLink<E> {
     /// What every triangle at most `limit` from the axis is nearer than, in the probe's units: the converse of
     /// [`CoarseLink::axis_limit`].
     pub(super) fn bound_within(&self, limit: E) -> Real {
-        let (limit, radius, error): (Real, Real, Real) = (limit.into(), self.radius.into(), self.error.into());
+        let (limit, radius, error): (Real, Real, Real) =
+            (limit.into(), self.radius.into(), self.error.into());
         ((limit - radius).max(0.0) + 2.0 * error) / self.factor
     }
 
