@@ -1,4 +1,5 @@
-//! Contacts: exact while apart, exact for capsules whose axis stays outside, and always a translation that separates.
+//! Contacts: exact while apart, exact for capsules whose axis stays outside, and always a translation that
+//! separates.
 
 mod common;
 mod host_common;
@@ -96,7 +97,7 @@ fn close_contacts_have_the_normal_of_the_feature() {
     let mut random = Random::new(63);
     for _ in 0..500 {
         let pose = random.pose(1.0);
-        let (caps, gap) = (random.caps(), random.magnitude(1e-13, 1e-11));
+        let (caps, gap) = (random.caps(), random.log_between(1e-13, 1e-11));
         let link = ModifiedCylinder::new(-Vector::X, Vector::X, 0.25, caps).unwrap();
         let floor = -0.25 - gap;
         let triangle = Triangle::new(
@@ -129,8 +130,8 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
     }
 }
 
-/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a descent from the
-/// best of them can tell.
+/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a
+/// descent from the best of them can tell.
 #[test]
 fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);

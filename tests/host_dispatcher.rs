@@ -1,5 +1,5 @@
-//! The dispatcher answers every query for links and chains, in both orders, through every composite, and never lets a pair
-//! that it cannot answer read as a free one.
+//! The dispatcher answers every query for links and chains, in both orders, through every composite, and
+//! never lets a pair that it cannot answer read as a free one.
 
 mod common;
 mod host_common;
@@ -246,7 +246,8 @@ fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, SharedShap
     pairs
 }
 
-/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked for one by one.
+/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked for one by
+/// one.
 #[test]
 fn composites_get_the_best_of_their_parts() {
     let dispatcher = ContinuumDispatcher::default();
@@ -429,8 +430,8 @@ fn a_level_cast_meets_the_hill_at_the_other_end_of_the_field() {
     let options = ShapeCastOptions::default();
     let dispatcher = ContinuumDispatcher::default();
     let hit = dispatcher.cast_shapes(&pose, Vector::X, &field, &link, options).unwrap().unwrap();
-    // The slope from x = 2 up to x = 3 is half way up at 2.5; the capsule's end is 0.1 ahead, and its round cap touches
-    // the slope of 45 degrees earlier by 0.05 sqrt 2.
+    // The slope from x = 2 up to x = 3 is half way up at 2.5; the capsule's end is 0.1 ahead, and its round
+    // cap touches the slope of 45 degrees earlier by 0.05 sqrt 2.
     let expected = 6.0 - 0.1 - 0.05 * 2.0_f64.sqrt();
     assert!((hit.time_of_impact - expected).abs() < 1e-4, "{hit:?}");
     let hill = field.triangle_at_id(hit.subshape1).unwrap();
@@ -570,7 +571,8 @@ fn a_pair_that_is_refused_makes_the_whole_query_refused() {
         let place = Pose::from_translation(Vector::new(0.3, 0.1, 0.0));
         assert_eq!(ask_everything(&dispatcher, &place, &mixed, &*robot)[1..], [false; 5]);
         assert_eq!(ask_everything(&dispatcher, &place, &*robot, &mixed)[1..], [false; 5]);
-        // With nothing but triangles all is well. (To leave out parts of a mesh in a nonlinear cast, parry asks about balls.)
+        // With nothing but triangles all is well. (To leave out parts of a mesh in a nonlinear cast, parry
+        // asks about balls.)
         assert_eq!(ask_everything(&dispatcher, &place, &floor_mesh(), &*robot)[..5], [true; 5]);
         assert_eq!(ask_everything(&dispatcher, &place, &floor_field(), &*robot)[..5], [true; 5]);
     }

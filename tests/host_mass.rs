@@ -62,7 +62,7 @@ fn every_cap_combination_weighs_as_its_slices() {
     let mut random = Random::new(1);
     for _ in 0..50 {
         for caps in CAPS {
-            let (length, radius) = (random.magnitude(1e-2, 1e1), random.magnitude(1e-2, 1e1));
+            let (length, radius) = (random.log_between(1e-2, 1e1), random.log_between(1e-2, 1e1));
             let (start, axis, density) = (random.vector(3.0), random.direction(), random.between(0.1, 9.0));
             let link = ModifiedCylinder::new(start, start + axis * length, radius, caps).unwrap();
             let (mass, centre, axial, transverse) = by_slices(length, radius, caps, density);
@@ -77,7 +77,7 @@ fn capsules_cylinders_and_balls_weigh_as_parrys() {
     let mut random = Random::new(2);
     for _ in 0..200 {
         let (half, radius, pose) =
-            (random.magnitude(1e-2, 1e1), random.magnitude(1e-2, 1e1), random.pose(5.0));
+            (random.log_between(1e-2, 1e1), random.log_between(1e-2, 1e1), random.pose(5.0));
         let (start, end) = (pose * Vector::new(0.0, -half, 0.0), pose * Vector::new(0.0, half, 0.0));
         let pairs: [(ModifiedCylinder, MassProperties); 3] = [
             (

@@ -1,4 +1,5 @@
-//! A triangle that goes through the inside of a link is at distance 0, not at a rounding of it, and every query says so.
+//! A triangle that goes through the inside of a link is at distance 0, not at a rounding of it, and every
+//! query says so.
 
 mod common;
 mod host_common;

@@ -1,5 +1,5 @@
-//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and against
-//! parry, and unchanged by the unit of length.
+//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and
+//! against parry, and unchanged by the unit of length.
 
 mod common;
 mod host_common;
@@ -18,8 +18,8 @@ fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let on_axis = link.start() * (1.0 - t) + link.end() * t;
     match random.index(6) {
         0 => on_axis,
-        1 => surface + random.direction() * random.magnitude(1e-9, 1e-3),
-        2 => surface + random.direction() * random.magnitude(1e2, 1e6),
+        1 => surface + random.direction() * random.log_between(1e-9, 1e-3),
+        2 => surface + random.direction() * random.log_between(1e2, 1e6),
         3 => surface,
         4 => on_axis * 0.5 + surface * 0.5,
         _ => surface + random.vector(2.0),
@@ -52,8 +52,9 @@ fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() 
 
         if distance > 0.0 {
             outside += 1;
-            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the normal is. On a rim
-            // the normal is the difference of the witnesses, which is only as good as they are apart.
+            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the
+            // normal is. On a rim the normal is the difference of the witnesses, which is only as good as
+            // they are apart.
             let (normal, tolerance) = match feature {
                 FeatureId::Face(_) => (link.feature_normal_at_point(0, feature, p), 16.0),
                 _ if apart < 1e-9 * coordinates => (None, 0.0),
@@ -114,7 +115,7 @@ fn solid_points_stay_and_distances_carry_parrys_sign() {
 fn points_agree_with_parrys_capsule_and_cylinder() {
     let mut random = Random::new(13);
     for _ in 0..5000 {
-        let (half, radius) = (random.magnitude(0.1, 2.0), random.magnitude(0.1, 2.0));
+        let (half, radius) = (random.log_between(0.1, 2.0), random.log_between(0.1, 2.0));
         let (start, end) = (Vector::new(0.0, -half, 0.0), Vector::new(0.0, half, 0.0));
         let p = random.vector(3.0);
         let capsule = ModifiedCylinder::capsule(start, end, radius).unwrap();
@@ -132,8 +133,8 @@ fn points_agree_with_parrys_capsule_and_cylinder() {
     }
 }
 
-/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the disc, 0.95 to the
-/// half ball.
+/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the
+/// disc, 0.95 to the half ball.
 #[test]
 fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
     let link = ModifiedCylinder::new(Vector::ZERO, 0.1 * Vector::Z, 1.0, [Cap::Flat, Cap::Round]).unwrap();
@@ -142,8 +143,8 @@ fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
     assert_eq!(feature, FeatureId::Face(1));
 }
 
-/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far away, its direction
-/// of any length.
+/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far
+/// away, its direction of any length.
 fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
     let origin = point_near(random, link);
     let target = surface_point(random, link);
@@ -155,7 +156,7 @@ fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
         3 => target + random.vector(0.3) - origin,
         _ => random.direction(),
     };
-    Ray::new(origin, direction * random.magnitude(1e-3, 1e3))
+    Ray::new(origin, direction * random.log_between(1e-3, 1e3))
 }
 
 /// Along the ray no point before the time of impact is on the link, and the point at that time is.
@@ -203,8 +204,8 @@ fn rays_hit_where_the_distance_first_vanishes() {
     assert!(marched > count * 8 / 10, "{marched} conclusive of {count}");
 }
 
-/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and exit normals both point
-/// against the ray and are the surface's.
+/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and exit
+/// normals both point against the ray and are the surface's.
 #[test]
 fn hollow_rays_leave_where_the_reversed_ray_enters() {
     let mut random = Random::new(15);
@@ -250,7 +251,7 @@ fn rays_agree_with_parrys_capsule_and_cylinder() {
     let mut random = Random::new(16);
     let (mut hits, mut misses, count) = (0, 0, 5000);
     for _ in 0..count {
-        let (half, radius) = (random.magnitude(0.1, 2.0), random.magnitude(0.1, 2.0));
+        let (half, radius) = (random.log_between(0.1, 2.0), random.log_between(0.1, 2.0));
         let (start, end) = (Vector::new(0.0, -half, 0.0), Vector::new(0.0, half, 0.0));
         let origin = random.vector(4.0);
         let ray = Ray::new(origin, random.vector(1.5) - origin);
@@ -342,8 +343,8 @@ fn a_ray_without_direction_hits_the_solid_it_starts_in() {
     }
 }
 
-/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its way in, and not at all on
-/// its way out.
+/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its way in,
+/// and not at all on its way out.
 #[test]
 fn rays_from_the_surface_hit_inwards_only() {
     let mut random = Random::new(27);
@@ -398,7 +399,7 @@ fn balls_and_wires_answer_rays_and_points() {
 fn on_the_axis_any_way_out_is_taken_but_a_whole_radius_long() {
     let mut random = Random::new(17);
     for _ in 0..2000 {
-        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.magnitude(1e-3, 1.0));
+        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.log_between(1e-3, 1.0));
         let link = ModifiedCylinder::new(start, start + axis, radius, random.caps()).unwrap();
         let p = start + axis * random.between(0.4, 0.6);
         let depth = -link.distance_to_local_point(p, false);

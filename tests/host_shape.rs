@@ -1,4 +1,5 @@
-//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the true shape.
+//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the
+//! true shape.
 
 mod common;
 mod host_common;
@@ -23,7 +24,7 @@ fn support_points_are_on_the_link_and_no_surface_point_goes_further() {
             1 => axis.cross(random.direction()).normalize_or(Vector::Y),
             _ => random.direction(),
         };
-        let support = link.local_support_point(direction * random.magnitude(1e-200, 1e200));
+        let support = link.local_support_point(direction * random.log_between(1e-200, 1e200));
         assert!(violation(&link, support) < 8.0 * U * 8.0, "{link:?} {direction}: {support}");
         for _ in 0..20 {
             let other = surface_point(&mut random, &link);
@@ -62,8 +63,8 @@ fn boxes_touch_the_link_on_all_six_sides() {
     }
 }
 
-/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a surface point on the far side
-/// would be further than the radius.
+/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a surface point on
+/// the far side would be further than the radius.
 #[test]
 fn bounding_spheres_are_the_smallest() {
     let mut random = Random::new(23);
@@ -100,10 +101,10 @@ fn scaling_gives_the_true_image_or_nothing() {
     let count = 4000;
     for _ in 0..count {
         let link = random.link();
-        let s = random.magnitude(1e-2, 1e2);
+        let s = random.log_between(1e-2, 1e2);
         let mut scale = Vector::splat(s);
         if random.chance(0.3) {
-            scale[random.index(3)] = random.magnitude(1e-2, 1e2);
+            scale[random.index(3)] = random.log_between(1e-2, 1e2);
         }
         for i in 0..3 {
             scale[i] *= if random.chance(0.3) { -1.0 } else { 1.0 };

@@ -174,8 +174,8 @@ impl<T: Scalar> Line<T> {
         (pierces.select(plane, s), pierces)
     }
 
-    /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc there and the
-    /// segment gets that far, they have that point in common, whatever rounding says of its height.
+    /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc
+    /// there and the segment gets that far, that point is common, whatever rounding says of its height.
     #[inline(always)]
     fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();

@@ -82,8 +82,8 @@ impl<T: Scalar> Axial<T> {
         self.at_flat[0] | self.at_flat[1]
     }
 
-    /// Between p* and the link: an upper bound, and the answer in case 1. Where the axis itself meets the triangle, p* is a
-    /// common point, even if rounding puts it beside a link of radius 0.
+    /// Between p* and the link: an upper bound, and the answer in case 1. Where the axis itself meets the
+    /// triangle, p* is a common point, even if rounding puts it beside a link of radius 0.
     #[inline(always)]
     pub(crate) fn without_caps(&self, link: &Link<T>) -> Closest<T> {
         let zero = self.axis_squared.zero();

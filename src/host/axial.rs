@@ -3,7 +3,8 @@
 //! Every closed form of this folder is written in two coordinates: `z` along the unit axis from the start
 //! point and `rho` away from it. Two choices keep them accurate to the rounding of the problem's extent:
 //!
-//! 1. Coordinates are differences from the link's start point, so that a link far from the origin loses nothing.
+//! 1. Coordinates are differences from the link's start point, so that a link far from the origin loses
+//!    nothing.
 //! 2. They are halved before they are subtracted and then scaled by a power of two, so that the largest is
 //!    about 1: nothing overflows, no square underflows that matters, and a problem multiplied by 2^k gives
 //!    the same bits.
@@ -13,7 +14,8 @@
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
-/// A power of two `down` and its inverse, such that `x * down` lies in [1, 2), or between 2^-52 and 1 for a subnormal `x`.
+/// A power of two `down` and its inverse, such that `x * down` lies in [1, 2), or between 2^-52 and 1 for a
+/// subnormal `x`.
 ///
 /// Both are normal numbers for every finite `x`, 0 included.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
@@ -31,12 +33,12 @@ pub(super) fn unit(v: Vector) -> Option<Vector> {
     Some(v / v.length())
 }
 
-/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is along the axis as far
-/// as rounding can tell.
+/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is
+/// along the axis as far as rounding can tell.
 pub(super) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
     let first = unit(v - axis * v.dot(axis))?;
-    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is far shorter then,
-    // and otherwise perpendicular to the last digit.
+    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is
+    // far shorter then, and otherwise perpendicular to the last digit.
     let second = first - axis * first.dot(axis);
     let length = second.length();
     (length > 0.5).then(|| second / length)
@@ -68,8 +70,8 @@ pub(super) struct Axial {
 }
 
 impl Axial {
-    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing when `point`
-    /// is not finite.
+    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing when
+    /// `point` is not finite.
     pub fn around(link: &ModifiedCylinder, point: Vector) -> Option<(Self, Vector)> {
         if !point.is_finite() {
             return None;

@@ -1,10 +1,11 @@
 //! The chain as one of parry's composite shapes: its parts are its links.
 //!
-//! Neighbouring links overlap, and what a query means then depends on the side it comes from. **From outside** the chain is
-//! the union of its links: the closest point and the first hit of the union are the best over the links, so they are exact.
-//! **From inside** queries see the links one by one, like those of parry's `Compound`: a hollow ray stops at the next surface
-//! of any link, a point is projected to the nearest surface of any link, also where that surface lies within another link.
-//! So the depth of a point inside is never overstated. Whether a point is inside is exact everywhere.
+//! Neighbouring links overlap, and what a query means then depends on the side it comes from. **From
+//! outside** the chain is the union of its links: the closest point and the first hit of the union are the
+//! best over the links, so they are exact. **From inside** queries see the links one by one, like those of
+//! parry's `Compound`: a hollow ray stops at the next surface of any link, a point is projected to the
+//! nearest surface of any link, also where that surface lies within another link. So the depth of a point
+//! inside is never overstated. Whether a point is inside is exact everywhere.
 
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -50,8 +51,8 @@ impl Shape for Chain {
         boxes.reduce(|all, one| all.merged(&one)).unwrap_or_else(Aabb::new_invalid)
     }
 
-    /// The sum over the links, so that what two links share counts twice: for a tube, about the half balls and wedges at its
-    /// joints.
+    /// The sum over the links, so that what two links share counts twice: for a tube, about the half balls
+    /// and wedges at its joints.
     fn mass_properties(&self, density: Real) -> MassProperties {
         self.links().iter().map(|link| link.mass_properties(density)).sum()
     }
@@ -147,7 +148,8 @@ fn nearest_link(chain: &Chain, point: Vector, solid: bool) -> Option<NearestLink
     Some(NearestLink { link, distance, is_inside })
 }
 
-/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a projection is its link.
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a projection is
+/// its link.
 impl PointQuery for Chain {
     fn project_local_point(&self, pt: Vector, solid: bool) -> PointProjection {
         let Some(nearest) = nearest_link(self, pt, solid) else { return PointProjection::new(false, pt) };
@@ -178,7 +180,8 @@ impl PointQuery for Chain {
     }
 }
 
-/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a hit is its link.
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a hit is its
+/// link.
 impl RayCast for Chain {
     fn cast_local_ray_and_get_normal(
         &self,

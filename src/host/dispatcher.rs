@@ -14,27 +14,28 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
-/// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers, because parry's
-/// own dispatcher never comes back from within a composite shape. Put yours in as `L`.
+/// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers,
+/// because parry's own dispatcher never comes back from within a composite shape. Put yours in as `L`.
 ///
 /// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
 /// |---|---|
 /// | `distance`, `closest_points`, `intersection_test` | exact |
-/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not the shortest one |
+/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not promised to be the shortest |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
 /// | contact manifolds | parry's, on polygons that stand for the link's surface |
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
 /// `Intersecting`, and a margin is kept only by what is further away than it.
 ///
-/// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`, [`Chain`](crate::Chain)) is
-/// taken apart with this dispatcher at each step, and `L` is asked only about pairs that cannot be taken apart. The sub-shape
-/// ids of an answer name the link, the triangle or the part on either side.
+/// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
+/// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about
+/// pairs that cannot be taken apart. The sub-shape ids of an answer name the link, the triangle or the part
+/// on either side.
 ///
 /// # Errors
-/// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also for poses,
-/// velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN, and for the queries
-/// that parry has not got for voxels.
+/// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
+/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN,
+/// and for the queries that parry has not got for voxels.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -301,7 +302,8 @@ pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
 }
 
-/// The support maps of a link and a triangle in either order, if the shapes are that; refused if the triangle is not finite.
+/// The support maps of a link and a triangle in either order, if the shapes are that; refused if the triangle
+/// is not finite.
 pub(super) fn as_link_and_triangle<'a>(
     g1: &'a dyn Shape,
     g2: &'a dyn Shape,

@@ -16,8 +16,8 @@ pub(super) const BARREL_LINE: u32 = 2;
 /// The first of the eight vertices and edges of the squares that stand for flat caps there.
 pub(super) const SQUARE: u32 = 3;
 
-/// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces that meet there. Nothing
-/// for a feature that the link does not have, and where there is no normal (on a wire).
+/// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces that meet
+/// there. Nothing for a feature that the link does not have, and where there is no normal (on a wire).
 pub(super) fn normal(link: &ModifiedCylinder, feature: FeatureId, point: Vector) -> Option<Vector> {
     let (frame, from_start) = Axial::around(link, point)?;
     let lateral = || unit_across(from_start, frame.axis);

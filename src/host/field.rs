@@ -1,8 +1,9 @@
 //! Height fields and voxels as composites, for the queries that parry has no composite version of.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no height component, and none of
-//! its queries names the element that answered. So the elements are visited here: those whose boxes meet the box that the
-//! other shape occupies, reaches or sweeps, loosened by what rounding can have taken from it.
+//! parry's cast against a height field looks at the starting cells only when the motion has no height
+//! component, and none of its queries names the element that answered. So the elements are visited here:
+//! those whose boxes meet the box that the other shape occupies, reaches or sweeps, loosened by what rounding
+//! can have taken from it.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -104,8 +105,8 @@ impl<D: QueryDispatcher> FieldPair<'_, D> {
 
 /// The first hit of a moving shape on a moving height field.
 ///
-/// The elements that count are within reach of the ball around the shape: in the field's frame its centre travels no further
-/// than both move and turn it together.
+/// The elements that count are within reach of the ball around the shape: in the field's frame its centre
+/// travels no further than both move and turn it together.
 pub(super) fn cast_nonlinear(
     dispatcher: &impl QueryDispatcher,
     (motion1, field): (&NonlinearRigidMotion, &HeightField),

@@ -1,19 +1,22 @@
-//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart, and along what.
+//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart, and along
+//! what.
 //!
-//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the direction `n`. Moving
-//! the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is. So every `n` gives a lower bound on the
-//! distance while they are apart (the best `n` attains it), and a translation that separates them when they overlap (the best
-//! `n` gives the least).
+//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the
+//! direction `n`. Moving the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is.
+//! So every `n` gives a lower bound on the distance while they are apart (the best `n` attains it), and a
+//! translation that separates them when they overlap (the best `n` gives the least).
 //!
-//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they are close, since
-//!    rounding turns it by the extent over the distance. The normals of the features don't suffer from that: the face's, the
-//!    axis, the products of axis and edges, and the direction from the axis to the triangle made perpendicular to either.
-//!    The one with the largest gap is the contact's normal.
-//! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so the least
-//!    translation is along the way from the axis to the triangle, and `radius - F` long for their distance `F`.
-//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and the one that parry's expanding polytope
-//!    finds. The translation separates, but it need not be the least: the least can lie along a rim, which the polytope only
-//!    approaches. Moved apart by it the two touch, or come as near as that, and the touching points are the contact's.
+//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they
+//!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
+//!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
+//!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal.
+//! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so
+//!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
+//!    distance `F`.
+//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and the one that parry's
+//!    expanding polytope finds. The translation separates, but it need not be the least: the least can lie
+//!    along a rim, which the polytope only approaches. Moved apart by it the two touch, or come as near as
+//!    that, and the touching points are the contact's.
 
 use super::axial::{perpendicular, power_of_two, unit, unit_across};
 use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
@@ -34,7 +37,8 @@ pub(super) struct LinkContact {
     pub normal: Vector,
 }
 
-/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave the range of f64.
+/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave the range
+/// of f64.
 pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<LinkContact> {
     let local = Local::new(link, triangle)?;
     let found = local.contact();
@@ -111,8 +115,8 @@ impl Local {
         (closest.distance, to_vector(closest.point2), to_vector(closest.point1))
     }
 
-    /// The largest gap and its direction, among the features' normals and `more`, as they are and made perpendicular to the
-    /// edges and the axis.
+    /// The largest gap and its direction, among the features' normals and `more`, as they are and made
+    /// perpendicular to the edges and the axis.
     fn widest_gap(&self, more: [Option<Vector>; 2]) -> (Real, Vector) {
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];

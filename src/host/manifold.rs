@@ -1,8 +1,9 @@
 //! Contact manifolds: parry's own, led through this crate's dispatcher.
 //!
-//! A pair is taken apart as everywhere in this folder, by parry's routines for the shapes that it knows, because they keep the
-//! manifolds of a pair from one step to the next. What is left, a link against a triangle or another convex shape, is answered
-//! by `L`: parry clips the polygons that stand for the link's surface.
+//! A pair is taken apart as everywhere in this folder, by parry's routines for the shapes that it knows,
+//! because they keep the manifolds of a pair from one step to the next. What is left, a link against a
+//! triangle or another convex shape, is answered by `L`: parry clips the polygons that stand for the link's
+//! surface.
 
 use super::dispatcher::{ContinuumDispatcher, as_link_and_triangle, check_margin, check_pose};
 use super::watched::Watched;

@@ -1,11 +1,12 @@
 //! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers exactly.
 //!
-//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays where it is and
-//! the robot is moved into its frame. Answers go back to the frames of the two shapes at the end.
+//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays
+//! where it is and the robot is moved into its frame. Answers go back to the frames of the two shapes at the
+//! end.
 
 use super::link_contact::{self, LinkContact};
-use crate::distance::{Vec3, triangle_modified_cylinder};
-use crate::proximity::{Found, Probe, Until, place, search};
+use crate::distance::{Scalar, Vec3, triangle_modified_cylinder};
+use crate::proximity::{Found, Probe, Until, search};
 use crate::robot::COORDINATE_LIMIT;
 use crate::{Cap, Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -139,20 +140,24 @@ impl<'a> RobotPair<'a> {
         margin: Real,
         until: Until,
     ) -> Result<Option<Nearest>, Unsupported> {
-        let bounds = mesh.bvh().root_aabb();
-        let reach = in_range(bounds.mins)?.max(in_range(bounds.maxs)?);
-        let mut probes = Vec::with_capacity(self.links.len());
-        place(self.links, &self.robot_pose(), reach, &mut probes).map_err(|_| Unsupported)?;
+        let (bounds, pose) = (mesh.bvh().root_aabb(), self.robot_pose());
+        let mut reach = in_range(bounds.mins)?.max(in_range(bounds.maxs)?);
+        for link in self.links {
+            let link = self.placed(link)?;
+            reach = reach.max(in_range(link.start())?).max(in_range(link.end())?).max(link.radius());
+        }
+        let scale = reach.power_of_two_to_unity();
 
-        let mut best: Option<(usize, &Probe, Found)> = None;
-        for (link, probe) in probes.iter().enumerate() {
+        let mut best: Option<(usize, Probe, Found)> = None;
+        for (index, link) in self.links.iter().enumerate() {
+            let probe = Probe::new(link, &pose, scale);
             // The search wants triangles strictly nearer than its bound. All probes have the same scale.
             let bound = match &best {
                 Some((_, _, found)) => found.closest.distance,
                 None => probe.scaled(margin).next_up(),
             };
-            if let Some(found) = search(mesh, probe, bound, until).map_err(|_| Unsupported)? {
-                best = Some((link, probe, found));
+            if let Some(found) = search(mesh, &probe, bound, until).map_err(|_| Unsupported)? {
+                best = Some((index, probe, found));
                 if until == Until::FirstWithinBound {
                     break;
                 }

@@ -1,13 +1,14 @@
 //! The support map of a link, and its polygonal features for parry's generic algorithms.
 //!
-//! The support point of a direction that leans towards one end belongs to that end: on a half ball, one radius along the
-//! direction; on a disc, one radius along the part of the direction perpendicular to the axis. (The other end's best point
-//! along that direction is at most the first end's rim, shifted back along the axis.)
+//! The support point of a direction that leans towards one end belongs to that end: on a half ball, one
+//! radius along the direction; on a disc, one radius along the part of the direction perpendicular to the
+//! axis. (The other end's best point along that direction is at most the first end's rim, shifted back along
+//! the axis.)
 //!
-//! The **features** are approximations, because parry's clipping knows polygons of at most four vertices: a flat cap is a
-//! square inscribed in its disc with one corner at the azimuth asked for, everything else a segment along the barrel whose
-//! ends are support points of the two ends. They serve contact manifolds against shapes that this crate has no closed form
-//! for; no distance, contact or ray uses them.
+//! The **features** are approximations, because parry's clipping knows polygons of at most four vertices: a
+//! flat cap is a square inscribed in its disc with one corner at the azimuth asked for, everything else a
+//! segment along the barrel whose ends are support points of the two ends. They serve contact manifolds
+//! against shapes that this crate has no closed form for; no distance, contact or ray uses them.
 
 use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature;

@@ -1,7 +1,8 @@
 //! A dispatcher that remembers whether a pair was refused.
 //!
-//! parry's queries on composite shapes skip the parts whose pair the dispatcher does not support: a refused pair reads as
-//! infinitely far away. They are handed a [`Watched`] instead, and once one of its pairs was refused, so is the whole answer.
+//! parry's queries on composite shapes skip the parts whose pair the dispatcher does not support: a refused
+//! pair reads as infinitely far away. They are handed a [`Watched`] instead, and once one of its pairs was
+//! refused, so is the whole answer.
 
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::NormalConstraints;
@@ -20,7 +21,8 @@ pub(super) struct Watched<'a, D> {
 }
 
 impl<'a, D> Watched<'a, D> {
-    /// The answer that `query` gets from `dispatcher`, unless one of the pairs that it consists of was refused.
+    /// The answer that `query` gets from `dispatcher`, unless one of the pairs that it consists of was
+    /// refused.
     pub fn ask<T>(dispatcher: &'a D, query: impl FnOnce(&Self) -> T) -> Result<T, Unsupported> {
         let watched = Self { dispatcher, refused: AtomicBool::new(false) };
         let answer = query(&watched);

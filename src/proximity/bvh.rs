@@ -1,15 +1,17 @@
 //! Proximity by a bounding volume hierarchy.
 
-use super::descent::{Descent, Visits};
+use super::descent::{Descent, Scratch, SearchMesh, Visits};
 use super::placed::Placed;
 use super::probe::{Probe, check_vertices};
 use super::search::Found;
+use super::walk::Walk;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
-use crate::robot::{Run, distance_to_segment};
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 
 /// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
 /// triangles.
@@ -22,11 +24,20 @@ pub struct BvhSearch {
     level: Level,
     /// The largest coordinate of the mesh.
     reach: Real,
-    descent: Descent,
+    mesh: SearchMesh,
+    memory: Memory,
+    /// One for each thread that works on a batch.
+    batch: Vec<Memory>,
+}
+
+/// What one query leaves for the next.
+#[derive(Default)]
+pub(super) struct Memory {
+    pub scratch: Scratch,
     /// The closest triangle of each link at the last query, where there was one.
-    last: Vec<u32>,
+    pub last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
-    last_minimum: Option<(usize, u32)>,
+    pub last_minimum: Option<(usize, u32)>,
 }
 
 impl BvhSearch {
@@ -39,123 +50,35 @@ impl BvhSearch {
             return Err(MeshError::Empty);
         }
         let reach = check_vertices(mesh.vertices())?;
-        let descent = Descent::new(mesh.vertices(), mesh.indices());
-        Ok(Self { level: Level::new(), reach, descent, last: Vec::new(), last_minimum: None })
+        let mesh = SearchMesh::new(mesh.vertices(), mesh.indices());
+        Ok(Self { level: Level::new(), reach, mesh, memory: Memory::default(), batch: Vec::new() })
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
     pub fn forget(&mut self) {
-        self.last.clear();
-        self.last_minimum = None;
+        self.memory.last.clear();
+        self.memory.last_minimum = None;
     }
 
-    /// How much was computed since the engine was built.
+    /// How much was computed since the engine was built, batches left out.
     pub fn visits(&self) -> Visits {
-        self.descent.visits
+        self.memory.scratch.visits
     }
+}
 
-    fn per_link_in<S: Simd>(&mut self, simd: S, placed: &Placed, out: &mut Vec<LinkProximity>) {
-        for link in 0..placed.links() {
-            let before = out.last().map(|answer: &LinkProximity| answer.triangle);
-            let start = [self.last.get(link).copied(), before];
-            // Without a bound some triangle is always the nearest.
-            if let Some((probe, found)) = self.nearest(simd, placed, link, Real::INFINITY, start) {
-                out.push(probe.report(link, &found));
-            }
-        }
-    }
-
-    fn nearest<S: Simd>(
-        &mut self,
-        simd: S,
-        placed: &Placed,
-        link: usize,
-        bound: Real,
-        start: [Option<u32>; 2],
-    ) -> Option<(Probe, Found)> {
-        let probe = placed.probe(link);
-        let coarse = placed.coarse(link, &self.descent.tree.frame);
-        let found = self.descent.nearest(simd, &probe, coarse.as_ref(), bound, start)?;
-        Some((probe, found))
-    }
-
-    /// Whether any triangle may be nearer than `bound` to any link of a run; false only if none is.
-    fn may_meet<S: Simd>(&mut self, simd: S, placed: &Placed, run: &Run, bound: Real) -> bool {
-        let coarse = match run {
-            Run::Links { envelope, .. } => placed.coarse_envelope(envelope, &self.descent.tree.frame),
-            Run::Link(link) => placed.coarse(*link, &self.descent.tree.frame),
-        };
-        coarse.is_none_or(|coarse| self.descent.may_meet(simd, &coarse, bound))
-    }
-
-    /// The nearest link and triangle among those nearer than `best`, where there is a best.
-    fn minimum_in<S: Simd>(&mut self, simd: S, placed: &Placed) -> Option<(usize, Probe, Found)> {
-        let (first, triangle) = match self.last_minimum {
-            Some((link, triangle)) if link < placed.links() => (link, triangle),
-            _ => self.likely_minimum(simd, placed),
-        };
-        let (probe, found) = self.nearest(simd, placed, first, Real::INFINITY, [Some(triangle), None])?;
-        let mut best = (first, probe, found);
-        let runs = placed.runs();
-        let mut place = 0;
-        while let Some(run) = runs.get(place) {
-            let bound = best.2.closest.distance;
-            match run {
-                Run::Links { inner, .. } if !self.may_meet(simd, placed, run, bound) => place += inner,
-                Run::Link(link) if *link != first => {
-                    let start = [Some(best.2.triangle), None];
-                    if let Some((probe, found)) = self.nearest(simd, placed, *link, bound, start) {
-                        best = (*link, probe, found);
-                    }
-                }
-                _ => {}
-            }
-            place += 1;
-        }
-        Some(best)
-    }
-
-    /// The triangle nearest to the capsule around the robot, and the link nearest to that triangle.
-    fn likely_minimum<S: Simd>(&mut self, simd: S, placed: &Placed) -> (usize, u32) {
-        let Some((probe, envelope)) = placed.envelope_of_all() else { return (0, 0) };
-        let coarse = placed.coarse_envelope(&envelope, &self.descent.tree.frame);
-        let found = self.descent.nearest(simd, &probe, coarse.as_ref(), Real::INFINITY, [None, None]);
-        let triangle = found.map_or(0, |found| found.triangle);
-        let [a, b, c] = self.descent.indices[triangle as usize].map(|v| self.descent.vertices[v as usize]);
-        let centre = placed.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
-        let distance = |link: usize| {
-            let link = placed.link(link);
-            distance_to_segment(centre, link.start(), link.end()) - link.radius()
-        };
-        let mut nearest = (0, distance(0));
-        for link in 1..placed.links() {
-            let other = distance(link);
-            if other < nearest.1 {
-                nearest = (link, other);
-            }
-        }
-        (nearest.0, triangle)
-    }
-
-    fn clears_in<S: Simd>(&mut self, simd: S, placed: &Placed, margin: Real) -> bool {
-        // The next number, because the search wants triangles strictly nearer than its bound.
-        let bound = (margin * placed.scale()).next_up();
-        let runs = placed.runs();
-        let mut place = 0;
-        while let Some(run) = runs.get(place) {
-            if !self.may_meet(simd, placed, run, bound) {
-                if let Run::Links { inner, .. } = run {
-                    place += inner;
-                }
-            } else if let Run::Link(link) = run
-                && self.nearest(simd, placed, *link, bound, [None, None]).is_some()
-            {
-                return false;
-            }
-            place += 1;
-        }
-        true
-    }
+/// The closest triangle of every link.
+fn per_link(
+    level: Level,
+    mesh: &SearchMesh,
+    placed: &Placed,
+    memory: &mut Memory,
+    out: &mut Vec<LinkProximity>,
+) {
+    let Memory { scratch, last, .. } = memory;
+    let mut walk = Walk { descent: Descent { mesh, scratch }, placed };
+    dispatch!(level, simd => walk.per_link(simd, last, out));
+    last.clear();
+    last.extend(out.iter().map(|answer| answer.triangle));
 }
 
 impl Proximity for BvhSearch {
@@ -167,22 +90,21 @@ impl Proximity for BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         let placed = Placed::new(robot, pose, self.reach)?;
-        dispatch!(self.level, simd => self.per_link_in(simd, &placed, out));
-        self.last.clear();
-        self.last.extend(out.iter().map(|answer| answer.triangle));
+        per_link(self.level, &self.mesh, &placed, &mut self.memory, out);
         Ok(())
     }
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
         let placed = Placed::new(robot, pose, self.reach)?;
-        let found = dispatch!(self.level, simd => self.minimum_in(simd, &placed));
+        let Memory { scratch, last_minimum, .. } = &mut self.memory;
+        let mut walk = Walk { descent: Descent { mesh: &self.mesh, scratch }, placed: &placed };
+        let found = dispatch!(self.level, simd => walk.minimum(simd, *last_minimum));
         let (link, probe, found) = found.unwrap_or_else(|| {
             // Without a bound some triangle is always the nearest; this is any other.
-            let probe = placed.probe(0);
-            let corners = self.descent.indices[0].map(|vertex| self.descent.vertices[vertex as usize]);
-            (0, probe, Found { triangle: 0, closest: probe.closest(corners) })
+            let probe: Probe = placed.probe(0);
+            (0, probe, Found { triangle: 0, closest: probe.closest(self.mesh.corners(0)) })
         });
-        self.last_minimum = Some((link, found.triangle));
+        *last_minimum = Some((link, found.triangle));
         Ok(probe.report(link, &found))
     }
 
@@ -191,16 +113,48 @@ impl Proximity for BvhSearch {
             return Err(ProximityError::BadMargin { margin });
         }
         let placed = Placed::new(robot, pose, self.reach)?;
-        Ok(dispatch!(self.level, simd => self.clears_in(simd, &placed, margin)))
+        let descent = Descent { mesh: &self.mesh, scratch: &mut self.memory.scratch };
+        let mut walk = Walk { descent, placed: &placed };
+        Ok(dispatch!(self.level, simd => walk.clears(simd, margin)))
+    }
+
+    fn per_link_batch(
+        &mut self,
+        robots: &[(Chain, Pose)],
+        out: &mut Vec<Vec<LinkProximity>>,
+    ) -> Result<(), ProximityError> {
+        out.resize_with(robots.len(), Vec::new);
+        let (level, mesh, reach) = (self.level, &self.mesh, self.reach);
+        let answer = |memory: &mut Memory, robots: &[(Chain, Pose)], out: &mut [Vec<LinkProximity>]| {
+            memory.last.clear();
+            for ((robot, pose), answers) in robots.iter().zip(out) {
+                answers.clear();
+                per_link(level, mesh, &Placed::new(robot, pose, reach)?, memory, answers);
+            }
+            Ok(())
+        };
+        #[cfg(feature = "parallel")]
+        {
+            // A few shares for each thread, because robots differ in the time they take.
+            let share = robots.len().div_ceil(4 * rayon::current_num_threads()).max(1);
+            self.batch.resize_with(robots.len().div_ceil(share), Memory::default);
+            let shares = robots.par_chunks(share).zip(out.par_chunks_mut(share));
+            shares.zip(&mut self.batch).try_for_each(|((robots, out), memory)| answer(memory, robots, out))
+        }
+        #[cfg(not(feature = "parallel"))]
+        {
+            self.batch.resize_with(1, Memory::default);
+            answer(&mut self.batch[0], robots, out)
+        }
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.descent.vertices.len();
+        let expected = self.mesh.vertices.len();
         if vertices.len() != expected {
             return Err(MeshError::VertexCount { expected, got: vertices.len() });
         }
         self.reach = check_vertices(vertices)?;
-        self.descent.set_vertices(vertices);
+        self.mesh.set_vertices(vertices);
         Ok(())
     }
 }

@@ -28,16 +28,44 @@ pub struct Visits {
     pub measured: u64,
 }
 
-/// The mesh, and memory that is used again.
-pub(super) struct Descent {
+/// A mesh and its hierarchy.
+pub(super) struct SearchMesh {
     pub tree: Tree,
     pub vertices: Vec<Vector>,
     pub indices: Vec<[u32; 3]>,
+}
+
+impl SearchMesh {
+    pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
+        Self { tree: Tree::new(vertices, indices), vertices: vertices.to_vec(), indices: indices.to_vec() }
+    }
+
+    /// Takes over moved vertices.
+    pub(super) fn set_vertices(&mut self, vertices: &[Vector]) {
+        self.vertices.copy_from_slice(vertices);
+        self.tree.refit(vertices, &self.indices);
+    }
+
+    /// The corners of a triangle.
+    pub(super) fn corners(&self, triangle: u32) -> [Vector; 3] {
+        self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+}
+
+/// Memory that is used again.
+#[derive(Default)]
+pub(super) struct Scratch {
     pub visits: Visits,
     /// Patches that wait for their turn, the nearest last.
     stack: Vec<(f32, u32)>,
     /// Triangles that may be the nearest, with their axis distances.
     candidates: Vec<(f32, u32)>,
+}
+
+/// A search through a mesh.
+pub(super) struct Descent<'a> {
+    pub mesh: &'a SearchMesh,
+    pub scratch: &'a mut Scratch,
 }
 
 /// A link on its way down.
@@ -51,24 +79,7 @@ struct Quest<'a> {
     found: Option<Found>,
 }
 
-impl Descent {
-    pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
-        Self {
-            tree: Tree::new(vertices, indices),
-            vertices: vertices.to_vec(),
-            indices: indices.to_vec(),
-            visits: Visits::default(),
-            stack: Vec::new(),
-            candidates: Vec::new(),
-        }
-    }
-
-    /// Takes over moved vertices.
-    pub(super) fn set_vertices(&mut self, vertices: &[Vector]) {
-        self.vertices.copy_from_slice(vertices);
-        self.tree.refit(vertices, &self.indices);
-    }
-
+impl Descent<'_> {
     /// The triangle nearest to a link among those strictly nearer than `bound`, which is in the probe's units.
     /// The leaves of the triangles to `start` with come first, for the bound they give.
     #[inline(never)] // compiled once for each instruction set
@@ -98,16 +109,16 @@ impl Descent {
         start: [Option<u32>; 2],
     ) {
         let packed = PackedLink::<L>::new(token, quest.link);
-        self.candidates.clear();
+        self.scratch.candidates.clear();
         let mut start = [self.leaf_of(start[0]), self.leaf_of(start[1])];
         if start[0] == start[1] {
             start[1] = None;
         }
-        self.stack.clear();
-        self.stack.push((0.0, Child::Node(0).pack()));
+        self.scratch.stack.clear();
+        self.scratch.stack.push((0.0, Child::Node(0).pack()));
         // Below 0, to tell a leaf to start with from the same leaf met again.
-        self.stack.extend(start.iter().rev().flatten().map(|&leaf| (-1.0, Child::Leaf(leaf).pack())));
-        while let Some((squared, child)) = self.stack.pop() {
+        self.scratch.stack.extend(start.iter().rev().flatten().map(|&leaf| (-1.0, Child::Leaf(leaf).pack())));
+        while let Some((squared, child)) = self.scratch.stack.pop() {
             if squared >= quest.limit * quest.limit || quest.bound <= 0.0 {
                 continue;
             }
@@ -132,14 +143,14 @@ impl Descent {
     #[inline(always)]
     fn meets<L: Pack<Element = f32>>(&mut self, token: L::Token, link: &CoarseLink<f32>, limit: f32) -> bool {
         let packed = PackedLink::<L>::new(token, link);
-        self.stack.clear();
-        self.stack.push((0.0, Child::Node(0).pack()));
-        while let Some((_, child)) = self.stack.pop() {
+        self.scratch.stack.clear();
+        self.scratch.stack.push((0.0, Child::Node(0).pack()));
+        while let Some((_, child)) = self.scratch.stack.pop() {
             match Child::unpack(child) {
                 Child::Node(node) => self.visit_node(token, &packed, node, limit),
                 Child::Leaf(leaf) => {
-                    self.visits.leaves += 1;
-                    let leaf = &self.tree.leaves[leaf as usize];
+                    self.scratch.visits.leaves += 1;
+                    let leaf = &self.mesh.tree.leaves[leaf as usize];
                     for lane in (0..BLOCK).step_by(L::LANES) {
                         let vertices = load_vertices::<L>(token, &leaf.rows, lane);
                         if packed.not_behind_plane(vertices, L::splat(token, limit)) != 0 {
@@ -153,7 +164,7 @@ impl Descent {
     }
 
     fn leaf_of(&self, triangle: Option<u32>) -> Option<u32> {
-        self.tree.leaf_of.get(triangle? as usize).copied()
+        self.mesh.tree.leaf_of.get(triangle? as usize).copied()
     }
 
     /// Puts the children that may hold a nearer triangle on the stack, the nearest on top.
@@ -165,8 +176,8 @@ impl Descent {
         node: u32,
         limit: f32,
     ) {
-        self.visits.nodes += 1;
-        let node = &self.tree.nodes[node as usize];
+        self.scratch.visits.nodes += 1;
+        let node = &self.mesh.tree.nodes[node as usize];
         let limit = L::splat(token, limit * limit);
         let mut bounds = [0.0; WIDTH];
         let mut near = 0;
@@ -175,19 +186,19 @@ impl Descent {
             squared.store(&mut bounds[lane..]);
             near |= L::bits(squared.lt(limit)) << lane;
         }
-        let bottom = self.stack.len();
+        let bottom = self.scratch.stack.len();
         while near != 0 {
             let child = near.trailing_zeros() as usize;
             near &= near - 1;
             // Insertion keeps the few new entries in order.
             let entry = (bounds[child], node.children[child]);
-            self.stack.push(entry);
-            let mut place = self.stack.len() - 1;
-            while place > bottom && self.stack[place - 1].0 < entry.0 {
-                self.stack[place] = self.stack[place - 1];
+            self.scratch.stack.push(entry);
+            let mut place = self.scratch.stack.len() - 1;
+            while place > bottom && self.scratch.stack[place - 1].0 < entry.0 {
+                self.scratch.stack[place] = self.scratch.stack[place - 1];
                 place -= 1;
             }
-            self.stack[place] = entry;
+            self.scratch.stack[place] = entry;
         }
     }
 
@@ -200,8 +211,8 @@ impl Descent {
         leaf: u32,
         quest: &mut Quest,
     ) {
-        self.visits.leaves += 1;
-        let leaf: &Leaf = &self.tree.leaves[leaf as usize];
+        self.scratch.visits.leaves += 1;
+        let leaf: &Leaf = &self.mesh.tree.leaves[leaf as usize];
         let triangles = leaf.triangles;
         let mut distances = [0.0; BLOCK];
         let (mut near, mut at_cap) = (0, 0);
@@ -227,7 +238,7 @@ impl Descent {
             if overlaps || at_cap >> lane & 1 == 1 {
                 self.measure(quest, triangle);
             } else {
-                self.candidates.push((distance, triangle));
+                self.scratch.candidates.push((distance, triangle));
                 quest.limit = quest.limit.min(distance + 2.0 * quest.link.error);
             }
         }
@@ -236,7 +247,7 @@ impl Descent {
     /// Measures the candidates that are still in question, the nearest first.
     #[inline(never)] // the same code whatever the instruction set
     fn settle(&mut self, quest: &mut Quest) {
-        let mut candidates = std::mem::take(&mut self.candidates);
+        let mut candidates = std::mem::take(&mut self.scratch.candidates);
         candidates.retain(|candidate| candidate.0 < quest.limit);
         candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for &(distance, triangle) in &candidates {
@@ -245,15 +256,14 @@ impl Descent {
             }
             self.measure(quest, triangle);
         }
-        self.candidates = candidates;
+        self.scratch.candidates = candidates;
     }
 
     /// Measures one triangle in double precision.
     #[inline(never)] // the same code whatever the instruction set
     fn measure(&mut self, quest: &mut Quest, triangle: u32) {
-        self.visits.measured += 1;
-        let vertices = self.indices[triangle as usize].map(|index| self.vertices[index as usize]);
-        if let Some(closest) = quest.probe.nearer_than(quest.bound, vertices) {
+        self.scratch.visits.measured += 1;
+        if let Some(closest) = quest.probe.nearer_than(quest.bound, self.mesh.corners(triangle)) {
             quest.bound = closest.distance;
             quest.limit = quest.limit.min(quest.link.axis_limit(quest.bound));
             quest.found = Some(Found { triangle, closest });
@@ -263,14 +273,13 @@ impl Descent {
     /// Looks at every triangle: for a link that lies too far out for single precision.
     fn nearest_of_all(&mut self, probe: &Probe, mut bound: Real) -> Option<Found> {
         let mut found = None;
-        for (triangle, corners) in (0..).zip(&self.indices) {
-            let vertices = corners.map(|index| self.vertices[index as usize]);
-            if let Some(closest) = probe.nearer_than(bound, vertices) {
+        for triangle in 0..self.mesh.indices.len() as u32 {
+            if let Some(closest) = probe.nearer_than(bound, self.mesh.corners(triangle)) {
                 bound = closest.distance;
                 found = Some(Found { triangle, closest });
             }
         }
-        self.visits.measured += self.indices.len() as u64;
+        self.scratch.visits.measured += self.mesh.indices.len() as u64;
         found
     }
 }

@@ -14,8 +14,9 @@ mod scan;
 mod search;
 mod soa;
 mod tree;
+mod walk;
 
-pub(crate) use probe::{Probe, place};
+pub(crate) use probe::Probe;
 pub(crate) use search::{Found, Until, search};
 
 pub use bvh::BvhSearch;

@@ -17,7 +17,7 @@ pub const CAPS: [[Cap; 2]; 4] =
 /// What these tests draw besides points and poses.
 pub trait Draw {
     /// Uniform in the logarithm.
-    fn magnitude(&mut self, low: Real, high: Real) -> Real;
+    fn log_between(&mut self, low: Real, high: Real) -> Real;
     fn index(&mut self, count: usize) -> usize;
     fn chance(&mut self, p: Real) -> bool;
     /// Uniform in a cube of this half width.
@@ -28,7 +28,7 @@ pub trait Draw {
 }
 
 impl Draw for Random {
-    fn magnitude(&mut self, low: Real, high: Real) -> Real {
+    fn log_between(&mut self, low: Real, high: Real) -> Real {
         self.between(low.ln(), high.ln()).exp()
     }
 
@@ -51,17 +51,17 @@ impl Draw for Random {
     fn link(&mut self) -> ModifiedCylinder {
         let start = self.vector(1.0);
         let axis = if self.chance(0.2) { Vector::AXES[self.index(3)] } else { self.direction() };
-        let radius = if self.chance(0.05) { 0.0 } else { self.magnitude(1e-3, 2.0) };
+        let radius = if self.chance(0.05) { 0.0 } else { self.log_between(1e-3, 2.0) };
         if self.chance(0.05) {
             return ModifiedCylinder::capsule(start, start, radius).unwrap();
         }
-        let end = start + axis * self.magnitude(1e-3, 2.0);
+        let end = start + axis * self.log_between(1e-3, 2.0);
         ModifiedCylinder::new(start, end, radius, self.caps()).unwrap()
     }
 }
 
-/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a membership test, not the
-/// distance. Uses nothing of the crate but the link's data.
+/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a membership
+/// test, not the distance. Uses nothing of the crate but the link's data.
 pub fn violation(link: &ModifiedCylinder, p: Vector) -> Real {
     let span = link.end() - link.start();
     let axis = span.normalize_or_zero();
