@@ -22,3 +22,15 @@ fn the_written_errors_are_the_measured_ones() {
     assert_eq!(ours.lines().count(), measured.lines().count());
     assert!(measured.lines().count() > 200, "every kind and category has a row");
 }
+
+#[test]
+fn the_readme_quotes_the_worst_errors() {
+    let written = include_str!("../docs/ACCURACY.md");
+    let all = written.lines().find(|line| line.starts_with("| **all** |")).expect("the row of all cases");
+    let cells: Vec<_> = all.split('|').map(str::trim).collect();
+    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    for (cell, precision) in [(4, "double"), (7, "single")] {
+        let quote = format!("{} u x extent in {precision} precision", cells[cell]);
+        assert!(readme.contains(&quote), "README.md should say: {quote}");
+    }
+}
