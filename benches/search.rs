@@ -1,32 +1,16 @@
 //! Per-link closest pairs by search, against parry on the same mesh and links, in one run.
 
-#[path = "../examples/scene/cavity.rs"]
-mod cavity;
+#[path = "../examples/scene/mod.rs"]
+mod scene;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use parry_continuum::parry::math::{Pose, Rotation, Vector};
+use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Cylinder, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Proximity};
-use parry_continuum::{Chain, ModifiedCylinder};
+use scene::{cavity, timing};
 use std::hint::black_box;
 use std::time::Duration;
-
-/// parry's cylinder for a link, which it wants along y around the origin.
-fn parry_cylinder(link: &ModifiedCylinder) -> (Pose, Cylinder) {
-    let rotation = Rotation::from_rotation_arc(Vector::Y, link.axis());
-    let pose = Pose::from_parts((link.start() + link.end()) * 0.5, rotation);
-    (pose, Cylinder::new(link.length() * 0.5, link.radius()))
-}
-
-fn parry_per_link(mesh: &TriMesh, cylinders: &[(Pose, Cylinder)], pose: &Pose) -> f64 {
-    let distance = |(place, cylinder): &(Pose, Cylinder)| {
-        query::distance(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh)
-            .expect("a supported pair")
-            .distance
-    };
-    cylinders.iter().map(distance).sum()
-}
 
 fn parry_clears(mesh: &TriMesh, cylinders: &[(Pose, Cylinder)], pose: &Pose, margin: f64) -> bool {
     cylinders.iter().all(|(place, cylinder)| {
@@ -39,8 +23,8 @@ fn search(criterion: &mut Criterion) {
     for level in [4, 6, 8] {
         let mesh = cavity::mesh(level);
         for (scene, clearance) in [("wall", 2.0), ("mid", 20.0)] {
-            let robot: Chain = cavity::chain(clearance);
-            let cylinders: Vec<_> = robot.links().iter().map(parry_cylinder).collect();
+            let robot = cavity::chain(clearance);
+            let cylinders = timing::cylinders(&robot);
             let frames = cavity::frames(60);
             let margin = clearance * 0.5;
             let mut group = criterion.benchmark_group(format!("search/{scene}"));
@@ -55,7 +39,7 @@ fn search(criterion: &mut Criterion) {
                 });
             };
             bench("parry 30 cylinders", &mut |pose| {
-                black_box(parry_per_link(&mesh, &cylinders, pose));
+                black_box(timing::parry(&mesh, &cylinders, pose).expect("a supported pair"));
             });
             bench("parry clears", &mut |pose| {
                 black_box(parry_clears(&mesh, &cylinders, pose, margin));

@@ -1,30 +1,19 @@
 //! A bumpy closed cavity with a robot inside: a scene of any number of triangles for timing.
 
+use super::subdivide;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use std::collections::HashMap;
 
 /// An icosphere of about 100 mm whose wall bulges in and out; 20 * 4^level triangles, in the order of subdivision.
 pub fn mesh(level: u32) -> TriMesh {
-    let (mut vertices, mut indices) = icosahedron();
+    let mut mesh = icosahedron();
     for _ in 0..level {
-        let mut middles = HashMap::new();
-        let mut finer = Vec::with_capacity(indices.len() * 4);
-        for [a, b, c] in indices {
-            let mut middle = |i: u32, j: u32| {
-                *middles.entry((i.min(j), i.max(j))).or_insert_with(|| {
-                    vertices.push((vertices[i as usize] + vertices[j as usize]).normalize());
-                    vertices.len() as u32 - 1
-                })
-            };
-            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-        }
-        indices = finer;
+        mesh = subdivide::in_four(mesh);
+        mesh.0.iter_mut().for_each(|vertex| *vertex = vertex.normalize());
     }
-    let vertices = vertices.into_iter().map(|direction| direction * radius(direction)).collect();
-    TriMesh::new(vertices, indices).expect("an icosphere has triangles")
+    let vertices = mesh.0.into_iter().map(|direction| direction * radius(direction)).collect();
+    TriMesh::new(vertices, mesh.1).expect("an icosphere has triangles")
 }
 
 /// How far the wall is from the centre in a direction, mm.

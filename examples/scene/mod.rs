@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each program that includes the scene uses its own part of it")]
 
 pub mod canvas;
+pub mod cavity;
 pub mod colour_map;
 pub mod command;
 pub mod ctr;
@@ -13,6 +14,7 @@ pub mod mesh_file;
 pub mod picture;
 pub mod remesh;
 pub mod steer;
+pub mod subdivide;
 pub mod surface;
 pub mod timing;
 pub mod ventricle;

@@ -63,7 +63,7 @@ impl<T: Scalar> Face<T> {
 
     /// A normal of twice the area's length, without a component along the longest edge.
     #[inline(always)]
-    fn across(&self) -> Vec3<T> {
+    pub(crate) fn across(&self) -> Vec3<T> {
         let [e1, e2] = self.edges();
         let longest = self.vertices[2] - self.vertices[1];
         let across = e1.cross(e2);
@@ -114,9 +114,16 @@ impl<T: Scalar> Face<T> {
         self.vertices[0].along(e1, alpha).along(e2, beta)
     }
 
+    /// Whether a point of the plane lies in the triangle. What one pass leaves out is within rounding of an edge.
+    #[inline(always)]
+    pub(crate) fn holds_point(&self, point: Vec3<T>) -> T::Mask {
+        let relative = point - self.vertices[0];
+        self.holds(relative.dot(self.dual[0]), relative.dot(self.dual[1]))
+    }
+
     /// Whether the coordinates are those of a point of the triangle.
     #[inline(always)]
-    pub(crate) fn holds(&self, alpha: T, beta: T) -> T::Mask {
+    fn holds(&self, alpha: T, beta: T) -> T::Mask {
         let zero = alpha.zero();
         self.has_area() & zero.le(alpha) & zero.le(beta) & (alpha + beta).le(alpha.one())
     }

@@ -1,6 +1,8 @@
 //! Segment against triangle, with the parameter of the closest point on the segment.
 //!
-//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside: 0.
+//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside: 0. The
+//!    crossing is found as a point and then looked up in the triangle. To interpolate the plane's coordinates of
+//!    the ends would not do on a sliver, where they are as large as length / height and as wrong.
 //! 2. **An end above the interior.** The end's foot on the plane lies inside.
 //! 3. **An edge.** Segment-segment with each of the three edges.
 //!
@@ -67,13 +69,12 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
         .nearer_where(low.inside, above(face, zero, &low))
         .nearer_where(high.inside, above(face, one, &high));
     // Case 1.
-    let opposite = low.residual.dot(high.residual).lt(zero);
-    let (below, beyond) = (low.residual.norm(), high.residual.norm());
-    let s = below.over(below + beyond);
-    let alpha = (high.alpha - low.alpha).mul_add(s, low.alpha);
-    let beta = (high.beta - low.beta).mul_add(s, low.beta);
+    let normal = face.across();
+    let (from, to) = (-normal.dot(a), normal.dot(end - a));
+    let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
+    let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };
-    nearest.nearer_where(opposite & face.holds(alpha, beta), pierced)
+    nearest.nearer_where(opposite & face.holds_point(end * s), pierced)
 }
 
 /// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)

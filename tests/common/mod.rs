@@ -2,6 +2,8 @@
 #![allow(dead_code)] // each test uses its part
 
 pub mod double_double;
+pub mod kernels;
+pub mod precision;
 pub mod problems;
 pub mod rotation;
 
