@@ -1,4 +1,50 @@
-//! Exact proximity queries between continuum robots and triangle meshes.
+//! Exact proximity queries between continuum robots and triangle meshes, for parry and rapier.
+//!
+//! How far is each link of a catheter, a concentric tube robot or a snake from the wall around it, and which two
+//! points are closest? From centreline to clearance:
+//!
+//! ```
+//! use parry_continuum::Chain;
+//! use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+//! use parry_continuum::proximity::{BvhSearch, Proximity};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32); // the wall, in mm
+//! let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+//! let centreline = [Vector::ZERO, Vector::new(0.0, 0.0, 3.0), Vector::new(1.0, 0.0, 5.0)];
+//! let robot = Chain::from_centreline(&centreline, &[1.25, 0.5])?; // a thick tube and a thin one
+//! let mut links = Vec::new();
+//! search.per_link(&robot, &Pose::IDENTITY, &mut links)?;
+//! for link in &links {
+//!     println!("link {}: {:.3} mm to triangle {}", link.link, link.distance, link.triangle);
+//! }
+//! assert!(search.clears(&robot, &Pose::IDENTITY, 2.0)?);
+//! # assert_eq!(links.len(), 2);
+//! # assert!(!search.clears(&robot, &Pose::IDENTITY, 5.0)?);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # The tour
+//! - **The robot.** A [`Chain`] of [`ModifiedCylinder`]s, each a tube whose two ends are [`Cap::Flat`] or
+//!   [`Cap::Round`]. [`Chain::from_centreline`] decides which; [`Chain::capsules`] and [`Chain::cylinders`] are the
+//!   simpler models. [`simplify`] finds the fewest links within a tolerance.
+//! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
+//!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers.
+//! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand a
+//!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
+//! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
+//!
+//! # What an answer means
+//! Distances are to the mesh's surface and unsigned: 0 where a link touches or crosses it. A robot that starts inside a
+//! closed wall and touches nothing is inside. Distances are exact up to rounding: within 16 u x extent of the true
+//! distance between the link, after its pose is applied, and the triangle. u is 2^-53, and the extent is the largest
+//! difference between two coordinates of the pair, or the radius. There are no absolute tolerances, so the unit of
+//! length does not matter. Lengths may have magnitudes up to 1e150.
+//!
+//! # Source
+//! Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots on Parallel Computing Hardware", is *the
+//! paper* in these pages. Its formulas are used with corrections, which stand where they apply.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -11,3 +57,8 @@ mod robot;
 
 pub use host::ContinuumDispatcher;
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
+
+/// Runs the code in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
