@@ -114,7 +114,8 @@ impl<T: Scalar> Face<T> {
         self.vertices[0].along(e1, alpha).along(e2, beta)
     }
 
-    /// Whether a point of the plane lies in the triangle. What one pass leaves out is within rounding of an edge.
+    /// Whether a point of the plane lies in the triangle. One pass serves: what it gets wrong is within rounding
+    /// of an edge.
     #[inline(always)]
     pub(crate) fn holds_point(&self, point: Vec3<T>) -> T::Mask {
         let relative = point - self.vertices[0];

@@ -29,7 +29,7 @@
 //!    cusp that falls short, even below 0. But L^2 + m = 1 makes g = s - R w / rho, and w / rho grows with s, so
 //!    the minimiser is never left of R N / |q|: no start is.
 //! 5. **Along the normal**, m = 0: every point of the line has the same rho; s = 0 is in the disc's plane.
-//! 6. **A point**, |e| = 0: B = 0 and s = 0.
+//! 6. **A point**, |e| = 0: B = 0, N = 0 and s = 0; |q| is taken from q itself.
 //!
 //! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
 //! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
@@ -37,7 +37,7 @@
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
-/// normal (of any length) and radius; (13) to (19).
+/// normal (of any length but 0) and radius; (13) to (19).
 #[inline(always)]
 pub fn segment_disc<T: Scalar>(
     segment: [Vec3<T>; 2],
@@ -99,7 +99,8 @@ impl<T: Scalar> Line<T> {
         let m = flat.norm_squared();
         let tau = from_centre.dot(normal.cross(flat)).abs();
         // Two expressions for N and |q|^2, equal in exact arithmetic. Each keeps its digits on its side.
-        let shallow = (slope * slope).lt(slope.lit(0.5));
+        // The first is for lines; a segment of length 0 has no direction and m = 0.
+        let shallow = (slope * slope).lt(slope.lit(0.5)) & slope.zero().lt(m);
         let n = shallow.select(-(height * slope), radial.dot(flat));
         let q = shallow.select(n.mul_add(n, tau * tau).over(m), radial.norm_squared());
         let sign = n.lt(n.zero()).select(-n.one(), n.one());

@@ -12,8 +12,8 @@
 
 use super::{Closest, Scalar, Vec3, face::Face, frame::Frame, plane_disc, segment_disc};
 
-/// The distance between a triangle and a solid disc with the given centre, normal (of any length) and radius;
-/// (22) to (25).
+/// The distance between a triangle and a solid disc with the given centre, normal (of any length but 0) and
+/// radius; (22) to (25).
 #[inline(always)]
 pub fn triangle_disc<T: Scalar>(
     triangle: [Vec3<T>; 3],

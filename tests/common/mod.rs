@@ -1,6 +1,7 @@
 //! What several tests share: reading the reference cases.
 #![allow(dead_code)] // each test uses its part
 
+pub mod certificate;
 pub mod double_double;
 pub mod kernels;
 pub mod precision;
