@@ -1,4 +1,5 @@
-//! How fast: every engine against parry on the same mesh and links, in one run. Writes `docs/SPEED.md` and its plot.
+//! How fast: every engine against parry on the same mesh and links, in one run. Writes `docs/SPEED.md`, its plot and the
+//! README's table.
 //!
 //! ```text
 //! cargo run --release --example speed
@@ -17,9 +18,8 @@ mod search;
 
 use clap::Parser;
 use scene::command;
-use std::fmt::Write;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -48,19 +48,35 @@ fn measure(options: &Options) -> Result<(), String> {
     );
     page.push_str(&head);
     let memory = exhaustive::memory()?;
-    for chapter in [
-        search::chapter()?,
-        exhaustive::chapter()?,
-        growth::chapter(options.largest, &options.out)?,
-        moving::chapter()?,
-        memory,
-    ] {
-        write!(page, "\n{chapter}").map_err(|error| error.to_string())?;
+    let (search, table) = search::chapter()?;
+    let exhaustive = exhaustive::chapter()?;
+    let growth = growth::chapter(options.largest, &options.out)?;
+    for chapter in [search, exhaustive, growth, moving::chapter()?, memory] {
+        page.push('\n');
+        page.push_str(&chapter);
     }
     let path = options.out.join("SPEED.md");
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
     println!("{}", path.display());
-    Ok(())
+    quote_in_readme(&table, &options.out)
+}
+
+/// Puts the table between the README's marks, if the page went to the `docs` beside a README that has them.
+fn quote_in_readme(table: &str, out: &Path) -> Result<(), String> {
+    let path = out.join("../README.md");
+    let Ok(readme) = fs::read_to_string(&path) else { return Ok(()) };
+    let (begin, end) = ("<!-- speed -->\n", "<!-- /speed -->");
+    let Some((before, rest)) = readme.split_once(begin) else { return Ok(()) };
+    let Some((_, after)) = rest.split_once(end) else { return Ok(()) };
+    let quote = format!(
+        "Written by `cargo run --release --example speed` on {}: a robot of 30 links in a cavity of about 100 mm, at the \
+         wall (2 mm away) and in the middle (19 mm). Times faster than parry's `distance(Cylinder, TriMesh)` for each \
+         link in the same run; `clears` against parry's `closest_points` with the same margin. \
+         [docs/SPEED.md](docs/SPEED.md) has the rest.\n\n{table}",
+        machine::description()
+    );
+    fs::write(&path, format!("{before}{begin}{quote}{end}{after}"))
+        .map_err(|error| format!("cannot write {} ({error})", path.display()))
 }
