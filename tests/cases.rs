@@ -1,34 +1,17 @@
-//! The reference distances, through the kernels, in double and single precision.
+//! The reference distances, through the kernels in double and single precision and through parry's traits.
 
 mod common;
 
+use common::precision::Precision;
 use common::{Case, distance_cases};
 use parry_continuum::distance::*;
-
-/// Unit roundoff and conversion for a precision under test.
-trait Precision: Scalar<Mask = bool> + Into<f64> + std::fmt::Debug {
-    const UNIT: f64;
-    fn from_f64(value: f64) -> Self;
-}
-impl Precision for f64 {
-    const UNIT: f64 = f64::EPSILON / 2.0;
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-}
-impl Precision for f32 {
-    const UNIT: f64 = f32::EPSILON as f64 / 2.0;
-    fn from_f64(value: f64) -> Self {
-        value as f32
-    }
-}
-
-fn vector<T: Precision>(v: [f64; 3]) -> Vec3<T> {
-    Vec3::from(v.map(T::from_f64))
-}
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher};
+use parry_continuum::parry::shape::{Shape, Triangle};
+use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 fn answer<T: Precision>(case: &Case) -> Closest<T> {
-    let v = |x| vector::<T>(x);
+    let v = |point: [f64; 3]| T::vec3(Vector::from(point));
     let tri = case.tri.map(v);
     let r = T::from_f64(case.r);
     match case.kind.as_str() {
@@ -87,4 +70,40 @@ fn every_single_precision_case_in_single_precision() {
     let cases: Vec<_> = distance_cases().into_iter().filter(|case| case.f32).collect();
     assert!(cases.len() > 1000);
     println!("f32: {:.2} units of the extent", worst::<f32>(&cases));
+}
+
+#[test]
+fn every_link_through_parrys_dispatcher() {
+    let (mut links, mut touching) = (0, 0);
+    for case in distance_cases()
+        .iter()
+        .filter(|case| case.kind.starts_with("triangle_") && case.kind != "triangle_disc")
+    {
+        let caps = case.flat().map(|flat| if flat { Cap::Flat } else { Cap::Round });
+        let (start, end) = (Vector::from(case.p0), Vector::from(case.p1));
+        // A wire of length 0 with flat caps is a point, which only two round caps may describe.
+        let caps = if start == end { [Cap::Round; 2] } else { caps };
+        let link = ModifiedCylinder::new(start, end, case.r, caps).unwrap();
+        let [a, b, c] = case.tri.map(Vector::from);
+        let triangle = Triangle::new(a, b, c);
+        let dispatcher = ContinuumDispatcher::default();
+        for (g1, g2) in [(&link as &dyn Shape, &triangle as &dyn Shape), (&triangle, &link)] {
+            let found = dispatcher.distance(&Pose::IDENTITY, g1, g2).unwrap().distance;
+            let error = (found - case.distance()).abs() / (f64::UNIT * case.scale);
+            assert!(error <= 16.0, "{} {} {}: {error} units", case.id, case.kind, case.cat);
+            match dispatcher.closest_points(&Pose::IDENTITY, g1, g2, f64::MAX).unwrap() {
+                ClosestPoints::WithinMargin(p1, p2) => {
+                    let slack = 8.0 * f64::UNIT * (case.mag + case.scale);
+                    assert!(((p1 - p2).length() - found).abs() <= slack, "{}: {p1} {p2} {found}", case.id);
+                }
+                ClosestPoints::Intersecting => {
+                    assert_eq!(found, 0.0, "{}", case.id);
+                    touching += 1;
+                }
+                ClosestPoints::Disjoint => panic!("{} is nowhere", case.id),
+            }
+        }
+        links += 1;
+    }
+    assert!(links > 1000 && touching > 200, "{links} links, {touching} touching");
 }
