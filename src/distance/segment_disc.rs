@@ -31,7 +31,7 @@
 //!
 //! The least of 2, 3 and 4 is the start.
 
-use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
+use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
 /// normal (of any length) and radius; (13) to (19).
@@ -42,17 +42,29 @@ pub fn segment_disc<T: Scalar>(
     normal: Vec3<T>,
     radius: T,
 ) -> Closest<T> {
-    let frame = Frame::around(centre, segment, radius);
-    let ends = segment.map(|point| frame.point(point));
-    frame.answer(from_centre(ends, normal.normalised(), frame.length(radius)))
+    segment_disc_by::<Convex, T>(segment, centre, normal, radius)
 }
 
-/// As [`segment_disc`], for a disc around the origin, a unit normal and numbers near one.
+/// As [`segment_disc`], by the route `S`.
 #[inline(always)]
-pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
-    let line = Line::new(ends, normal);
-    let s = line.nearest_to_disc(radius);
-    line.closest_at(s, ends, normal, radius)
+pub fn segment_disc_by<S: DiscSolver<T>, T: Scalar>(
+    segment: [Vec3<T>; 2],
+    centre: Vec3<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
+    let frame = Frame::around(centre, segment, radius);
+    let ends = segment.map(|point| frame.point(point));
+    frame.answer(S::segment_disc(ends, normal.normalised(), frame.length(radius)))
+}
+
+impl<T: Scalar> DiscSolver<T> for Convex {
+    #[inline(always)]
+    fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
+        let line = Line::new(ends, normal);
+        let s = line.nearest_to_disc(radius);
+        line.closest_at(s, ends, normal, radius)
+    }
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
