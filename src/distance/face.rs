@@ -15,31 +15,18 @@
 use super::scalar::Scalar;
 use super::vec3::Vec3;
 
-/// Refinements of (alpha, beta). Each wins the digits that the dual basis has; three serve a height of 1e-12.
-const PASSES: usize = 3;
-
 /// A triangle with the basis of its plane.
 #[derive(Clone, Copy)]
 pub(crate) struct Face<T: Scalar> {
-    /// The vertices in the caller's order.
+    /// The vertices, the one opposite the longest edge first.
     pub vertices: [Vec3<T>; 3],
-    /// The vertex opposite the longest edge.
-    apex: Vec3<T>,
-    /// The two edges from the apex.
-    edges: [Vec3<T>; 2],
-    /// The basis dual to `edges` within the plane.
-    dual: [Vec3<T>; 2],
-    /// The unit normal, zero for a triangle without area.
-    pub normal: Vec3<T>,
-    /// Whether the triangle has an area.
-    pub has_area: T::Mask,
+    /// The basis dual to the edges from the first vertex, within the plane; zero without area.
+    pub dual: [Vec3<T>; 2],
 }
 
 /// A point seen from the plane of a [`Face`].
 #[derive(Clone, Copy)]
 pub(crate) struct Projection<T: Scalar> {
-    /// The foot on the plane.
-    pub foot: Vec3<T>,
     /// From the foot to the point, normal to the plane.
     pub residual: Vec3<T>,
     /// Whether the foot lies in the triangle.
@@ -52,70 +39,82 @@ pub(crate) struct Projection<T: Scalar> {
 
 impl<T: Scalar> Face<T> {
     #[inline(always)]
-    pub(crate) fn new(vertices: [Vec3<T>; 3]) -> Self {
-        let [a, b, c] = vertices;
-        let (ab, bc, ca) = (b - a, c - b, a - c);
-        let (lab, lbc, lca) = (ab.norm_squared(), bc.norm_squared(), ca.norm_squared());
-        let ab_longest = lbc.le(lab) & lca.le(lab);
-        let bc_longest = lca.le(lbc);
+    pub(crate) fn new([a, b, c]: [Vec3<T>; 3]) -> Self {
+        let [ab, bc, ca] = [b - a, c - b, a - c].map(Vec3::norm_squared);
+        let ab_longest = bc.le(ab) & ca.le(ab);
+        let bc_longest = ca.le(bc);
         let pick = |at_c, at_a, at_b| Vec3::select(ab_longest, at_c, Vec3::select(bc_longest, at_a, at_b));
-        let apex = pick(c, a, b);
-        let (e1, e2) = (pick(ca, ab, bc), pick(-bc, -ca, -ab));
-        let longest = pick(ab, bc, ca);
+        let mut face =
+            Self { vertices: [pick(c, a, b), pick(a, b, c), pick(b, c, a)], dual: [Vec3::zero(ab); 2] };
+        let ([e1, e2], across) = (face.edges(), face.across());
+        let inverse = ab.one().over(across.norm_squared());
+        face.dual = [e2.cross(across) * inverse, across.cross(e1) * inverse];
+        face
+    }
 
-        let one = lab.one();
+    /// The edges from the first vertex.
+    #[inline(always)]
+    fn edges(&self) -> [Vec3<T>; 2] {
+        let [apex, b, c] = self.vertices;
+        [b - apex, c - apex]
+    }
+
+    /// A normal of twice the area's length, without a component along the longest edge.
+    #[inline(always)]
+    fn across(&self) -> Vec3<T> {
+        let [e1, e2] = self.edges();
+        let longest = self.vertices[2] - self.vertices[1];
         let across = e1.cross(e2);
-        let along = across.dot(longest).over(longest.norm_squared());
-        let normal = across.along(longest, -along);
-        let squared = normal.norm_squared();
-        let inverse = one.over(squared);
-        Self {
-            vertices,
-            apex,
-            edges: [e1, e2],
-            dual: [e2.cross(normal) * inverse, normal.cross(e1) * inverse],
-            normal: normal * one.over(squared.sqrt()),
-            has_area: lab.zero().lt(squared),
-        }
+        across.along(longest, -across.dot(longest).over(longest.norm_squared()))
+    }
+
+    /// The unit normal, zero for a triangle without area.
+    #[inline(always)]
+    pub(crate) fn normal(&self) -> Vec3<T> {
+        let across = self.across();
+        let norm = across.norm();
+        across * norm.one().over(norm)
+    }
+
+    /// Whether the triangle has an area.
+    #[inline(always)]
+    fn has_area(&self) -> T::Mask {
+        let dual = self.dual[0];
+        dual.x.zero().lt(dual.norm_squared())
     }
 
     /// The same triangle in coordinates from `origin`.
     #[inline(always)]
     pub(crate) fn seen_from(&self, origin: Vec3<T>) -> Self {
-        Self { vertices: self.vertices.map(|vertex| vertex - origin), apex: self.apex - origin, ..*self }
+        Self { vertices: self.vertices.map(|vertex| vertex - origin), ..*self }
     }
 
     /// The foot of `point` on the plane and what is left, refined.
     #[inline(always)]
     pub(crate) fn project(&self, point: Vec3<T>) -> Projection<T> {
-        let relative = point - self.apex;
+        let relative = point - self.vertices[0];
+        let [e1, e2] = self.edges();
         let mut residual = relative;
         let (mut alpha, mut beta) = (relative.x.zero(), relative.x.zero());
-        for _ in 0..PASSES {
+        for _ in 0..T::FACE_PASSES {
             alpha = alpha + residual.dot(self.dual[0]);
             beta = beta + residual.dot(self.dual[1]);
-            residual = relative.along(self.edges[0], -alpha).along(self.edges[1], -beta);
+            residual = relative.along(e1, -alpha).along(e2, -beta);
         }
-        let foot = self.at(alpha, beta);
-        Projection { foot, residual, inside: self.holds(alpha, beta), alpha, beta }
+        Projection { residual, inside: self.holds(alpha, beta), alpha, beta }
     }
 
-    /// The point of the plane with these coordinates along the edges from the apex.
+    /// The point of the plane with these coordinates along the edges from the first vertex.
     #[inline(always)]
     pub(crate) fn at(&self, alpha: T, beta: T) -> Vec3<T> {
-        self.apex.along(self.edges[0], alpha).along(self.edges[1], beta)
+        let [e1, e2] = self.edges();
+        self.vertices[0].along(e1, alpha).along(e2, beta)
     }
 
     /// Whether the coordinates are those of a point of the triangle.
     #[inline(always)]
     pub(crate) fn holds(&self, alpha: T, beta: T) -> T::Mask {
         let zero = alpha.zero();
-        self.has_area & zero.le(alpha) & zero.le(beta) & (alpha + beta).le(alpha.one())
-    }
-
-    /// The height of the apex above the plane through `point` with this face's normal.
-    #[inline(always)]
-    pub(crate) fn height_from(&self, point: Vec3<T>) -> T {
-        self.normal.dot(self.apex - point)
+        self.has_area() & zero.le(alpha) & zero.le(beta) & (alpha + beta).le(alpha.one())
     }
 }

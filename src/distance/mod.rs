@@ -20,6 +20,7 @@ mod bounds;
 mod disc_solver;
 mod face;
 mod frame;
+mod lanes;
 mod plane_disc;
 mod point_disc;
 mod point_modified_cylinder;

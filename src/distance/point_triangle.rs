@@ -23,7 +23,7 @@ pub fn point_triangle<T: Scalar>(point: Vec3<T>, triangle: [Vec3<T>; 3]) -> Clos
     frame.answer(Closest {
         distance,
         point1: origin,
-        point2: Vec3::select(face_nearer, projection.foot, foot),
+        point2: Vec3::select(face_nearer, face.at(projection.alpha, projection.beta), foot),
     })
 }
 

@@ -73,7 +73,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let above = |s: T, foot: &super::face::Projection<T>| AxisTriangle {
         squared: foot.residual.norm_squared(),
         s,
-        on_triangle: foot.foot,
+        on_triangle: face.at(foot.alpha, foot.beta),
     };
     let nearest =
         nearest.nearer_where(low.inside, above(zero, &low)).nearer_where(high.inside, above(one, &high));

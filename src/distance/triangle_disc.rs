@@ -46,12 +46,15 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
 ) -> Closest<T> {
     let [a, b, c] = face.vertices;
     // Cases 2 and 3.
-    let height = face.height_from(Vec3::zero(radius));
-    let nearest = plane_disc::from_centre(height, face.normal, normal, radius);
+    let plane_normal = face.normal();
+    let nearest = plane_disc::from_centre(plane_normal.dot(a), plane_normal, normal, radius);
     let projection = face.project(nearest.point);
     let crosses = nearest.distance.le(radius.zero());
-    let apart =
-        Closest { distance: projection.residual.norm(), point1: projection.foot, point2: nearest.point };
+    let apart = Closest {
+        distance: projection.residual.norm(),
+        point1: face.at(projection.alpha, projection.beta),
+        point2: nearest.point,
+    };
     let common = Closest { distance: radius.zero(), point1: nearest.point, point2: nearest.point };
     let face_answer = Closest::select(crosses, common, apart);
 

@@ -1,0 +1,130 @@
+//! Every instruction set of this machine gives the scalar's answers, lane by lane.
+
+use super::*;
+use crate::distance::{Vec3, segment_disc, triangle_modified_cylinder};
+use fearless_simd::{Level, dispatch};
+
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    #[allow(unused_mut)]
+    let mut levels = vec![best];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_avx2().map(Level::Avx2));
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_sse2().map(Level::Sse2));
+    }
+    levels
+}
+
+/// Numbers in [-1, 1), every seventh of them on a coarse lattice, where ties and parallels are common.
+fn numbers(count: usize, seed: u64) -> Vec<f64> {
+    let mut state = seed;
+    (0..count)
+        .map(|i| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let number = (state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0;
+            if i / 21 % 7 == 0 { (number * 4.0).round() / 4.0 } else { number }
+        })
+        .collect()
+}
+
+const PROBLEM: usize = 17;
+
+/// Distances of link and triangle, and of segment and disc, for a problem of 17 numbers.
+#[inline(always)]
+fn distances<T: Scalar>(number: impl Fn(usize) -> T, zero: T) -> [T; 2] {
+    let point = |i: usize| Vec3::new(number(i), number(i + 1), number(i + 2));
+    let radius = number(15).abs() * number(15).lit(0.25);
+    let flat = [zero.lt(number(16)), zero.lt(number(15))];
+    let triangle = [point(0), point(3), point(6)];
+    [
+        triangle_modified_cylinder(triangle, point(9), point(12), radius, flat).distance,
+        segment_disc([point(0), point(3)], point(9), point(12), radius).distance,
+    ]
+}
+
+#[inline(always)]
+fn in_lanes<L: Pack>(token: L::Token, numbers: &[L::Element], out: &mut [[L::Element; 2]])
+where
+    L::Element: Default,
+{
+    for first in (0..out.len()).step_by(L::LANES) {
+        let gather = |i: usize| {
+            let lanes: Vec<_> = (0..L::LANES).map(|lane| numbers[(first + lane) * PROBLEM + i]).collect();
+            L::load(token, &lanes)
+        };
+        let found = distances(gather, L::splat(token, L::Element::default()));
+        for (kind, pack) in found.into_iter().enumerate() {
+            let mut lanes = vec![L::Element::default(); L::LANES];
+            pack.store(&mut lanes);
+            for (lane, distance) in lanes.into_iter().enumerate() {
+                out[first + lane][kind] = distance;
+            }
+        }
+    }
+}
+
+fn compare<E: Lane + Into<f64>>() {
+    let count = 4096;
+    let numbers: Vec<E> = numbers(count * PROBLEM, 5).into_iter().map(E::round).collect();
+    let scalar: Vec<_> =
+        (0..count).map(|problem| distances(|i| numbers[problem * PROBLEM + i], E::default())).collect();
+    let touching = scalar.iter().filter(|d| d[0].into() == 0.0).count();
+    assert!(touching > count / 20 && touching < count / 2, "{touching}");
+    for level in levels() {
+        let mut packed = vec![[E::default(); 2]; count];
+        dispatch!(level, simd => in_lanes::<E::Pack<_>>(simd, &numbers, &mut packed));
+        for (packed, scalar) in packed.iter().zip(&scalar) {
+            for (packed, scalar) in packed.iter().zip(scalar) {
+                let error = ((*packed).into() - (*scalar).into()).abs();
+                assert!(error <= 16.0 * E::UNIT_ROUNDOFF * 2.0, "{level:?}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_level_agrees_in_single_precision() {
+    compare::<f32>();
+}
+
+#[test]
+fn every_level_agrees_in_double_precision() {
+    compare::<f64>();
+}
+
+#[inline(always)]
+fn helpers<L: Pack>(token: L::Token, value: L::Element) -> [L::Element; 2]
+where
+    L::Element: Default,
+{
+    let pack = L::splat(token, value);
+    [pack.cbrt_estimate(), pack.power_of_two_to_unity()].map(|pack| {
+        let mut lanes = vec![L::Element::default(); L::LANES];
+        pack.store(&mut lanes);
+        lanes[0]
+    })
+}
+
+fn compare_helpers<E: Lane + Into<f64>>(exponents: std::ops::Range<i32>) {
+    for exponent in exponents {
+        for mantissa in [1.0, 1.1, 1.5, 1.99] {
+            let value = E::round(mantissa * 2.0_f64.powi(exponent));
+            for level in levels() {
+                let [root, unity] = dispatch!(level, simd => helpers::<E::Pack<_>>(simd, value));
+                let exact = value.into().cbrt();
+                assert!((root.into() / exact - 1.0).abs() < 0.06, "{level:?}: {} {exact}", root.into());
+                assert_eq!(unity.into(), value.power_of_two_to_unity().into(), "{level:?}");
+                let scaled = unity.into() * value.into();
+                assert!((1.0..2.0).contains(&scaled) || exponent.abs() > 120, "{scaled}");
+            }
+        }
+    }
+}
+
+#[test]
+fn estimates_hold_in_every_lane() {
+    compare_helpers::<f32>(-126..128);
+    compare_helpers::<f64>(-1022..1023);
+}
