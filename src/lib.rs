@@ -7,5 +7,6 @@ pub use parry3d_f64 as parry;
 pub mod distance;
 pub mod proximity;
 mod robot;
+pub mod roots;
 
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

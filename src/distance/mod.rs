@@ -34,7 +34,9 @@ mod triangle_modified_cylinder;
 mod vec3;
 
 pub(crate) use face::Face;
+pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::Link;
+pub(crate) use segment_disc::Line;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 pub use disc_solver::{Convex, DiscSolver};

@@ -68,7 +68,7 @@ impl<T: Scalar> DiscSolver<T> for Convex {
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
-struct Line<T: Scalar> {
+pub(crate) struct Line<T: Scalar> {
     /// Unit direction of the segment, and its length.
     direction: Vec3<T>,
     length: T,
@@ -76,18 +76,18 @@ struct Line<T: Scalar> {
     foot: T,
     /// -1 where s runs against the direction.
     sign: T,
-    h: T,
-    lambda: T,
-    m: T,
-    n: T,
+    pub h: T,
+    pub lambda: T,
+    pub m: T,
+    pub n: T,
     tau: T,
     /// |q|^2
-    q: T,
+    pub q: T,
 }
 
 impl<T: Scalar> Line<T> {
     #[inline(always)]
-    fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
+    pub(crate) fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
         let edge = end - start;
         let direction = edge.normalised();
         let length = edge.dot(direction);
@@ -109,7 +109,7 @@ impl<T: Scalar> Line<T> {
 
     /// The distance from the disc's axis, and w, at s.
     #[inline(always)]
-    fn radial_at(&self, s: T) -> (T, T) {
+    pub(crate) fn radial_at(&self, s: T) -> (T, T) {
         let w = self.m.mul_add(s, self.n);
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
@@ -159,7 +159,13 @@ impl<T: Scalar> Line<T> {
 
     /// The closest points for the line's minimiser `s`, clamped to the segment.
     #[inline(always)]
-    fn closest_at(&self, s: T, [start, end]: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
+    pub(crate) fn closest_at(
+        &self,
+        s: T,
+        [start, end]: [Vec3<T>; 2],
+        normal: Vec3<T>,
+        radius: T,
+    ) -> Closest<T> {
         let zero = radius.zero();
         let t = s.mul_add(self.sign, self.foot).max(zero).min(self.length);
         // From the nearer end, so that the rounding of a long segment's direction counts least.
