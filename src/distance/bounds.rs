@@ -35,9 +35,9 @@ pub(crate) fn separating_plane<T: Scalar>(
     let upper = up.mul_add(up, out * out).sqrt();
 
     let support = direction * rho.min(radius);
-    let [a, b, c] = vertices.map(|vertex| normal.dot(vertex - support));
-    let extent = vertices.map(Vec3::largest);
-    let extent = extent[0].max(extent[1]).max(extent[2]).max(radius);
-    let bound = a.min(b).min(c).over(upper) - extent * zero.lit(16.0 * T::UNIT_ROUNDOFF);
+    let [a, b, c] = vertices;
+    let ahead = normal.dot(a - support).min(normal.dot(b - support)).min(normal.dot(c - support));
+    let extent = a.largest().max(b.largest()).max(c.largest()).max(radius);
+    let bound = ahead.over(upper) - extent * zero.lit(16.0 * T::UNIT_ROUNDOFF);
     zero.lt(upper).select(bound.max(zero), zero)
 }

@@ -40,12 +40,14 @@ pub(crate) struct Projection<T: Scalar> {
 impl<T: Scalar> Face<T> {
     #[inline(always)]
     pub(crate) fn new([a, b, c]: [Vec3<T>; 3]) -> Self {
-        let [ab, bc, ca] = [b - a, c - b, a - c].map(Vec3::norm_squared);
-        let ab_longest = bc.le(ab) & ca.le(ab);
-        let bc_longest = ca.le(bc);
-        let pick = |at_c, at_a, at_b| Vec3::select(ab_longest, at_c, Vec3::select(bc_longest, at_a, at_b));
-        let mut face =
-            Self { vertices: [pick(c, a, b), pick(a, b, c), pick(b, c, a)], dual: [Vec3::zero(ab); 2] };
+        let (ab, bc, ca) = ((b - a).norm_squared(), (c - b).norm_squared(), (a - c).norm_squared());
+        let (ab_longest, bc_longest) = (bc.le(ab) & ca.le(ab), ca.le(bc));
+        let vertices = [
+            Vec3::select(ab_longest, c, Vec3::select(bc_longest, a, b)),
+            Vec3::select(ab_longest, a, Vec3::select(bc_longest, b, c)),
+            Vec3::select(ab_longest, b, Vec3::select(bc_longest, c, a)),
+        ];
+        let mut face = Self { vertices, dual: [Vec3::zero(ab); 2] };
         let ([e1, e2], across) = (face.edges(), face.across());
         let inverse = ab.one().over(across.norm_squared());
         face.dual = [e2.cross(across) * inverse, across.cross(e1) * inverse];
@@ -86,7 +88,8 @@ impl<T: Scalar> Face<T> {
     /// The same triangle in coordinates from `origin`.
     #[inline(always)]
     pub(crate) fn seen_from(&self, origin: Vec3<T>) -> Self {
-        Self { vertices: self.vertices.map(|vertex| vertex - origin), ..*self }
+        let [a, b, c] = self.vertices;
+        Self { vertices: [a - origin, b - origin, c - origin], ..*self }
     }
 
     /// The foot of `point` on the plane and what is left, refined.

@@ -20,7 +20,7 @@ mod bounds;
 mod disc_solver;
 mod face;
 mod frame;
-mod lanes;
+pub(crate) mod lanes;
 mod plane_disc;
 mod point_disc;
 mod point_modified_cylinder;

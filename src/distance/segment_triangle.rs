@@ -7,7 +7,8 @@
 //! The ends count only against the interior, and the edges by segment-segment, so the parameter is exact to
 //! rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
 
-use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame, segment_segment};
+use super::face::{Face, Projection};
+use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
 /// The distance between a segment and a triangle.
 #[inline(always)]
@@ -59,24 +60,12 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let (zero, one) = (end.x.zero(), end.x.one());
     let [a, b, c] = face.vertices;
     // Case 3.
-    let edge = |from: Vec3<T>, to: Vec3<T>| {
-        let found = segment_segment::parameters(-from, end, to - from);
-        AxisTriangle {
-            squared: found.gap.norm_squared(),
-            s: found.s,
-            on_triangle: from.along(to - from, found.t),
-        }
-    };
-    let nearest = edge(a, b).nearer(edge(b, c)).nearer(edge(c, a));
+    let nearest = edge(end, a, b).nearer(edge(end, b, c)).nearer(edge(end, c, a));
     // Case 2.
     let (low, high) = (face.project(Vec3::zero(zero)), face.project(end));
-    let above = |s: T, foot: &super::face::Projection<T>| AxisTriangle {
-        squared: foot.residual.norm_squared(),
-        s,
-        on_triangle: face.at(foot.alpha, foot.beta),
-    };
-    let nearest =
-        nearest.nearer_where(low.inside, above(zero, &low)).nearer_where(high.inside, above(one, &high));
+    let nearest = nearest
+        .nearer_where(low.inside, above(face, zero, &low))
+        .nearer_where(high.inside, above(face, one, &high));
     // Case 1.
     let opposite = low.residual.dot(high.residual).lt(zero);
     let (below, beyond) = (low.residual.norm(), high.residual.norm());
@@ -85,4 +74,21 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let beta = (high.beta - low.beta).mul_add(s, low.beta);
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };
     nearest.nearer_where(opposite & face.holds(alpha, beta), pierced)
+}
+
+/// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)
+#[inline(always)]
+fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> {
+    let found = segment_segment::parameters(-from, end, to - from);
+    AxisTriangle {
+        squared: found.gap.norm_squared(),
+        s: found.s,
+        on_triangle: from.along(to - from, found.t),
+    }
+}
+
+/// Case 2, for the end at `s`.
+#[inline(always)]
+fn above<T: Scalar>(face: &Face<T>, s: T, foot: &Projection<T>) -> AxisTriangle<T> {
+    AxisTriangle { squared: foot.residual.norm_squared(), s, on_triangle: face.at(foot.alpha, foot.beta) }
 }

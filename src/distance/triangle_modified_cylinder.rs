@@ -70,31 +70,46 @@ pub fn triangle_capsule<T: Scalar>(
 /// What the axis alone tells of a link and a triangle, in coordinates from the link's start.
 #[derive(Clone, Copy)]
 pub(crate) struct Axial<T: Scalar> {
-    /// Between p* and the link: an upper bound, and the answer in case 1.
-    pub upper: Closest<T>,
+    /// F^2, the squared distance between axis and triangle.
+    pub axis_squared: T,
+    /// p*, the triangle's point.
+    on_triangle: Vec3<T>,
     /// Whether the disc at the start, or at the end, decides (case 2).
-    pub at_flat: [T::Mask; 2],
+    at_flat: [T::Mask; 2],
 }
 
 impl<T: Scalar> Axial<T> {
     #[inline(always)]
     pub(crate) fn new(link: &Link<T>, face: &Face<T>) -> Self {
         let axis = segment_triangle::from_start(link.end, face);
-        let (distance, on_link) = link.closest_to(axis.on_triangle);
         let (zero, one) = (axis.s.zero(), axis.s.one());
         let has_axis = zero.lt(link.axis.norm_squared());
         Self {
-            upper: Closest { distance, point1: axis.on_triangle, point2: on_link },
+            axis_squared: axis.squared,
+            on_triangle: axis.on_triangle,
             at_flat: [link.flat[0] & has_axis & axis.s.le(zero), link.flat[1] & has_axis & one.le(axis.s)],
         }
     }
 
-    /// A lower bound on the answer where a flat cap decides. It stands against rounding.
+    /// Whether a disc decides (case 2).
+    #[inline(always)]
+    pub(crate) fn beyond_flat_cap(&self) -> T::Mask {
+        self.at_flat[0] | self.at_flat[1]
+    }
+
+    /// Between p* and the link: an upper bound, and the answer in case 1.
+    #[inline(always)]
+    pub(crate) fn without_caps(&self, link: &Link<T>) -> Closest<T> {
+        let (distance, on_link) = link.closest_to(self.on_triangle);
+        Closest { distance, point1: self.on_triangle, point2: on_link }
+    }
+
+    /// A lower bound on the answer in case 2. It stands against rounding.
     #[inline(always)]
     pub(crate) fn plane_bound(&self, link: &Link<T>, face: &Face<T>) -> T {
         let (centre, outward) = self.cap(link);
-        let vertices = face.vertices.map(|vertex| vertex - centre);
-        bounds::separating_plane(vertices, self.upper.point1 - centre, outward, link.radius)
+        let vertices = face.seen_from(centre).vertices;
+        bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius)
     }
 
     /// The answer, discs included.
@@ -106,12 +121,12 @@ impl<T: Scalar> Axial<T> {
     /// As [`Axial::with_caps`], by the route `S`.
     #[inline(always)]
     pub(crate) fn with_caps_by<S: DiscSolver<T>>(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
+        let upper = self.without_caps(link);
         let (centre, outward) = self.cap(link);
         let disc = triangle_disc::from_centre::<S, T>(&face.seen_from(centre), outward, link.radius);
         let disc =
             Closest { distance: disc.distance, point1: disc.point1 + centre, point2: disc.point2 + centre };
-        let nearer = disc.distance.lt(self.upper.distance);
-        Closest::select((self.at_flat[0] | self.at_flat[1]) & nearer, disc, self.upper)
+        Closest::select(self.beyond_flat_cap() & disc.distance.lt(upper.distance), disc, upper)
     }
 
     /// The centre and the outward normal of the cap that p* is beyond; the start's where it is beyond neither.

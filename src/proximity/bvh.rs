@@ -1,28 +1,37 @@
-//! Proximity by the mesh's bounding volume hierarchy.
+//! Proximity by a bounding volume hierarchy.
 
-use super::probe::{Probe, check_vertices, place};
-use super::search::{Found, Until, search};
+use super::descent::{Descent, Visits};
+use super::placed::Placed;
+use super::probe::{Probe, check_vertices};
+use super::search::Found;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
+use crate::distance::lanes::{Lane, Pack};
+use crate::robot::{Run, distance_to_segment};
+use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
-/// Proximity queries by the mesh's bounding volume hierarchy: the work per link grows with the logarithm of
-/// the number of triangles.
+/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
+/// triangles.
 ///
-/// The engine keeps a copy of the mesh, and remembers the last answers: they bound the next query. Any robot
-/// and pose may follow; small motions are answered fastest. [`BvhSearch::forget`] makes it cold again.
+/// The engine keeps the mesh and a hierarchy of its own, 16 patches and 16 triangles wide, in single precision;
+/// what rounding leaves in question is measured in double precision, so the answers are those of
+/// [`Exhaustive`](super::Exhaustive). It remembers the last answers, which bound the next query: any robot and
+/// pose may follow, and small motions are answered fastest. [`BvhSearch::forget`] makes it cold again.
 pub struct BvhSearch {
-    mesh: TriMesh,
+    level: Level,
     /// The largest coordinate of the mesh.
     reach: Real,
+    descent: Descent,
     /// The closest triangle of each link at the last query, where there was one.
     last: Vec<u32>,
-    probes: Vec<Probe>,
+    /// The closest link and its triangle at the last query for the minimum.
+    last_minimum: Option<(usize, u32)>,
 }
 
 impl BvhSearch {
-    /// An engine for `mesh`, whose vertices and hierarchy are copied.
+    /// An engine for `mesh`, whose vertices and triangles are copied.
     ///
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
@@ -31,34 +40,143 @@ impl BvhSearch {
             return Err(MeshError::Empty);
         }
         let reach = check_vertices(mesh.vertices())?;
-        Ok(Self { mesh: mesh.clone(), reach, last: Vec::new(), probes: Vec::new() })
+        let descent = Descent::new(mesh.vertices(), mesh.indices());
+        Ok(Self { level: Level::new(), reach, descent, last: Vec::new(), last_minimum: None })
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
     pub fn forget(&mut self) {
         self.last.clear();
+        self.last_minimum = None;
     }
 
-    /// The probe's answer, found with the best start that the last query and the link before offer.
-    fn nearest(&self, probe: &Probe, seeds: [Option<u32>; 2]) -> Found {
-        let mut best = self.measure(probe, seeds[0].or(seeds[1]).unwrap_or(0));
-        if let Some(second) = seeds[1].filter(|&second| second != best.triangle) {
-            let other = self.measure(probe, second);
-            if other.closest.distance < best.closest.distance {
-                best = other;
+    /// How much was computed since the engine was built.
+    pub fn visits(&self) -> Visits {
+        self.descent.visits
+    }
+
+    #[inline(always)]
+    fn per_link_in<L: Pack<Element = f32>>(
+        &mut self,
+        token: L::Token,
+        placed: &Placed,
+        out: &mut Vec<LinkProximity>,
+    ) {
+        for link in 0..placed.links() {
+            let before = out.last().map(|answer: &LinkProximity| answer.triangle);
+            let start = [self.last.get(link).copied(), before];
+            // Without a bound some triangle is always the nearest.
+            if let Some((probe, found)) = self.nearest::<L>(token, placed, link, Real::INFINITY, start) {
+                out.push(probe.report(link, &found));
             }
         }
-        match search(&self.mesh, probe, best.closest.distance, Until::Nearest) {
-            Ok(Some(found)) => found,
-            // Nothing is nearer than the start (every vertex was seen to be finite).
-            Ok(None) | Err(_) => best,
-        }
     }
 
-    /// One triangle, whatever its distance.
-    fn measure(&self, probe: &Probe, triangle: u32) -> Found {
-        let vertices = self.mesh.triangle(triangle).vertices().to_owned();
-        Found { triangle, closest: probe.closest(vertices) }
+    #[inline(always)]
+    fn nearest<L: Pack<Element = f32>>(
+        &mut self,
+        token: L::Token,
+        placed: &Placed,
+        link: usize,
+        bound: Real,
+        start: [Option<u32>; 2],
+    ) -> Option<(Probe, Found)> {
+        let probe = placed.probe(link);
+        let coarse = placed.coarse(link, &self.descent.tree.frame);
+        let found = self.descent.nearest::<L>(token, &probe, coarse.as_ref(), bound, start)?;
+        Some((probe, found))
+    }
+
+    /// Whether any triangle may be nearer than `bound` to any link of a run; false only if none is.
+    #[inline(always)]
+    fn may_meet<L: Pack<Element = f32>>(
+        &mut self,
+        token: L::Token,
+        placed: &Placed,
+        run: &Run,
+        bound: Real,
+    ) -> bool {
+        let coarse = match run {
+            Run::Links { envelope, .. } => placed.coarse_envelope(envelope, &self.descent.tree.frame),
+            Run::Link(link) => placed.coarse(*link, &self.descent.tree.frame),
+        };
+        coarse.is_none_or(|coarse| self.descent.may_meet::<L>(token, &coarse, bound))
+    }
+
+    /// The nearest link and triangle among those nearer than `best`, where there is a best.
+    #[inline(always)]
+    fn minimum_in<L: Pack<Element = f32>>(
+        &mut self,
+        token: L::Token,
+        placed: &Placed,
+    ) -> Option<(usize, Probe, Found)> {
+        let (first, triangle) = match self.last_minimum {
+            Some((link, triangle)) if link < placed.links() => (link, triangle),
+            _ => self.likely_minimum::<L>(token, placed),
+        };
+        let (probe, found) = self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
+        let mut best = (first, probe, found);
+        let runs = placed.runs();
+        let mut place = 0;
+        while let Some(run) = runs.get(place) {
+            let bound = best.2.closest.distance;
+            match run {
+                Run::Links { inner, .. } if !self.may_meet::<L>(token, placed, run, bound) => place += inner,
+                Run::Link(link) if *link != first => {
+                    let start = [Some(best.2.triangle), None];
+                    if let Some((probe, found)) = self.nearest::<L>(token, placed, *link, bound, start) {
+                        best = (*link, probe, found);
+                    }
+                }
+                _ => {}
+            }
+            place += 1;
+        }
+        Some(best)
+    }
+
+    /// The triangle nearest to the capsule around the robot, and the link nearest to that triangle.
+    #[inline(always)]
+    fn likely_minimum<L: Pack<Element = f32>>(&mut self, token: L::Token, placed: &Placed) -> (usize, u32) {
+        let Some((probe, envelope)) = placed.envelope_of_all() else { return (0, 0) };
+        let coarse = placed.coarse_envelope(&envelope, &self.descent.tree.frame);
+        let found = self.descent.nearest::<L>(token, &probe, coarse.as_ref(), Real::INFINITY, [None, None]);
+        let triangle = found.map_or(0, |found| found.triangle);
+        let [a, b, c] = self.descent.indices[triangle as usize].map(|v| self.descent.vertices[v as usize]);
+        let centre = placed.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
+        let distance = |link: usize| {
+            let link = placed.link(link);
+            distance_to_segment(centre, link.start(), link.end()) - link.radius()
+        };
+        let mut nearest = (0, distance(0));
+        for link in 1..placed.links() {
+            let other = distance(link);
+            if other < nearest.1 {
+                nearest = (link, other);
+            }
+        }
+        (nearest.0, triangle)
+    }
+
+    #[inline(always)]
+    fn clears_in<L: Pack<Element = f32>>(&mut self, token: L::Token, placed: &Placed, margin: Real) -> bool {
+        // The next number, because the search wants triangles strictly nearer than its bound.
+        let bound = (margin * placed.scale()).next_up();
+        let runs = placed.runs();
+        let mut place = 0;
+        while let Some(run) = runs.get(place) {
+            if !self.may_meet::<L>(token, placed, run, bound) {
+                if let Run::Links { inner, .. } = run {
+                    place += inner;
+                }
+            } else if let Run::Link(link) = run {
+                if self.nearest::<L>(token, placed, *link, bound, [None, None]).is_some() {
+                    return false;
+                }
+            }
+            place += 1;
+        }
+        true
     }
 }
 
@@ -70,59 +188,41 @@ impl Proximity for BvhSearch {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        place(robot.links(), pose, self.reach, &mut self.probes)?;
-        let mut before = None;
-        for (link, probe) in self.probes.iter().enumerate() {
-            let found = self.nearest(probe, [before, self.last.get(link).copied()]);
-            before = Some(found.triangle);
-            out.push(probe.report(link, &found));
-        }
+        let placed = Placed::new(robot, pose, self.reach)?;
+        dispatch!(self.level, simd => self.per_link_in::<<f32 as Lane>::Pack<_>>(simd, &placed, out));
         self.last.clear();
         self.last.extend(out.iter().map(|answer| answer.triangle));
         Ok(())
     }
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        place(robot.links(), pose, self.reach, &mut self.probes)?;
-        let start = self.last.first().copied().unwrap_or(0);
-        let (mut link, mut found) = (0, self.measure(&self.probes[0], start));
-        // The nearest of the last answers gives the bound that all links share.
-        for (other, (probe, &triangle)) in self.probes.iter().zip(&self.last).enumerate().skip(1) {
-            let again = self.measure(probe, triangle);
-            if again.closest.distance < found.closest.distance {
-                (link, found) = (other, again);
-            }
-        }
-        for (other, probe) in self.probes.iter().enumerate() {
-            if let Ok(Some(nearer)) = search(&self.mesh, probe, found.closest.distance, Until::Nearest) {
-                (link, found) = (other, nearer);
-            }
-        }
-        if let Some(last) = self.last.get_mut(link) {
-            *last = found.triangle;
-        }
-        Ok(self.probes[link].report(link, &found))
+        let placed = Placed::new(robot, pose, self.reach)?;
+        let found = dispatch!(self.level, simd => self.minimum_in::<<f32 as Lane>::Pack<_>>(simd, &placed));
+        let (link, probe, found) = found.unwrap_or_else(|| {
+            // Without a bound some triangle is always the nearest; this is any other.
+            let probe = placed.probe(0);
+            let corners = self.descent.indices[0].map(|vertex| self.descent.vertices[vertex as usize]);
+            (0, probe, Found { triangle: 0, closest: probe.closest(corners) })
+        });
+        self.last_minimum = Some((link, found.triangle));
+        Ok(probe.report(link, &found))
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
         if margin.is_nan() || margin < 0.0 {
             return Err(ProximityError::BadMargin { margin });
         }
-        place(robot.links(), pose, self.reach, &mut self.probes)?;
-        Ok(self.probes.iter().all(|probe| {
-            // The next number, because the search wants triangles strictly nearer than its bound.
-            let bound = probe.scaled(margin).next_up();
-            matches!(search(&self.mesh, probe, bound, Until::FirstWithinBound), Ok(None))
-        }))
+        let placed = Placed::new(robot, pose, self.reach)?;
+        Ok(dispatch!(self.level, simd => self.clears_in::<<f32 as Lane>::Pack<_>>(simd, &placed, margin)))
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.mesh.vertices().len();
+        let expected = self.descent.vertices.len();
         if vertices.len() != expected {
             return Err(MeshError::VertexCount { expected, got: vertices.len() });
         }
         self.reach = check_vertices(vertices)?;
-        self.mesh.set_vertices(vertices);
+        self.descent.set_vertices(vertices);
         Ok(())
     }
 }

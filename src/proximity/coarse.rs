@@ -1,115 +1,110 @@
-//! A search in single precision whose answer is the double-precision one.
+//! The mesh and the links near one, in the precision of the search.
 //!
-//! The mesh is moved to its centre and multiplied by a power of two once, then rounded. A distance computed
-//! from it errs by less than `error` = 64 u reach, where u = 2^-24 and reach is the largest coordinate of mesh
-//! and link in that frame: 16 u for each unit of extent (at most 2 reach) from the kernel, and 2 u reach for
-//! each of the roundings of vertices and axis, which move the shapes by that much. So the nearest triangle is
-//! among those whose computed distance is within 2 `error` of the least, and only they are measured again.
+//! The mesh is moved to its centre and multiplied by a power of two, then rounded to `E` (`f32` or `f64`). A
+//! distance computed there errs by less than `error` = 64 u reach, where u is the unit roundoff of `E` and reach
+//! bounds the coordinates of mesh and link in that frame: 16 u for each unit of extent (at most 2 reach) from
+//! the kernel, and 2 u reach for each of the roundings of vertices, axis and the bound it is compared with. A
+//! triangle whose computed distance exceeds a bound by more than `error` is therefore farther than the bound;
+//! any other is measured again in double precision. So every search returns the double-precision answer.
 
-use super::exhaustive;
 use super::probe::Probe;
-use super::search::Found;
-use crate::distance::{Axial, Face, Link, Scalar, Vec3};
+use crate::distance::lanes::Lane;
+use crate::distance::{Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
-/// How many triangles may be left in question before the link is searched in double precision.
-const CANDIDATES: usize = 64;
+/// A link farther out than this many times the mesh's size could overflow single precision.
+const FARTHEST: Real = 1.0e6;
 
-/// Links farther out than this many times the mesh's size are searched in double precision.
-const FARTHEST: Real = 1024.0;
-
-/// A mesh in single precision.
-#[derive(Default)]
-pub(super) struct CoarseMesh {
-    triangles: Vec<[Vec3<f32>; 3]>,
+/// The way from the mesh's frame to coordinates near one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CoarseFrame {
     centre: Vector,
     scale: Real,
-    /// Triangles whose lower bound does not rule them out, with that bound.
-    candidates: Vec<(f32, u32)>,
-    in_double: u64,
+    /// How far the mesh's own coordinates reach, which bounds the rounding of the move.
+    reach: Real,
 }
 
-impl CoarseMesh {
-    /// Takes over the triangles.
-    pub(super) fn update(&mut self, triangles: &[[Vector; 3]]) {
-        let points = || triangles.iter().flatten();
-        let low = points().copied().reduce(Vector::min).unwrap_or_default();
-        let high = points().copied().reduce(Vector::max).unwrap_or_default();
-        self.centre = low + (high - low) * 0.5;
-        self.scale = (high - low).max_element().power_of_two_to_unity();
-        self.triangles.clear();
-        let (centre, scale) = (self.centre, self.scale);
-        self.triangles.extend(triangles.iter().map(|t| t.map(|vertex| round((vertex - centre) * scale))));
-    }
-
-    pub(super) fn links_searched_in_double(&self) -> u64 {
-        self.in_double
-    }
-
-    /// The triangle nearest to the probe among those strictly nearer than `bound`, in the probe's units.
-    pub(super) fn nearest(&mut self, triangles: &[[Vector; 3]], probe: &Probe, bound: Real) -> Option<Found> {
-        if !self.collect(probe, bound) {
-            self.in_double += 1;
-            return exhaustive::nearest(triangles, probe, bound);
+impl CoarseFrame {
+    /// The frame of a mesh with these (finite) vertices.
+    pub(super) fn new(vertices: &[Vector]) -> Self {
+        let low = vertices.iter().copied().reduce(Vector::min).unwrap_or_default();
+        let high = vertices.iter().copied().reduce(Vector::max).unwrap_or_default();
+        let scale = (high - low).max_element().power_of_two_to_unity();
+        Self {
+            centre: low + (high - low) * 0.5,
+            scale,
+            reach: low.abs().max(high.abs()).max_element() * scale,
         }
-        let mut best: Option<Found> = None;
-        for &(_, triangle) in &self.candidates {
-            let bound = best.map_or(bound, |found| found.closest.distance);
-            if let Some(closest) = probe.nearer_than(bound, triangles[triangle as usize]) {
-                best = Some(Found { triangle, closest });
-            }
-        }
-        best
     }
 
-    /// Fills `candidates`. False if single precision cannot settle the question.
-    fn collect(&mut self, probe: &Probe, bound: Real) -> bool {
-        self.candidates.clear();
-        let [start, end] = probe.ends().map(|point| (point - self.centre) * self.scale);
+    pub(super) fn point<E: Lane>(&self, point: Vector) -> Vec3<E> {
+        round((point - self.centre) * self.scale)
+    }
+}
+
+/// A link in the precision of the search.
+#[derive(Clone, Copy)]
+pub(super) struct CoarseLink<E> {
+    pub start: Vec3<E>,
+    /// From start to end.
+    pub along: Vec3<E>,
+    pub axis: Vec3<E>,
+    pub length: E,
+    pub radius: E,
+    pub flat: [bool; 2],
+    /// What rounding can do to a distance.
+    pub error: E,
+    /// Multiplies a length in the probe's units.
+    factor: Real,
+}
+
+impl<E: Lane> CoarseLink<E> {
+    /// The link of a probe. None where it lies too far out for the precision.
+    pub(super) fn new(probe: &Probe, frame: &CoarseFrame) -> Option<Self> {
+        let [start, end] = probe.ends();
         let unit = probe.scaled(1.0);
-        let radius = probe.link().radius / unit * self.scale;
+        Self::between(start, end, probe.link().radius / unit, probe.link().flat, unit, frame)
+    }
+
+    /// A link between two points of the mesh's frame, whose bounds are given in units of 1 / `unit`.
+    pub(super) fn between(
+        start: Vector,
+        end: Vector,
+        radius: Real,
+        flat: [bool; 2],
+        unit: Real,
+        frame: &CoarseFrame,
+    ) -> Option<Self> {
+        let [start, end] = [start, end].map(|point| (point - frame.centre) * frame.scale);
+        let radius = radius * frame.scale;
         let reach = start.abs().max(end.abs()).max_element().max(radius).max(1.0);
         if reach.is_nan() || reach > FARTHEST {
-            return false;
+            return None;
         }
-        let error = (64.0 * f32::UNIT_ROUNDOFF * reach) as f32;
-        // The axis is rounded by itself: a link may be too short for single precision.
-        let axis = Vector::from_array(probe.link().axis.into());
-        let link = Link {
-            end: round(end - start),
-            axis: round(axis),
-            radius: radius as f32,
-            flat: probe.link().flat,
-        };
-        let start = round(start);
-        // Everything nearer than `best` (or as near, within the error) stays in question.
-        let mut best = (bound / unit * self.scale) as f32 + error;
-        for (index, vertices) in self.triangles.iter().enumerate() {
-            let face = Face::new(vertices.map(|vertex| vertex - start));
-            let axial = Axial::new(&link, &face);
-            let mut distance = axial.upper.distance;
-            if axial.at_flat[0] || axial.at_flat[1] {
-                distance = axial.plane_bound(&link, &face);
-                if distance - error < best {
-                    distance = axial.with_caps(&link, &face).distance;
-                }
-            }
-            if distance - error <= best {
-                best = best.min(distance + error);
-                self.candidates.push((distance - error, index as u32));
-                if self.candidates.len() > 2 * CANDIDATES {
-                    self.candidates.retain(|&(lower, _)| lower <= best);
-                    if self.candidates.len() > CANDIDATES {
-                        return false;
-                    }
-                }
-            }
-        }
-        self.candidates.retain(|&(lower, _)| lower <= best);
-        true
+        let along = end - start;
+        let length = along.length();
+        // The mesh's own rounding, where it lies far from the origin, is that of double precision.
+        let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach);
+        Some(Self {
+            start: round(start),
+            along: round(along),
+            // Without a direction the flat caps count as round, which is a bound for them too.
+            axis: round(if length > 0.0 { along / length } else { Vector::ZERO }),
+            length: E::round(length),
+            radius: E::round(radius),
+            flat,
+            error: E::round(error),
+            factor: frame.scale / unit,
+        })
+    }
+
+    /// What a triangle's axis distance must stay below for the link to be possibly nearer to it than `bound`,
+    /// which is in the probe's units.
+    pub(super) fn axis_limit(&self, bound: Real) -> E {
+        E::round(bound * self.factor) + self.radius + self.error
     }
 }
 
-fn round(point: Vector) -> Vec3<f32> {
-    Vec3::from(point.to_array().map(|value| value as f32))
+fn round<E: Lane>(point: Vector) -> Vec3<E> {
+    Vec3::from(point.to_array().map(E::round))
 }

@@ -2,13 +2,22 @@
 
 mod bvh;
 mod coarse;
+mod descent;
 mod engine;
 mod exhaustive;
+mod packed;
+mod patch;
+mod placed;
 mod probe;
 mod report;
+mod scan;
 mod search;
+mod soa;
+mod tree;
 
 pub use bvh::BvhSearch;
+pub use descent::Visits;
 pub use engine::Proximity;
-pub use exhaustive::{Exhaustive, SearchPrecision};
+pub use exhaustive::{Exhaustive, Precision};
 pub use report::{LinkProximity, MeshError, ProximityError};
+pub use scan::Work;

@@ -3,7 +3,7 @@
 use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
-use crate::robot::{COORDINATE_LIMIT, Cap, ModifiedCylinder};
+use crate::robot::{COORDINATE_LIMIT, Cap, Chain, Envelope, ModifiedCylinder, Run};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// What rounding can add to a bound on a box: all scaled numbers are below 2.
@@ -21,22 +21,15 @@ pub(crate) struct Probe {
     scale: Real,
     link: Link<f64>,
     length: Real,
-    has_flat_cap: bool,
 }
 
 impl Probe {
-    fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
+    /// The link at `pose`, in the scale of [`scale_for`].
+    pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose, scale: Real) -> Self {
         let (start, end) = (pose * link.start(), pose * link.end());
         let flat = link.caps().map(|cap| cap == Cap::Flat);
         let local = to_vec3((end - start) * scale);
-        Self {
-            start,
-            end,
-            scale,
-            length: local.norm(),
-            link: Link::new(local, link.radius() * scale, flat),
-            has_flat_cap: flat[0] || flat[1],
-        }
+        Self { start, end, scale, length: local.norm(), link: Link::new(local, link.radius() * scale, flat) }
     }
 
     /// The ends of the axis, in the mesh's frame.
@@ -57,14 +50,14 @@ impl Probe {
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
-        let vertices = triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale));
+        let vertices = self.local(triangle);
         if self.at_least(vertices) > bound {
             return None;
         }
         let face = Face::new(vertices);
         let axial = Axial::new(&self.link, &face);
-        let closest = if !self.flat_cap_decides(&axial) {
-            axial.upper
+        let closest = if !axial.beyond_flat_cap() {
+            axial.without_caps(&self.link)
         } else if axial.plane_bound(&self.link, &face) >= bound {
             return None;
         } else {
@@ -85,17 +78,17 @@ impl Probe {
 
     /// The closest points of the link and a triangle, in scaled units and from the link's start.
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
-        let face = self.face(triangle);
+        let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
-        if self.flat_cap_decides(&axial) { axial.with_caps(&self.link, &face) } else { axial.upper }
+        if axial.beyond_flat_cap() {
+            axial.with_caps(&self.link, &face)
+        } else {
+            axial.without_caps(&self.link)
+        }
     }
 
-    fn face(&self, triangle: [Vector; 3]) -> Face<f64> {
-        Face::new(triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale)))
-    }
-
-    fn flat_cap_decides(&self, axial: &Axial<f64>) -> bool {
-        self.has_flat_cap && (axial.at_flat[0] || axial.at_flat[1])
+    fn local(&self, triangle: [Vector; 3]) -> [Vec3<f64>; 3] {
+        triangle.map(|vertex| to_vec3((vertex - self.start) * self.scale))
     }
 
     /// A lower bound on the distance between the link and anything in the box, in scaled units, less what
@@ -134,29 +127,50 @@ impl Probe {
 /// # Errors
 /// The pose is not finite or moves a link out of range.
 pub(crate) fn place(
-    links: &[ModifiedCylinder],
+    robot: &Chain,
     pose: &Pose,
     mesh_reach: Real,
     probes: &mut Vec<Probe>,
 ) -> Result<(), ProximityError> {
+    let scale = scale_for(robot, pose, mesh_reach)?;
     probes.clear();
+    probes.extend(robot.links().iter().map(|link| Probe::new(link, pose, scale)));
+    Ok(())
+}
+
+/// The power of two that brings mesh and robot near one.
+///
+/// # Errors
+/// The pose is not finite or moves a link out of range.
+pub(crate) fn scale_for(robot: &Chain, pose: &Pose, mesh_reach: Real) -> Result<Real, ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
-    let mut reach = mesh_reach;
-    for (index, link) in links.iter().enumerate() {
-        for point in [pose * link.start(), pose * link.end()] {
-            // Written so that NaN is out of range too.
-            if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
-                return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
-            }
-            reach = reach.max(point.abs().max_element());
+    let mut reach = match robot.runs().first() {
+        Some(Run::Links { envelope: Envelope { start, end, radius }, .. }) => {
+            reach_of(pose * *start).max(reach_of(pose * *end)) + radius
         }
-        reach = reach.max(link.radius());
+        _ => Real::INFINITY,
+    };
+    // Link by link where the capsule around all of them is out of range, or there is one link only.
+    if reach.is_nan() || reach > COORDINATE_LIMIT {
+        reach = 0.0;
+        for (index, link) in robot.links().iter().enumerate() {
+            for point in [pose * link.start(), pose * link.end()] {
+                // Written so that NaN is out of range too.
+                if !point.to_array().iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
+                    return Err(ProximityError::OutOfRange { link: index, limit: COORDINATE_LIMIT });
+                }
+                reach = reach.max(reach_of(point)).max(link.radius());
+            }
+        }
     }
-    let scale = reach.power_of_two_to_unity();
-    probes.extend(links.iter().map(|link| Probe::new(link, pose, scale)));
-    Ok(())
+    Ok(reach.max(mesh_reach).power_of_two_to_unity())
+}
+
+/// The largest magnitude of a coordinate.
+fn reach_of(point: Vector) -> Real {
+    point.abs().max_element()
 }
 
 /// The largest magnitude of the vertices' coordinates.

@@ -1,6 +1,7 @@
 //! A robot as a chain of links.
 
 use super::modified_cylinder::{check_points, check_radii};
+use super::envelope::{self, Run};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Real, Vector};
@@ -47,6 +48,8 @@ pub struct Chain {
     segments: Vec<Range<usize>>,
     /// Over the links' boxes; leaf i is link i.
     bvh: Bvh,
+    /// Capsules around runs of links.
+    runs: Vec<Run>,
 }
 
 impl Chain {
@@ -118,6 +121,11 @@ impl Chain {
         &self.bvh
     }
 
+    /// Capsules around runs of links, a run before its halves.
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
         Self::assemble(points, segment_radii, &vec![[cap; 2]; segment_radii.len()])
@@ -144,7 +152,8 @@ impl Chain {
             segments.push(first..next.copied().unwrap_or(radii.len()));
         }
         let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
-        Ok(Self { links, segments, bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) })
+        let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
+        Ok(Self { links, segments, bvh, runs })
     }
 }
 

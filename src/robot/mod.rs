@@ -4,6 +4,7 @@ mod aabb;
 mod algorithm_1;
 mod cap;
 mod chain;
+mod envelope;
 mod error;
 mod exact;
 mod modified_cylinder;
@@ -13,6 +14,7 @@ mod to_trimesh;
 
 pub use cap::Cap;
 pub use chain::Chain;
+pub(crate) use envelope::{Envelope, Run, distance_to_segment};
 pub use error::RobotError;
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
