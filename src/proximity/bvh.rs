@@ -114,7 +114,8 @@ impl BvhSearch {
             Some((link, triangle)) if link < placed.links() => (link, triangle),
             _ => self.likely_minimum::<L>(token, placed),
         };
-        let (probe, found) = self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
+        let (probe, found) =
+            self.nearest::<L>(token, placed, first, Real::INFINITY, [Some(triangle), None])?;
         let mut best = (first, probe, found);
         let runs = placed.runs();
         let mut place = 0;

@@ -53,7 +53,11 @@ impl<'a> Placed<'a> {
         self.coarse_between(link.start(), link.end(), link.radius(), flat, frame)
     }
 
-    pub(super) fn coarse_envelope(&self, envelope: &Envelope, frame: &CoarseFrame) -> Option<CoarseLink<f32>> {
+    pub(super) fn coarse_envelope(
+        &self,
+        envelope: &Envelope,
+        frame: &CoarseFrame,
+    ) -> Option<CoarseLink<f32>> {
         self.coarse_between(envelope.start, envelope.end, envelope.radius, [false; 2], frame)
     }
 

@@ -1,7 +1,7 @@
 //! A robot as a chain of links.
 
-use super::modified_cylinder::{check_points, check_radii};
 use super::envelope::{self, Run};
+use super::modified_cylinder::{check_points, check_radii};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Real, Vector};

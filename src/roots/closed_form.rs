@@ -10,7 +10,7 @@
 //! coefficients gives r^2 = a^2 / 4 - b + 2g, w^2 = g^2 - d, 2 r w = a g - c, so y = 2g satisfies the resolvent
 //! y^3 - b y^2 + (a c - 4d) y + 4bd - a^2 d - c^2 = 0. Its largest real root makes r^2 and w^2 nonnegative, and
 //! the quartic two real quadratics. The one of r and w that cancels less is rooted, the other divided, and
-//! a Newton step on the two quadratics (that of Bairstow's method) removes what rounding has done.
+//! Newton's method on the two quadratics (a step is that of Bairstow's method) removes what rounding has done.
 
 use super::method::{Method, Tilt};
 use super::quadratic::{linear, quadratic};
@@ -44,13 +44,8 @@ fn cubic<T: Real, const M: usize>(a: T, b: T, c: T, roots: &mut Roots<T, M>) {
     // The root farthest from the centre -a / 3 of the three, or Cardano's: it lies on the side of -r.
     let away = -largest(q, r);
     let mut x = away - third;
-    let slope = |x: T| (x * T::of(3.0) + a * T::of(2.0)) * x + b;
-    let value = |x: T| ((x + a) * x + b) * x + c;
     for _ in 0..2 {
-        let step = value(x) / slope(x);
-        if step.is_finite() {
-            x = x - step;
-        }
+        x = polished(x, a, b, c);
     }
     roots.push(x, T::ZERO);
     if x == T::ZERO {
@@ -81,21 +76,21 @@ fn largest<T: Real>(q: T, r: T) -> T {
     if r < T::ZERO { -size } else { size }
 }
 
-/// The largest real root of y^3 - b y^2 + p y + s.
-fn largest_of_resolvent<T: Real>(b: T, p: T, s: T) -> T {
+/// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots larger than the
+/// one that is left, their middle.
+fn largest_of_resolvent<T: Real>(b: T, p: T, s: T) -> [T; 2] {
     // t^3 - 3 q t - 2 r for y = t + b / 3.
     let third = b * T::of(1.0 / 3.0);
     let q = (third * third) - p * T::of(1.0 / 3.0);
     let r = third * third * third - (third * p + s) * T::of(0.5);
-    let cube = q * q * q;
-    let t = if r * r < cube {
+    if r * r < q * q * q {
         let root = q.sqrt();
         let cos = (r / (root * q)).max(-T::ONE).min(T::ONE);
-        root * T::of(2.0) * (cos.acos() * T::of(1.0 / 3.0)).cos()
-    } else {
-        largest(q, r)
-    };
-    t + third
+        let y = root * T::of(2.0) * (cos.acos() * T::of(1.0 / 3.0)).cos() + third;
+        return [y, y];
+    }
+    let t = largest(q, r);
+    [third + t, third - t * T::of(0.5)]
 }
 
 /// Two quadratics x^2 + `u`[i] x + `v`[i] whose product is the quartic.
@@ -108,12 +103,18 @@ struct Factors<T> {
 /// Adds the roots of x^4 + a x^3 + b x^2 + c x + d.
 fn quartic<T: Real, const M: usize>(a: T, b: T, c: T, d: T, roots: &mut Roots<T, M>) {
     let half = a * T::of(0.5);
-    let y = largest_of_resolvent(b, a * c - d * T::of(4.0), (b * d * T::of(4.0) - a * a * d) - c * c);
-    let y = polished(y, b, a * c - d * T::of(4.0), (b * d * T::of(4.0) - a * a * d) - c * c);
-    let g = y * T::of(0.5);
+    let (p, s) = (a * c - d * T::of(4.0), (b * d * T::of(4.0) - a * a * d) - c * c);
+    let [y, hidden] = largest_of_resolvent(b, p, s);
     // r^2 and w^2, and how much of their terms is left.
-    let (r2, w2) = ((half * half - b) + y, g * g - d);
-    let (r_terms, w_terms) = (half * half + b.abs() + y.abs(), g * g + d.abs());
+    let squares = |y: T| {
+        let g = y * T::of(0.5);
+        let (r2, w2) = ((half * half - b) + y, g * g - d);
+        (g, r2, w2, half * half + b.abs() + y.abs(), g * g + d.abs())
+    };
+    let (mut g, mut r2, mut w2, mut r_terms, mut w_terms) = squares(polished(y, -b, p, s));
+    if r2 < -(r_terms * T::of(1.0 / 256.0)) {
+        (g, r2, w2, r_terms, w_terms) = squares(polished(hidden, -b, p, s));
+    }
     let product = (a * g - c) * T::of(0.5);
     let (r, w) = if r2 * w_terms >= w2 * r_terms {
         let r = r2.max(T::ZERO).sqrt();
@@ -130,31 +131,64 @@ fn quartic<T: Real, const M: usize>(a: T, b: T, c: T, d: T, roots: &mut Roots<T,
     } else if *low != T::ZERO {
         *high = d / *low;
     }
-    let factors = factors.improved(a, b, c, d);
+    let factors = factors.refined(a, b, c, d);
     quadratic(factors.u[0], factors.v[0], roots);
     quadratic(factors.u[1], factors.v[1], roots);
 }
 
-/// A Newton step on y^3 - b y^2 + p y + s.
-fn polished<T: Real>(y: T, b: T, p: T, s: T) -> T {
-    let value = ((y - b) * y + p) * y + s;
-    let slope = (y * T::of(3.0) - b * T::of(2.0)) * y + p;
-    let step = value / slope;
-    if step.is_finite() { y - step } else { y }
+/// A Newton step on x^3 + a x^2 + b x + c, if it brings the value down.
+#[inline]
+fn polished<T: Real>(x: T, a: T, b: T, c: T) -> T {
+    let value = |x: T| ((x + a) * x + b) * x + c;
+    let slope = (x * T::of(3.0) + a * T::of(2.0)) * x + b;
+    let before = value(x);
+    let next = x - before / slope;
+    // False where the slope was 0.
+    if value(next).abs() < before.abs() { next } else { x }
 }
 
+/// Newton steps on the two quadratics: one or two, unless their roots nearly coincide.
+const FACTOR_STEPS: usize = 20;
+/// How many roundings the product of the factors may be off.
+const FACTOR_ROUNDINGS: f64 = 2.0;
+
 impl<T: Real> Factors<T> {
-    /// What the product lacks of the quartic's coefficients, highest power first.
-    fn lack(&self, a: T, b: T, c: T, d: T) -> [T; 4] {
+    /// What the product lacks of the quartic's coefficients, highest power first, and the most it lacks relative
+    /// to what it is the difference of.
+    fn lack(&self, a: T, b: T, c: T, d: T) -> ([T; 4], T) {
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
-        [a - (u0 + u1), (b - (v0 + v1)) - u0 * u1, (c - u0 * v1) - u1 * v0, d - v0 * v1]
+        let (uu, uv, vu, vv) = (u0 * u1, u0 * v1, u1 * v0, v0 * v1);
+        let lack = [a - (u0 + u1), (b - (v0 + v1)) - uu, (c - uv) - vu, d - vv];
+        let terms = [u0.abs() + u1.abs(), v0.abs() + v1.abs() + uu.abs(), uv.abs() + vu.abs(), vv.abs()];
+        let mut worst = T::ZERO;
+        for (lack, terms) in lack.iter().zip(terms) {
+            worst = worst.max(lack.abs().over(terms));
+        }
+        (lack, worst)
     }
 
-    /// One Newton step, if it makes the product no worse.
-    fn improved(self, a: T, b: T, c: T, d: T) -> Self {
+    /// Newton's method until the product is the quartic to rounding or no longer comes closer.
+    fn refined(self, a: T, b: T, c: T, d: T) -> Self {
+        let mut best = self;
+        let (mut lack, mut worst) = self.lack(a, b, c, d);
+        for _ in 0..FACTOR_STEPS {
+            if worst <= T::of(FACTOR_ROUNDINGS * T::UNIT_ROUNDOFF) {
+                break;
+            }
+            let next = best.step(lack);
+            let (next_lack, next_worst) = next.lack(a, b, c, d);
+            // False where the step is not finite.
+            if next_worst < worst {
+                (best, lack, worst) = (next, next_lack, next_worst);
+            } else {
+                break;
+            }
+        }
+        best
+    }
+
+    fn step(&self, [r3, r2, r1, r0]: [T; 4]) -> Self {
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
-        let lack = self.lack(a, b, c, d);
-        let [r3, r2, r1, r0] = lack;
         // Eliminating the second factor's changes leaves two equations for the first's.
         let (du, dv) = (u1 - u0, v1 - v0);
         let right1 = (r1 - u0 * r2) + (u0 * u0 - v0) * r3;
@@ -165,9 +199,6 @@ impl<T: Real> Factors<T> {
         let dv0 = (m11 * right0 - m21 * right1) / determinant;
         let du1 = r3 - du0;
         let dv1 = ((r2 - dv0) - u0 * du1) - u1 * du0;
-        let next = Self { u: [u0 + du0, u1 + du1], v: [v0 + dv0, v1 + dv1] };
-        let size = |lack: [T; 4]| lack[0].abs() + lack[1].abs() + lack[2].abs() + lack[3].abs();
-        // False where the step is not finite.
-        if size(next.lack(a, b, c, d)) <= size(lack) { next } else { self }
+        Self { u: [u0 + du0, u1 + du1], v: [v0 + dv0, v1 + dv1] }
     }
 }

@@ -3,7 +3,7 @@
 //! Polynomials are monic or not, lowest power first. Dividing P by z^2 + u z + v gives P = Q (z^2 + u z + v) +
 //! b (z + u) + a; the remainder in that form is what the recurrence yields by itself.
 
-use super::quadratic::{Pair, split};
+use super::quadratic::{Pair, quadratic, split};
 use super::{Real, Roots};
 
 /// Quotient and remainder of a division by z^2 + u z + v.
@@ -68,12 +68,14 @@ impl<T: Real, const M: usize> Division<T, M> {
                 let (high, low) =
                     ((self.b * (large + u) + self.a).abs(), (self.b * (small + u) + self.a).abs());
                 // The division rounds what the larger root calls for, also at the smaller one.
+                let low = low.max((self.b * small).abs());
                 within(high, limit(large.abs()))
                     && within(low * small.abs(), limit(small.abs()) * large.abs())
             }
             Pair::Complex(re, im) => {
-                let value = (self.b * (re + u) + self.a).abs() + (self.b * im).abs();
-                within(value, limit((re * re + im * im).sqrt()))
+                let size = (re * re + im * im).sqrt();
+                let value = (self.b * (re + u) + self.a).abs() + (self.b * size).abs();
+                within(value, limit(size))
             }
         }
     }
@@ -85,7 +87,7 @@ impl<T: Real, const M: usize> Division<T, M> {
 /// lowest up for one with large roots. In between the two are joined where the polynomial's terms are largest at
 /// the factor's roots, so that either sees only what is smaller (Peters and Wilkinson).
 ///
-/// Real roots may differ in size, and a quadratic knows the smaller one only to rounding of the larger. So they
+/// Of two real roots of different size a quadratic knows the smaller one only to rounding of the larger. So they
 /// are polished and taken out one by one.
 pub(super) fn deflated<T: Real, const M: usize>(
     p: &[T; M],
@@ -94,37 +96,38 @@ pub(super) fn deflated<T: Real, const M: usize>(
     v: T,
     roots: &mut Roots<T, M>,
 ) -> [T; M] {
-    match split(u, v) {
-        Pair::Real(large, small) => {
-            let (small, large) = (polished(p, degree, small), polished(p, degree, large));
-            roots.push(small, T::ZERO);
-            roots.push(large, T::ZERO);
-            let rest = composite_linear(p, degree, small);
-            composite_linear(&rest, degree - 1, large)
-        }
-        Pair::Complex(re, im) => {
-            roots.push_pair(re, im);
-            let join = largest_term(p, degree, (re * re + im * im).sqrt());
-            let mut quotient = by_quadratic(p, degree, u, v).quotient;
-            let (mut q1, mut q2) = (T::ZERO, T::ZERO);
-            for k in 0..join.min(degree).saturating_sub(1) {
-                let q = (p[k] - u * q1 - q2) / v;
-                quotient[k] = q;
-                (q1, q2) = (q, q1);
-            }
-            quotient
-        }
+    let pair = split(u, v);
+    if let Pair::Real(large, small) = pair
+        && large.abs() > small.abs() * T::of(2.0)
+    {
+        let (small, large) = (polished(p, degree, small), polished(p, degree, large));
+        roots.push(small, T::ZERO);
+        roots.push(large, T::ZERO);
+        let rest = composite_linear(p, degree, small);
+        return composite_linear(&rest, degree - 1, large);
     }
+    quadratic(u, v, roots);
+    let join = largest_term(p, degree, v.abs().sqrt());
+    let mut quotient = by_quadratic(p, degree, u, v).quotient;
+    let (mut q1, mut q2) = (T::ZERO, T::ZERO);
+    for k in 0..join.min(degree).saturating_sub(1) {
+        let q = (p[k] - u * q1 - q2) / v;
+        quotient[k] = q;
+        (q1, q2) = (q, q1);
+    }
+    quotient
 }
 
-/// The real root after two Newton steps, as far as they are small.
+/// The real root after two Newton steps, as far as they bring p down.
 fn polished<T: Real, const M: usize>(p: &[T; M], degree: usize, s: T) -> T {
     let mut s = s;
+    let (mut quotient, mut value) = by_linear(p, degree, s);
     for _ in 0..2 {
-        let (quotient, value) = by_linear(p, degree, s);
-        let step = value / by_linear(&quotient, degree - 1, s).1;
-        if step.abs() <= s.abs() * T::of(0.125) {
-            s = s - step;
+        let next = s - value / by_linear(&quotient, degree - 1, s).1;
+        let (next_quotient, next_value) = by_linear(p, degree, next);
+        // False where the slope was 0.
+        if next_value.abs() < value.abs() {
+            (s, quotient, value) = (next, next_quotient, next_value);
         }
     }
     s
