@@ -105,11 +105,12 @@ fn quartic<T: Real, const M: usize>(a: T, b: T, c: T, d: T, roots: &mut Roots<T,
     let half = a * T::of(0.5);
     let (p, s) = (a * c - d * T::of(4.0), (b * d * T::of(4.0) - a * a * d) - c * c);
     let [y, hidden] = largest_of_resolvent(b, p, s);
-    // r^2 and w^2, and how much of their terms is left.
+    // r^2 and w^2, and what rounds them: y does with everything of its dimension in the resolvent.
+    let size = b.abs() + d.abs().sqrt();
     let squares = |y: T| {
         let g = y * T::of(0.5);
         let (r2, w2) = ((half * half - b) + y, g * g - d);
-        (g, r2, w2, half * half + b.abs() + y.abs(), g * g + d.abs())
+        (g, r2, w2, half * half + y.abs() + size, g * g + d.abs())
     };
     let (mut g, mut r2, mut w2, mut r_terms, mut w_terms) = squares(polished(y, -b, p, s));
     if r2 < -(r_terms * T::of(1.0 / 256.0)) {

@@ -2,12 +2,10 @@
 //!
 //! The upper hull of the points (k, log2 |a_k|), Newton's polygon, tells the roots' sizes: an edge from i to j
 //! stands for j - i roots of magnitude about (|a_i| / |a_j|)^(1 / (j - i)). Where two edges meet at k and their
-//! magnitudes lie further apart than rounding can see, the roots on either side are those of a_i .. a_k and of
-//! a_k .. a_j by themselves. So the polynomial is cut there, and each piece is scaled by powers of two, in x
-//! and in value, until nothing in it overflows. That makes every range of coefficients the same to a finder.
-//!
-//! A piece that even so spans too many powers of two is cut at the widest gap it has. The cut then disturbs its
-//! roots by about the ratio of their sizes, which the polish on the whole polynomial removes.
+//! magnitudes lie far apart, the roots on either side are nearly those of a_i .. a_k and of a_k .. a_j by
+//! themselves, off by about the ratio of their sizes; the polish on the whole polynomial removes that. So the
+//! polynomial is cut there, and each piece is scaled by powers of two, in x and in value, until nothing in it
+//! overflows or vanishes. That makes every range of coefficients the same to a finder.
 
 use super::Real;
 
@@ -79,7 +77,8 @@ impl<const M: usize> Exponents<M> {
         loop {
             let Some((gap, vertex)) = self.widest_gap(from, end) else { return end };
             let spans = self.height(from, end, tilt);
-            if gap <= T::MANTISSA_BITS + 4 && spans <= T::SAFE_EXPONENT {
+            // Sizes 2^13 or 2^6 apart.
+            if gap <= T::MANTISSA_BITS / 4 && spans <= T::SAFE_EXPONENT {
                 return end;
             }
             end = vertex;
