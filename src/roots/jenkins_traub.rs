@@ -136,8 +136,14 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
                 quadratic.demand_more();
             }
             if linear_settled {
-                if let Some(factor) = self.linear_stage(k, root) {
-                    return Some(factor);
+                match self.linear_stage(k, root) {
+                    Ok(factor) => return Some(factor),
+                    Err(near) => {
+                        // Two roots close together stop the linear iteration near them.
+                        if let Some(factor) = self.quadratic_stage(k, -(near + near), near * near) {
+                            return Some(factor);
+                        }
+                    }
                 }
                 linear.demand_more();
             }
@@ -169,14 +175,15 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
         (u.is_finite() && v.is_finite() && v != T::ZERO).then_some((u, v))
     }
 
-    fn linear_stage(&self, k: [T; M], root: T) -> Option<Factor<T, M>> {
+    /// The factor, or where the iteration was when it ran out of steps.
+    fn linear_stage(&self, k: [T; M], root: T) -> Result<Factor<T, M>, T> {
         let n = self.degree;
         let (mut k, mut s) = (k, root);
         for _ in 0..LINEAR_STEPS {
             let (of_p, p_at) = by_linear(self.p, n, s);
             let limit = magnitude(&of_p, n - 1, s.abs()) * s.abs() * T::of(ROUNDINGS * T::UNIT_ROUNDOFF);
             if p_at.abs() <= limit && limit.is_finite() {
-                return Some(Factor::Linear { root: s, quotient: of_p });
+                return Ok(Factor::Linear { root: s, quotient: of_p });
             }
             let (of_k, k_at) = by_linear(&k, n - 1, s);
             let scale = p_at / k_at;
@@ -185,11 +192,11 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
             }
             let step = p_at / by_linear(&k, n - 1, s).1;
             if !step.is_finite() {
-                return None;
+                return Err(s);
             }
             s = s - step;
         }
-        None
+        Err(s)
     }
 
     fn quadratic_stage(&self, k: [T; M], u: T, v: T) -> Option<Factor<T, M>> {
