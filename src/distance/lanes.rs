@@ -72,7 +72,6 @@ macro_rules! lanes {
             type Mask = $LaneMask<S>;
             const UNIT_ROUNDOFF: f64 = <$element as Scalar>::UNIT_ROUNDOFF;
             const FACE_PASSES: usize = <$element as Scalar>::FACE_PASSES;
-            const HALLEY_STEPS: usize = <$element as Scalar>::HALLEY_STEPS;
 
             #[inline(always)]
             fn lit(self, value: f64) -> Self {

@@ -28,9 +28,6 @@ pub trait Scalar:
     /// has, which are few on a sliver. Two serve a height of 1e-5 of the length, three one of 1e-12.
     const FACE_PASSES: usize;
 
-    /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double precision.
-    const HALLEY_STEPS: usize;
-
     /// The constant `value` in the precision and lanes of `self`.
     fn lit(self, value: f64) -> Self;
     /// `self < other`
@@ -91,12 +88,11 @@ pub(super) const CBRT_BITS_F32: u32 = 0x2a51_0554;
 pub(super) const CBRT_BITS_F64: u64 = 0x2a9f_7893_782d_a1ce;
 
 macro_rules! scalar {
-    ($float:ident, $halley_steps:literal, $face_passes:literal, $mantissa_bits:literal, $bias:literal, $cbrt_bits:ident) => {
+    ($float:ident, $face_passes:literal, $mantissa_bits:literal, $bias:literal, $cbrt_bits:ident) => {
         impl Scalar for $float {
             type Mask = bool;
             const UNIT_ROUNDOFF: f64 = $float::EPSILON as f64 / 2.0;
             const FACE_PASSES: usize = $face_passes;
-            const HALLEY_STEPS: usize = $halley_steps;
 
             #[inline(always)]
             fn lit(self, value: f64) -> Self {
@@ -138,5 +134,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, 2, 2, 23, 127, CBRT_BITS_F32);
-scalar!(f64, 3, 3, 52, 1023, CBRT_BITS_F64);
+scalar!(f32, 2, 23, 127, CBRT_BITS_F32);
+scalar!(f64, 3, 52, 1023, CBRT_BITS_F64);

@@ -33,6 +33,9 @@
 
 use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
+/// How many steps of Halley's method reach rounding level from the start of cases 2 to 4.
+const HALLEY_STEPS: usize = 3;
+
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
 /// normal (of any length) and radius; (13) to (19).
 #[inline(always)]
@@ -137,8 +140,10 @@ impl<T: Scalar> Line<T> {
         let cusp = (self.n + self.n).over(self.tau).cbrt_estimate().mul_add(self.tau, tangent);
         let from_cusp = zero.lt(self.m).select((cusp - self.n).over(self.m), top);
         let mut s = top.min(from_zero).min(from_cusp);
+        // Between these lies the minimiser: where g and g' are no more than rounding, a step could lead anywhere.
+        let (mut low, mut high) = (zero, top);
 
-        for _ in 0..T::HALLEY_STEPS {
+        for _ in 0..HALLEY_STEPS {
             let (rho, w) = self.radial_at(s);
             let inverse = one.over(rho);
             let ratio = radius * inverse;
@@ -149,7 +154,10 @@ impl<T: Scalar> Line<T> {
             let g2 = one.lit(3.0) * ratio * turn * turn.mul_add(-turn, self.m) * inverse;
             let halley = (g1 * g1) * one.lit(2.0) - g * g2;
             let step = zero.lt(halley).select((g * g1 * one.lit(2.0)).over(halley), g.over(g1));
-            s = (s - step).max(zero).min(top);
+            let beyond = zero.lt(g);
+            low = beyond.select(low, s);
+            high = beyond.select(s, high);
+            s = (s - step).max(low).min(high);
         }
 
         // Case 1.
