@@ -54,6 +54,7 @@ pub mod distance;
 mod host;
 pub mod proximity;
 mod robot;
+pub mod roots;
 
 pub use host::ContinuumDispatcher;
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};

@@ -17,6 +17,7 @@
 //! ```
 
 mod bounds;
+mod disc_solver;
 mod face;
 mod frame;
 pub(crate) mod lanes;
@@ -33,19 +34,24 @@ mod triangle_modified_cylinder;
 mod vec3;
 
 pub(crate) use face::Face;
+pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::Link;
+pub(crate) use segment_disc::Line;
 pub(crate) use triangle_modified_cylinder::Axial;
 
+pub use disc_solver::{Convex, DiscSolver};
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
 pub use point_triangle::point_triangle;
 pub use scalar::{Mask, Scalar};
-pub use segment_disc::segment_disc;
+pub use segment_disc::{segment_disc, segment_disc_by};
 pub use segment_segment::segment_segment;
 pub use segment_triangle::segment_triangle;
-pub use triangle_disc::triangle_disc;
-pub use triangle_modified_cylinder::{triangle_capsule, triangle_modified_cylinder};
+pub use triangle_disc::{triangle_disc, triangle_disc_by};
+pub use triangle_modified_cylinder::{
+    triangle_capsule, triangle_modified_cylinder, triangle_modified_cylinder_by,
+};
 pub use vec3::Vec3;
 
 /// The distance between two shapes and a pair of points that realises it.

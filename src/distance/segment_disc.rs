@@ -34,7 +34,7 @@
 //! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
 //! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
 
-use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
+use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
 /// normal (of any length but 0) and radius; (13) to (19).
@@ -45,21 +45,33 @@ pub fn segment_disc<T: Scalar>(
     normal: Vec3<T>,
     radius: T,
 ) -> Closest<T> {
-    let frame = Frame::around(centre, segment, radius);
-    let ends = segment.map(|point| frame.point(point));
-    frame.answer(from_centre(ends, normal.normalised(), frame.length(radius)))
+    segment_disc_by::<Convex, T>(segment, centre, normal, radius)
 }
 
-/// As [`segment_disc`], for a disc around the origin, a unit normal and numbers near one.
+/// As [`segment_disc`], by the route `S`.
 #[inline(always)]
-pub(crate) fn from_centre<T: Scalar>(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
-    let line = Line::new(ends, normal);
-    let (s, pierces) = line.nearest_to_disc(radius);
-    line.closest_at(s, pierces, normal, radius)
+pub fn segment_disc_by<S: DiscSolver<T>, T: Scalar>(
+    segment: [Vec3<T>; 2],
+    centre: Vec3<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
+    let frame = Frame::around(centre, segment, radius);
+    let ends = segment.map(|point| frame.point(point));
+    frame.answer(S::segment_disc(ends, normal.normalised(), frame.length(radius)))
+}
+
+impl<T: Scalar> DiscSolver<T> for Convex {
+    #[inline(always)]
+    fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
+        let line = Line::new(ends, normal);
+        let (s, pierces) = line.nearest_to_disc(radius);
+        line.closest_at(s, pierces, normal, radius)
+    }
 }
 
 /// A line seen from a disc around the origin: the quantities of the head of this file.
-struct Line<T: Scalar> {
+pub(crate) struct Line<T: Scalar> {
     /// Unit direction of the segment.
     direction: Vec3<T>,
     /// The end nearer to the foot of the disc's centre, from which positions along the direction count.
@@ -70,18 +82,18 @@ struct Line<T: Scalar> {
     far_at: T,
     /// -1 where s runs against the direction.
     sign: T,
-    h: T,
-    lambda: T,
-    m: T,
-    n: T,
+    pub h: T,
+    pub lambda: T,
+    pub m: T,
+    pub n: T,
     tau: T,
     /// |q|^2
-    q: T,
+    pub q: T,
 }
 
 impl<T: Scalar> Line<T> {
     #[inline(always)]
-    fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
+    pub(crate) fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
         let edge = end - start;
         let direction = edge.normalised();
         let length = edge.dot(direction);
@@ -122,7 +134,7 @@ impl<T: Scalar> Line<T> {
 
     /// The distance from the disc's axis, and w, at s.
     #[inline(always)]
-    fn radial_at(&self, s: T) -> (T, T) {
+    pub(crate) fn radial_at(&self, s: T) -> (T, T) {
         let w = self.m.mul_add(s, self.n);
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
@@ -150,7 +162,6 @@ impl<T: Scalar> Line<T> {
         let cusp = (self.n + self.n).over(self.tau).cbrt_estimate().mul_add(self.tau, tangent);
         let from_cusp = (cusp - self.n).over(self.m).max(ratio0 * self.n);
         let mut s = top.min(from_zero).min(from_cusp);
-
         let (mut low, mut high) = (zero, top);
         for _ in 0..T::HALLEY_STEPS {
             let (rho, w) = self.radial_at(s);
@@ -178,7 +189,7 @@ impl<T: Scalar> Line<T> {
     /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc
     /// there and the segment gets that far, that point is common, whatever rounding says of its height.
     #[inline(always)]
-    fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
+    pub(crate) fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
         let along = s.mul_add(self.sign, self.foot);
         let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));

@@ -10,7 +10,7 @@
 //!
 //! The face's candidate is the distance between two actual points, the disc's and its foot on the triangle.
 
-use super::{Closest, Scalar, Vec3, face::Face, frame::Frame, plane_disc, segment_disc};
+use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
 /// The distance between a triangle and a solid disc with the given centre, normal (of any length but 0) and
 /// radius; (22) to (25).
@@ -21,14 +21,29 @@ pub fn triangle_disc<T: Scalar>(
     normal: Vec3<T>,
     radius: T,
 ) -> Closest<T> {
+    triangle_disc_by::<Convex, T>(triangle, centre, normal, radius)
+}
+
+/// As [`triangle_disc`], by the route `S`.
+#[inline(always)]
+pub fn triangle_disc_by<S: DiscSolver<T>, T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    centre: Vec3<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
     let frame = Frame::around(centre, triangle, radius);
     let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
-    frame.answer(from_centre(&face, normal.normalised(), frame.length(radius)))
+    frame.answer(from_centre::<S, T>(&face, normal.normalised(), frame.length(radius)))
 }
 
 /// As [`triangle_disc`], for a disc around the origin, a unit normal and numbers near one.
 #[inline(always)]
-pub(crate) fn from_centre<T: Scalar>(face: &Face<T>, normal: Vec3<T>, radius: T) -> Closest<T> {
+pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
+    face: &Face<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
     let [a, b, c] = face.vertices;
     // Cases 2 and 3.
     let plane_normal = face.normal();
@@ -44,8 +59,8 @@ pub(crate) fn from_centre<T: Scalar>(face: &Face<T>, normal: Vec3<T>, radius: T)
     let face_answer = Closest::select(crosses, common, apart);
 
     // Case 1.
-    let edges = segment_disc::from_centre([a, b], normal, radius)
-        .nearer(segment_disc::from_centre([b, c], normal, radius))
-        .nearer(segment_disc::from_centre([c, a], normal, radius));
+    let edges = S::segment_disc([a, b], normal, radius)
+        .nearer(S::segment_disc([b, c], normal, radius))
+        .nearer(S::segment_disc([c, a], normal, radius));
     Closest::select(projection.inside & face_answer.distance.le(edges.distance), face_answer, edges)
 }

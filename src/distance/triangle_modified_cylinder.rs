@@ -18,7 +18,10 @@
 //! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate.
 
 use super::point_modified_cylinder::Link;
-use super::{Closest, Mask, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle, triangle_disc};
+use super::{
+    Closest, Convex, DiscSolver, Mask, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle,
+    triangle_disc,
+};
 
 /// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to (33).
 /// `flat` says which of the two caps are flat.
@@ -33,11 +36,23 @@ pub fn triangle_modified_cylinder<T: Scalar>(
     radius: T,
     flat: [T::Mask; 2],
 ) -> Closest<T> {
+    triangle_modified_cylinder_by::<Convex, T>(triangle, start, end, radius, flat)
+}
+
+/// As [`triangle_modified_cylinder`], with the discs by the route `S`.
+#[inline(always)]
+pub fn triangle_modified_cylinder_by<S: DiscSolver<T>, T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
     let [a, b, c] = triangle;
     let frame = Frame::around(start, [end, a, b, c], radius);
     let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
     let link = Link::new(frame.point(end), frame.length(radius), flat);
-    frame.answer(Axial::new(&link, &face).with_caps(&link, &face))
+    frame.answer(Axial::new(&link, &face).with_caps_by::<S>(&link, &face))
 }
 
 /// The distance between a triangle and a capsule; (26), (27).
@@ -107,9 +122,15 @@ impl<T: Scalar> Axial<T> {
     /// The answer, discs included.
     #[inline(always)]
     pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
+        self.with_caps_by::<Convex>(link, face)
+    }
+
+    /// As [`Axial::with_caps`], by the route `S`.
+    #[inline(always)]
+    pub(crate) fn with_caps_by<S: DiscSolver<T>>(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
         let upper = self.without_caps(link);
         let (centre, outward) = self.cap(link);
-        let disc = triangle_disc::from_centre(&face.seen_from(centre), outward, link.radius);
+        let disc = triangle_disc::from_centre::<S, T>(&face.seen_from(centre), outward, link.radius);
         let disc =
             Closest { distance: disc.distance, point1: disc.point1 + centre, point2: disc.point2 + centre };
         Closest::select(self.beyond_flat_cap() & disc.distance.lt(upper.distance), disc, upper)
