@@ -11,7 +11,6 @@ use parry_continuum::roots::*;
 /// What the roots of many polynomials of one degree came to; errors in units of roundoff.
 #[derive(Debug, Default)]
 struct Tally {
-    polynomials: usize,
     not_converged: usize,
     real_roots: usize,
     complex_roots: usize,
@@ -25,7 +24,7 @@ struct Tally {
 
 fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize, references: usize) -> Tally {
     let mut random = Random::new(M as u64);
-    let mut tally = Tally { polynomials: count, ..Tally::default() };
+    let mut tally = Tally::default();
     for index in 0..count {
         let coefficients: [T; M] = std::array::from_fn(|_| T::of(random.between(-100.0, 100.0)));
         let exact = coefficients.map(Into::into);

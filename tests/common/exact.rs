@@ -145,7 +145,7 @@ pub fn vieta_errors(coefficients: &[f64], roots: &[Z]) -> [f64; 2] {
     }
     let leading = big(coefficients[degree]);
     let sum_error = sum.plus(&Z { re: big(coefficients[degree - 1]) / &leading, im: big(0.0) });
-    let sign = if degree % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if degree.is_multiple_of(2) { 1.0 } else { -1.0 };
     let expected = Z { re: big(sign * coefficients[0]) / leading, im: big(0.0) };
     [ratio(&sum_error.modulus(), &sizes), relative_distance(&product, &expected)]
 }
