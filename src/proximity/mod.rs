@@ -12,6 +12,7 @@ mod probe;
 mod report;
 mod scan;
 mod search;
+mod share;
 mod soa;
 mod tree;
 mod walk;
