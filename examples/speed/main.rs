@@ -11,12 +11,14 @@
 mod scene;
 
 mod exhaustive;
+mod goals;
 mod growth;
 mod machine;
 mod moving;
 mod search;
 
 use clap::Parser;
+use goals::Goals;
 use scene::command;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -42,16 +44,16 @@ fn measure(options: &Options) -> Result<(), String> {
     let head = format!(
         "# Speed\n\n\
          Written by `cargo run --release --example speed` on {}. \
-         Times are medians; jobs that are compared take turns in one run. \
-         A goal is a ratio that this project set itself.\n",
+         Times are medians; jobs that are compared take turns in one run.\n",
         machine::description()
     );
     page.push_str(&head);
     let memory = exhaustive::memory()?;
-    let (search, table) = search::chapter()?;
-    let exhaustive = exhaustive::chapter()?;
+    let mut goals = Goals::default();
+    let (search, table) = search::chapter(&mut goals)?;
+    let exhaustive = exhaustive::chapter(&mut goals)?;
     let growth = growth::chapter(options.largest, &options.out)?;
-    for chapter in [search, exhaustive, growth, moving::chapter()?, memory] {
+    for chapter in [search, exhaustive, growth, moving::chapter()?, memory, goals.chapter()] {
         page.push('\n');
         page.push_str(&chapter);
     }
