@@ -2,9 +2,11 @@
 
 use crate::goals::{Goal, Goals};
 use crate::machine;
+use crate::scene::levels::levels;
 use crate::scene::subdivide::{in_four, shuffled};
 use crate::scene::timing::{self, medians};
 use crate::scene::{ctr, ventricle};
+use fearless_simd::Level;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;
@@ -62,7 +64,37 @@ pub fn chapter(goals: &mut Goals) -> Result<String, String> {
         page.push_str(&rows);
         work.push_str(&shares);
     }
-    Ok(page + &work)
+    Ok(page + &work + &instruction_sets(&models[0].1)?)
+}
+
+/// What each instruction set of the machine makes of the same kernels: none may fall back to narrower ones.
+fn instruction_sets(robot: &Chain) -> Result<String, String> {
+    let (vertices, indices) = divided(0);
+    let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
+    let mut page = String::from(
+        "\nNanoseconds a pair by instruction set, K without culling, 6,000 triangles, one thread:\n\n\
+         | instruction set | f32 | f64 |\n|---|---|---|\n",
+    );
+    for (name, level) in levels() {
+        let (mesh, robot) = (&mesh, robot);
+        let [single, double] = on_one_thread(move || -> Result<_, String> {
+            Ok([without_culling::<f32>(mesh, robot, level)?, without_culling::<f64>(mesh, robot, level)?])
+        })??;
+        let _ = writeln!(page, "| {name} | {:.1} | {:.1} |", single * 1e9, double * 1e9);
+    }
+    Ok(page)
+}
+
+/// Seconds a pair.
+fn without_culling<T: Precision>(mesh: &TriMesh, robot: &Chain, level: Level) -> Result<f64, String> {
+    let mut engine = Exhaustive::<T>::new(mesh).map_err(|error| error.to_string())?;
+    engine.set_culling(false);
+    engine.set_level(level);
+    let mut out = Vec::new();
+    let mut query =
+        || engine.per_link(robot, &ventricle::entry(), &mut out).map_err(|error| error.to_string());
+    let time = medians::<String>(&mut [&mut query], Duration::from_millis(500))?[0].as_secs_f64();
+    Ok(time / (mesh.num_triangles() * robot.links().len()) as f64)
 }
 
 fn rows<T: Precision + Send>(

@@ -28,7 +28,8 @@ impl Patch {
     pub(super) fn of_leaf<L: Pack<Element = f32>>(token: L::Token, rows: &[f32; 9 * BLOCK]) -> Self {
         let first = load_vertices::<L>(token, rows, 0);
         let (mut low, mut high) = (first[0], first[0]);
-        let mut area = first[0] - first[0];
+        let zero = first[0].x.zero();
+        let mut area = Vec3::new(zero, zero, zero);
         for lane in (0..BLOCK).step_by(L::LANES) {
             let [a, b, c] = load_vertices::<L>(token, rows, lane);
             low = lower(lower(low, a), lower(b, c));
@@ -39,7 +40,7 @@ impl Patch {
 
         let centre = splat(token, patch.centre);
         let normal = splat(token, patch.normal);
-        let (mut height, mut radial) = (area.x.zero(), area.x.zero());
+        let (mut height, mut radial) = (zero, zero);
         for lane in (0..BLOCK).step_by(L::LANES) {
             for corner in load_vertices::<L>(token, rows, lane) {
                 let relative = corner - centre;
