@@ -169,7 +169,11 @@ impl Placed {
         let start = self.start * coarse;
         let offset = |p: Vector| p * coarse - start;
         let radius = self.radius * coarse;
-        let fine = largest([self.end, a, b, c].map(offset)).max(radius).power_of_two_to_unity();
+        let extent = largest([self.end, a, b, c].map(offset)).max(radius);
+        if extent == 0.0 {
+            return Certificate { lower: 0.0, upper: 0.0 }; // one point
+        }
+        let fine = extent.power_of_two_to_unity();
         let local = |p: Vector| {
             let [x, y, z] = (p * coarse).to_array();
             let exact = |x: Real, from: Real| (Number::from(x) - from.into()) * fine.into();
