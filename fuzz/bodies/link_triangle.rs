@@ -50,6 +50,11 @@ fn check<T: Precision>(points: [Vector; 5], radius: f64, caps: [Cap; 2]) {
     let (low, high) = (all.into_iter().reduce(Vector::min), all.into_iter().reduce(Vector::max));
     let (Some(low), Some(high)) = (low, high) else { return };
     let extent = (high - low).max_element().max(round(radius));
+    // A link whose squared length vanishes has no direction; its caps count as round, as documented.
+    let shortest = if T::UNIT_ROUNDOFF < 1e-10 { 1e-150 } else { 1e-18 };
+    if flat.contains(&true) && (end - start).abs().max_element() < shortest * extent && radius > 0.0 {
+        return;
+    }
     let magnitude = low.abs().max(high.abs()).max_element();
     let unit = T::UNIT_ROUNDOFF * extent;
     // Answers that are subnormal have their own roundings.
