@@ -192,8 +192,10 @@ impl DiscProblem {
                 problem.ends = through(at, Vector::new(tiny(random), tiny(random), 1.0), random);
             }
             Kind::AnySize => {
-                let at = Vector::new(small(random, -6.0, 6.0), small(random, -6.0, 6.0), small(random, -6.0, 6.0));
-                let way = Vector::new(small(random, -6.0, 0.0), small(random, -6.0, 0.0), small(random, -6.0, 0.0));
+                let at =
+                    Vector::new(small(random, -6.0, 6.0), small(random, -6.0, 6.0), small(random, -6.0, 6.0));
+                let way =
+                    Vector::new(small(random, -6.0, 0.0), small(random, -6.0, 0.0), small(random, -6.0, 0.0));
                 problem.ends = through(at, way * small(random, -3.0, 6.0), random);
                 problem.radius = small(random, -6.0, 6.0).abs();
             }
@@ -224,7 +226,8 @@ impl DiscProblem {
     /// The largest difference of two coordinates, or the radius.
     pub fn extent(&self) -> f64 {
         let points = [self.ends[0], self.ends[1], self.centre];
-        let [low, high] = [Vector::min, Vector::max].map(|pick| points.into_iter().reduce(pick).unwrap_or_default());
+        let [low, high] =
+            [Vector::min, Vector::max].map(|pick| points.into_iter().reduce(pick).unwrap_or_default());
         (high - low).max_element().max(self.radius)
     }
 

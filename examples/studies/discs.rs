@@ -1,9 +1,9 @@
 //! Table I: the root finders where the paper needs them, in the distance between a segment and a disc.
 
+use super::Random;
 use super::counted::{Counted, Counts, count};
 use super::disc_problems::{DiscProblem, Kind};
 use super::turns::in_turns;
-use super::Random;
 use fearless_simd::{Level, dispatch};
 use parry_continuum::distance::{Convex, DiscSolver, Scalar, Vec3, segment_disc_by};
 use parry_continuum::parry::math::Vector;
@@ -52,7 +52,8 @@ where
         name,
         distance: |problem| {
             let point = |p: Vector| Vec3::from(p.to_array().map(T::of));
-            let [ends, [centre, normal]] = [problem.ends, [problem.centre, problem.normal]].map(|p| p.map(point));
+            let [ends, [centre, normal]] =
+                [problem.ends, [problem.centre, problem.normal]].map(|p| p.map(point));
             segment_disc_by::<S, T>(ends, centre, normal, T::of(problem.radius)).distance.into()
         },
         all: |problems| {
@@ -168,7 +169,8 @@ pub fn chapter(count: usize) -> Result<String, String> {
     };
     let sample: Vec<_> = (0..TIMED).map(|_| DiscProblem::new(&mut random, Kind::Random)).collect();
     let tables = [rows::<f32>(&usable(single), &sample), rows::<f64>(&usable(double), &sample)];
-    write_page(count, &tables, [wide::<f32>(&sample), wide::<f64>(&sample)]).map_err(|error| error.to_string())
+    write_page(count, &tables, [wide::<f32>(&sample), wide::<f64>(&sample)])
+        .map_err(|error| error.to_string())
 }
 
 fn write_page(count: usize, tables: &[Vec<Row>; 2], wide: [f64; 2]) -> Result<String, std::fmt::Error> {
@@ -219,7 +221,9 @@ fn write_page(count: usize, tables: &[Vec<Row>; 2], wide: [f64; 2]) -> Result<St
         )?;
     }
     let printed = || tables.iter().flat_map(|table| &table[1..5]);
-    let finding = if tables.iter().all(|table| table[0].above_8 == 0.0) && printed().all(|row| row.gross > 0.0) {
+    let finding = if tables.iter().all(|table| table[0].above_8 == 0.0)
+        && printed().all(|row| row.gross > 0.0)
+    {
         "every quartic as printed is grossly wrong on some of these problems, with any root finder, and the convex route \
          never errs by more than 8 units; so the paper's Table I, which compares finders by complexity and convergence, \
          leaves out what decides"

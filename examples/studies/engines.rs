@@ -66,7 +66,9 @@ fn measure<T: Precision + Real>(mesh: &TriMesh) -> Result<Measured, String> {
     let mut measured = [(f64::INFINITY, 0.0_f64); 7];
     let mut taken = [0.0; 7];
     for round in 0..ROUNDS {
-        for (((robot, engine), (least, error)), taken) in engines.iter_mut().zip(&mut measured).zip(&mut taken) {
+        for (((robot, engine), (least, error)), taken) in
+            engines.iter_mut().zip(&mut measured).zip(&mut taken)
+        {
             if round > 0 && *taken > ENOUGH {
                 continue;
             }
@@ -107,7 +109,8 @@ pub fn chapter(largest: usize) -> Result<String, String> {
             let (vertices, mut indices) = shuffled(mesh.clone(), 1);
             indices.truncate(largest);
             let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
-            let times = pool.install(|| -> Result<_, String> { Ok([measure::<f32>(&mesh)?, measure::<f64>(&mesh)?]) })?;
+            let times = pool
+                .install(|| -> Result<_, String> { Ok([measure::<f32>(&mesh)?, measure::<f64>(&mesh)?]) })?;
             sizes.push((mesh.num_triangles(), times));
         }
         if last {

@@ -94,7 +94,8 @@ impl<F: method::Method> RootFinder for F {
     }
 }
 
-/// The roots as they come, untested; fewer where some did not converge.
+/// The roots as they come, whether or not they pass the test; fewer where some did not converge. Only what the
+/// cutting of a wide polynomial has moved is polished.
 pub(crate) fn approximations<F: method::Method, T: Real, const M: usize>(
     coefficients: &[T; M],
 ) -> Roots<T, M> {
@@ -103,9 +104,13 @@ pub(crate) fn approximations<F: method::Method, T: Real, const M: usize>(
     for _ in 0..low {
         found.push(T::ZERO, T::ZERO);
     }
-    let (approximations, _) = approximate::<F, T, M>(coefficients, low, high);
+    let (approximations, checker) = approximate::<F, T, M>(coefficients, low, high);
     for index in 0..approximations.values.len() {
-        let Complex { re, im } = approximations.at(index).unscaled();
+        let mut root = approximations.at(index);
+        if matches!(checker, Checker::Wide { .. }) {
+            root = approximations.settled(index, &checker).unwrap_or(root);
+        }
+        let Complex { re, im } = root.unscaled();
         found.push(re, im);
     }
     found
@@ -163,6 +168,12 @@ impl<T: Real, const M: usize> Approximations<T, M> {
         Scaled { value: self.values.as_slice()[index], shift: self.shifts[index] }
     }
 
+    /// The root that an approximation stands for, if it does.
+    fn settled(&self, index: usize, checker: &Checker<T, M>) -> Option<Scaled<T>> {
+        let others = (0..self.values.len()).filter(|&other| other != index).map(|other| self.at(other));
+        checker.settle(self.at(index), others)
+    }
+
     /// The roots among the approximations, after the `low` zero roots.
     fn settle(
         &self,
@@ -176,12 +187,10 @@ impl<T: Real, const M: usize> Approximations<T, M> {
         }
         let count = self.values.len();
         for index in 0..count {
-            let approximation = self.at(index);
-            if approximation.value.im < T::ZERO {
+            if self.at(index).value.im < T::ZERO {
                 continue; // with its conjugate
             }
-            let others = (0..count).filter(|&other| other != index).map(|other| self.at(other));
-            let Some(root) = checker.settle(approximation, others) else { continue };
+            let Some(root) = self.settled(index, checker) else { continue };
             let Complex { re, im } = root.unscaled();
             if !(re.is_finite() && im.is_finite()) {
                 return Err(RootsError::OutOfRange);

@@ -96,11 +96,15 @@ impl<F: RootFinder, const STEPS: usize, T: Real> DiscSolver<T> for RecentredQuar
             }
         }
         consider(line.h.over(line.lambda));
-        let mut s = best.1;
         for _ in 0..STEPS {
-            s = newton(&line, s, radius);
+            // A step that leads away is not taken: the derivative's slope may be nothing but rounding.
+            let s = newton(&line, best.1, radius);
+            let squared = squared_distance(&line, s, radius);
+            if squared < best.0 {
+                best = (squared, s);
+            }
         }
-        line.closest_at(s, false, normal, radius)
+        line.closest_at(best.1, false, normal, radius)
     }
 }
 
@@ -112,7 +116,7 @@ fn squared_distance<T: Real>(line: &Line<T>, s: T, radius: T) -> T {
     height * height + beyond * beyond
 }
 
-/// A Newton step on the derivative of the squared distance, if it leads anywhere.
+/// A Newton step on the derivative of the squared distance, where that has a slope.
 #[inline]
 fn newton<T: Real>(line: &Line<T>, s: T, radius: T) -> T {
     let (rho, w) = line.radial_at(s);
