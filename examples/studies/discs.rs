@@ -230,7 +230,14 @@ fn write_page(count: usize, tables: &[Vec<Row>; 2], wide: [f64; 2]) -> Result<St
     } else {
         "not every quartic as printed failed, or the convex route erred by more than 8 units"
     };
-    writeln!(page, "\nFinding: {finding}.")?;
+    let recentred = tables.each_ref().map(|table| table[5..].iter().map(|row| row.worst).fold(0.0, f64::max));
+    writeln!(
+        page,
+        "\nFinding: {finding}. What fails is the equation, not the finder: of the recentred quartic the worst answer of \
+         any finder is off by {} units in f32 and {} in f64.",
+        error(recentred[0]),
+        error(recentred[1])
+    )?;
     Ok(page)
 }
 
