@@ -5,7 +5,6 @@ mod common;
 mod disc_problems;
 
 use common::Random;
-use common::double_double::DoubleDouble;
 use disc_problems::{DiscProblem, Kind};
 use parry_continuum::distance::{Convex, DiscSolver, Scalar, Vec3, segment_disc_by};
 use parry_continuum::parry::math::Vector;

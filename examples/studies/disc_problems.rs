@@ -1,7 +1,7 @@
 //! Segments and discs to compare the routes of segment-disc on: plain ones, and every kind that is known to be hard.
 
-use super::{DoubleDouble, Random};
-use parry_continuum::distance::Scalar;
+use super::Random;
+use parry_continuum::distance::{DoubleDouble, Scalar};
 use parry_continuum::parry::math::{Pose, Vector};
 
 /// A segment and a disc.

@@ -25,7 +25,6 @@ mod turns;
 
 use clap::{Parser, ValueEnum};
 use scene::command;
-use scene::double_double::DoubleDouble;
 use scene::random::Random;
 use std::fs;
 use std::path::PathBuf;

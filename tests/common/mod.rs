@@ -2,8 +2,6 @@
 #![allow(dead_code)] // each test uses its part
 
 pub mod certificate;
-#[path = "../../examples/scene/double_double.rs"]
-pub mod double_double;
 pub mod kernels;
 pub mod precision;
 pub mod problems;
