@@ -12,7 +12,8 @@
 //!   candidates, any point of the segment being an upper bound, with the ends, the foot and the plane.
 //!
 //! Roots are fed in as they come, without the test by which [`RootFinder::roots`] vouches for them: a bad
-//! candidate is outdone by a better one.
+//! candidate is outdone by a better one. Only where the coefficients are so wide apart that the polynomial is cut
+//! are they polished on the whole of it.
 
 use super::{Real, RootFinder, approximations};
 use crate::distance::{Closest, DiscSolver, Line, Vec3, disc_point};
