@@ -13,7 +13,6 @@ pub mod lettering;
 pub mod levels;
 pub mod mesh_file;
 pub mod picture;
-pub mod random;
 pub mod remesh;
 pub mod steer;
 pub mod subdivide;

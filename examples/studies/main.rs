@@ -21,11 +21,14 @@ mod machine;
 mod pairs;
 mod peak;
 mod polynomials;
+#[path = "../scene/random.rs"]
+#[allow(dead_code, reason = "the tests use more of it")]
+mod random;
 mod turns;
 
 use clap::{Parser, ValueEnum};
+use random::Random;
 use scene::command;
-use scene::random::Random;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -141,7 +141,9 @@ fn table<C: Query, B: Query, L: Query, T: Real + Into<f64>>(pool: &Pool<T>, quer
         let turns = (count / BATCH).max(11);
         times::<C, B, L, T>(pool, turns).map(|time| time * count as f64 / BATCH as f64)
     };
-    ([of(FEW), of(queries)], disagreement::<C, B, L, T>(pool))
+    // First, for it brings the pool into the caches.
+    let disagreement = disagreement::<C, B, L, T>(pool);
+    ([of(FEW), of(queries)], disagreement)
 }
 
 fn write_page(study: &Study, tables: &[Table; 2], queries: usize) -> Result<String, std::fmt::Error> {
