@@ -3,9 +3,11 @@
 mod common;
 
 use common::{Case, Random, distance_cases, read_lines};
+use parry_continuum::distance::{Closest, Convex, DiscSolver, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::*;
+use parry_continuum::roots::*;
 use parry_continuum::{Cap, Chain};
 use serde::Deserialize;
 
@@ -322,5 +324,68 @@ fn one_link_chains_of_the_distance_cases() {
             let error = (found.distance - case.distance()).abs() / (UNIT * case.scale);
             assert!(error <= 16.0, "{} {} {name}: {error}", case.id, case.cat);
         }
+    }
+}
+
+/// A route that never finds a disc.
+struct Blind;
+
+impl<T: Scalar> DiscSolver<T> for Blind {
+    fn segment_disc(ends: [Vec3<T>; 2], _: Vec3<T>, radius: T) -> Closest<T> {
+        Closest { distance: radius.one() / radius.zero(), point1: ends[0], point2: ends[0] }
+    }
+}
+
+#[test]
+fn the_exhaustive_engine_takes_any_route_to_the_discs() {
+    fn answers<T: Precision, S: DiscSolver<T> + DiscSolver<f64>>(
+        mesh: &TriMesh,
+        robot: &Chain,
+        culling: bool,
+    ) -> Vec<f64> {
+        let mut engine = Exhaustive::<T, S>::with_solver(mesh).unwrap();
+        engine.set_culling(culling);
+        let mut out = Vec::new();
+        engine.per_link(robot, &Pose::IDENTITY, &mut out).unwrap();
+        assert_eq!(engine.minimum(robot, &Pose::IDENTITY).unwrap().distance, minimum(&out));
+        out.iter().map(|answer| answer.distance).collect()
+    }
+    fn minimum(answers: &[LinkProximity]) -> f64 {
+        answers.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min)
+    }
+    // Cylinders above a few hundred triangles, so that caps come nearest to edges.
+    let mut random = Random::new(5);
+    let mut point = |size: f64| random.point() * size;
+    let vertices: Vec<_> = (0..900).map(|_| point(10.0)).collect();
+    let indices = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let line: Vec<_> = (0..40).map(|_| point(30.0)).collect();
+    let robot = Chain::cylinders(&line, &[0.4; 39]).unwrap();
+    let capsules = Chain::capsules(&line, &[0.4; 39]).unwrap();
+
+    let expected = answers::<f64, Convex>(&mesh, &robot, true);
+    let unit = UNIT * extent(&mesh, &robot);
+    for culling in [false, true] {
+        for found in [
+            answers::<f32, Convex>(&mesh, &robot, culling),
+            answers::<f64, RecentredQuartic<Companion>>(&mesh, &robot, culling),
+            answers::<f32, RecentredQuartic<Companion>>(&mesh, &robot, culling),
+            answers::<f64, RecentredQuartic<ClosedForm>>(&mesh, &robot, culling),
+            answers::<f32, QuarticAsPrinted<JenkinsTraub>>(&mesh, &robot, culling),
+        ] {
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() <= 16.0 * unit, "{found} for {expected}");
+            }
+        }
+        // The route is what the answers come from, where a cap decides and nowhere else.
+        for blind in
+            [answers::<f64, Blind>(&mesh, &robot, culling), answers::<f32, Blind>(&mesh, &robot, culling)]
+        {
+            let farther =
+                blind.iter().zip(&expected).filter(|(blind, right)| **blind > **right + 1e-6).count();
+            assert!(farther > 0 && blind.iter().zip(&expected).all(|(b, e)| *b >= e - 16.0 * unit));
+        }
+        let round = answers::<f32, Blind>(&mesh, &capsules, culling);
+        assert_eq!(round, answers::<f64, Convex>(&mesh, &capsules, culling));
     }
 }

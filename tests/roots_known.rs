@@ -215,3 +215,35 @@ fn jenkins_traub() {
     check_all::<JenkinsTraub, f32>(false);
     check_all::<JenkinsTraub, f64>(false);
 }
+
+#[test]
+fn quartics_of_discs_with_two_roots_close_together() {
+    // A line nearly through a disc's axis: the small roots agree in 6 digits, or in all.
+    let nearly = [
+        -0.005239248482233007,
+        -0.14057355461233376,
+        -0.9375319446868632,
+        0.14476530637183768,
+        0.9710445004776409,
+    ];
+    let double = [
+        -0.0158611543001949,
+        -0.24899091670855739,
+        -0.9611293978916027,
+        0.2518821494286159,
+        0.988521486232283,
+    ];
+    let largest = |roots: &Roots<f64, 5>| roots.real().fold(0.0, f64::max);
+    for (coefficients, root) in [(nearly, 0.985415902285435), (double, 0.994244178374851)] {
+        for found in [
+            ClosedForm::roots(coefficients),
+            Bairstow::roots(coefficients),
+            Companion::roots(coefficients),
+            JenkinsTraub::roots(coefficients),
+        ] {
+            let found = found.unwrap();
+            assert_eq!(found.len(), 4);
+            assert!((largest(&found) - root).abs() < 1e-14, "{found:?}");
+        }
+    }
+}

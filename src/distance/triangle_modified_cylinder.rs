@@ -126,13 +126,7 @@ impl<T: Scalar> Axial<T> {
         bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius)
     }
 
-    /// The answer, discs included.
-    #[inline(always)]
-    pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
-        self.with_caps_by::<Convex>(link, face)
-    }
-
-    /// As [`Axial::with_caps`], by the route `S`.
+    /// The answer, discs included, by the route `S`.
     #[inline(always)]
     pub(crate) fn with_caps_by<S: DiscSolver<T>>(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
         let upper = self.without_caps(link);
@@ -145,7 +139,7 @@ impl<T: Scalar> Axial<T> {
 
     /// The centre and the outward normal of the cap that p* is beyond; the start's where it is beyond neither.
     #[inline(always)]
-    fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
+    pub(crate) fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
         let at_end = self.at_flat[1];
         (Vec3::select(at_end, link.end, Vec3::zero(link.radius)), Vec3::select(at_end, link.axis, -link.axis))
     }

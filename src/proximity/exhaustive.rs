@@ -8,11 +8,13 @@ use super::soa::SoaMesh;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
 use crate::distance::lanes::Lane;
+use crate::distance::{Convex, DiscSolver};
 use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
+use std::marker::PhantomData;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
@@ -24,7 +26,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Every triangle is visited, but most need no more than a look at the sphere around them; see
 /// [`Exhaustive::set_culling`].
-pub struct Exhaustive<T: Precision> {
+///
+/// `S` is the route to the discs of flat caps, one of [`distance`](crate::distance) or
+/// [`roots`](crate::roots). All but the default are there to be compared with it: they compute one disc at a time, and the
+/// answers are no more exact than the route.
+pub struct Exhaustive<T: Precision, S = Convex> {
     level: Level,
     vertices: Vec<Vector>,
     indices: Vec<[u32; 3]>,
@@ -34,6 +40,7 @@ pub struct Exhaustive<T: Precision> {
     culling: bool,
     work: Work,
     scratch: Scratch<T>,
+    solver: PhantomData<fn() -> S>,
 }
 
 /// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
@@ -73,6 +80,16 @@ impl<T: Precision> Exhaustive<T> {
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
     pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        Self::with_solver(mesh)
+    }
+}
+
+impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Exhaustive<T, S> {
+    /// As [`Exhaustive::new`], for a route to the discs other than the default.
+    ///
+    /// # Errors
+    /// As [`Exhaustive::new`].
+    pub fn with_solver(mesh: &TriMesh) -> Result<Self, MeshError> {
         if mesh.indices().is_empty() {
             return Err(MeshError::Empty);
         }
@@ -92,6 +109,7 @@ impl<T: Precision> Exhaustive<T> {
                 bounds: Vec::new(),
                 findings: Vec::new(),
             },
+            solver: PhantomData,
         })
     }
 
@@ -138,6 +156,7 @@ impl<T: Precision> Exhaustive<T> {
             bounds,
             culling: self.culling,
             stop_at_first: aim == Aim::Any,
+            solver: self.solver,
         };
         #[cfg(feature = "parallel")]
         let threads =
@@ -184,7 +203,7 @@ impl<T: Precision> Exhaustive<T> {
     }
 }
 
-impl<T: Precision> Proximity for Exhaustive<T> {
+impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Proximity for Exhaustive<T, S> {
     fn per_link(
         &mut self,
         robot: &Chain,
@@ -208,7 +227,7 @@ impl<T: Precision> Proximity for Exhaustive<T> {
         // Without a bound some triangle is always the nearest; this is any other.
         let probe = &self.scratch.links[0].0;
         let corners = self.indices[0].map(|index| self.vertices[index as usize]);
-        let mut best = (0, Found { triangle: 0, closest: probe.closest(corners) });
+        let mut best = (0, Found { triangle: 0, closest: probe.closest_by::<S>(corners) });
         for link in 0..self.scratch.links.len() {
             if let Some(found) = self.found(link)
                 && found.closest.distance < best.1.closest.distance

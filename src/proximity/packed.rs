@@ -1,8 +1,8 @@
 //! One link against a pack of triangles: which of them may be nearer than a bound.
 
 use super::coarse::CoarseLink;
-use crate::distance::lanes::Pack;
-use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
+use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Axial, DiscSolver, Face, Link, Mask, Scalar, Vec3, pack_disc};
 
 /// How many triangles stand together in memory: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
@@ -133,13 +133,21 @@ impl<L: Pack> PackedLink<L> {
         Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
     }
 
-    /// The distances of triangles with every disc that decides one: the paper's work for a pair.
+    /// The distances of triangles with every disc that decides one, by the route `S`: the paper's work for a pair.
     #[inline(always)]
-    pub(super) fn distances(&self, face: &Face<L>) -> L {
+    pub(super) fn distances<S: DiscSolver<L::Element>>(&self, token: L::Token, face: &Face<L>) -> L
+    where
+        L::Element: Lane,
+    {
         let face = face.seen_from(self.start);
         let axial = Axial::new(&self.link, &face);
-        if self.has_flat_cap && L::bits(axial.beyond_flat_cap()) != 0 {
-            axial.with_caps(&self.link, &face).distance
+        let beyond_cap = axial.beyond_flat_cap();
+        if self.has_flat_cap && L::bits(beyond_cap) != 0 {
+            let upper = axial.without_caps(&self.link).distance;
+            let (centre, outward) = axial.cap(&self.link);
+            let face = face.seen_from(centre);
+            let disc = pack_disc::<S, _, L>(token, &face, outward, self.link.radius, beyond_cap).distance;
+            (beyond_cap & disc.lt(upper)).select(disc, upper)
         } else {
             (axial.axis_squared.sqrt() - self.link.radius).max(self.length.zero())
         }

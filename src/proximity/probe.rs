@@ -2,7 +2,7 @@
 
 use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
-use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3};
+use crate::distance::{Axial, Closest, Convex, DiscSolver, Face, Link, Scalar, Vec3};
 use crate::robot::{COORDINATE_LIMIT, Cap, Envelope, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -50,6 +50,15 @@ impl Probe {
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
+        self.nearer_than_by::<Convex>(bound, triangle)
+    }
+
+    /// As [`Probe::nearer_than`], with the discs by the route `S`.
+    pub(crate) fn nearer_than_by<S: DiscSolver<f64>>(
+        &self,
+        bound: Real,
+        triangle: [Vector; 3],
+    ) -> Option<Closest<f64>> {
         let vertices = self.local(triangle);
         if self.at_least(vertices) > bound {
             return None;
@@ -61,7 +70,7 @@ impl Probe {
         } else if axial.cap_bounds(&self.link, &face).0 >= bound {
             return None;
         } else {
-            axial.with_caps(&self.link, &face)
+            axial.with_caps_by::<S>(&self.link, &face)
         };
         (closest.distance < bound).then(|| closest.met())
     }
@@ -78,10 +87,15 @@ impl Probe {
 
     /// The closest points of the link and a triangle, in scaled units and from the link's start.
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
+        self.closest_by::<Convex>(triangle)
+    }
+
+    /// As [`Probe::closest`], with the discs by the route `S`.
+    pub(crate) fn closest_by<S: DiscSolver<f64>>(&self, triangle: [Vector; 3]) -> Closest<f64> {
         let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
         let closest = if axial.beyond_flat_cap() {
-            axial.with_caps(&self.link, &face)
+            axial.with_caps_by::<S>(&self.link, &face)
         } else {
             axial.without_caps(&self.link)
         };

@@ -5,9 +5,10 @@ use super::packed::{BLOCK, PackedLink};
 use super::probe::Probe;
 use super::search::Found;
 use super::soa::SoaMesh;
-use crate::distance::Scalar;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{DiscSolver, Scalar};
 use parry3d_f64::math::{Real, Vector};
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -18,7 +19,7 @@ pub(super) const CHUNK: usize = 64;
 const STRIDE: usize = 16;
 
 /// What one query asks of the mesh.
-pub(super) struct Job<'a, E> {
+pub(super) struct Job<'a, E, S> {
     pub mesh: &'a SoaMesh<E>,
     pub vertices: &'a [Vector],
     pub indices: &'a [[u32; 3]],
@@ -29,6 +30,8 @@ pub(super) struct Job<'a, E> {
     pub culling: bool,
     /// Any triangle nearer than the bound will do.
     pub stop_at_first: bool,
+    /// The route to the discs of flat caps.
+    pub solver: PhantomData<fn() -> S>,
 }
 
 /// A distance that only shrinks, seen by all threads; in the probe's units.
@@ -92,7 +95,7 @@ impl Findings {
     }
 }
 
-impl<E: Lane> Job<'_, E> {
+impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Job<'_, E, S> {
     /// How many chunks there are.
     pub(super) fn chunks(&self) -> usize {
         self.mesh.blocks().div_ceil(CHUNK)
@@ -143,15 +146,15 @@ impl<E: Lane> Job<'_, E> {
 }
 
 /// One link's turn with a chunk.
-struct Turn<'a, E> {
-    job: &'a Job<'a, E>,
+struct Turn<'a, E, S> {
+    job: &'a Job<'a, E, S>,
     probe: &'a Probe,
     bound: Real,
     found: Option<Found>,
     work: &'a mut Work,
 }
 
-impl<E: Lane> Turn<'_, E> {
+impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Turn<'_, E, S> {
     #[inline(always)]
     fn scan<L: Pack<Element = E>>(&mut self, token: L::Token, link: &CoarseLink<E>, blocks: Range<usize>) {
         let mesh = self.job.mesh;
@@ -172,7 +175,7 @@ impl<E: Lane> Turn<'_, E> {
                     packed.may_be_nearer(&face, limit).nearer
                 } else {
                     let slack = L::splat(token, link.radius);
-                    L::bits((packed.distances(&face) + slack).lt(limit))
+                    L::bits((packed.distances::<S>(token, &face) + slack).lt(limit))
                 };
                 while nearer != 0 {
                     let triangle = block * BLOCK + lane + nearer.trailing_zeros() as usize;
@@ -200,7 +203,7 @@ impl<E: Lane> Turn<'_, E> {
         let Some(corners) = job.indices.get(triangle) else { return false };
         self.work.measured += 1;
         let vertices = corners.map(|index| job.vertices[index as usize]);
-        let Some(closest) = self.probe.nearer_than(self.bound, vertices) else { return false };
+        let Some(closest) = self.probe.nearer_than_by::<S>(self.bound, vertices) else { return false };
         self.bound = closest.distance;
         self.found = Some(Found { triangle: triangle as u32, closest });
         true

@@ -64,7 +64,8 @@ pub(super) fn turned<T: Real>((x, y): (T, T)) -> (T, T) {
     (cos * x - sin * y, sin * x + cos * y)
 }
 
-fn refine<T: Real, const M: usize>(p: &[T; M], degree: usize, u: T, v: T) -> Option<(T, T)> {
+/// Newton's method from the factor z^2 + `u` z + `v`.
+pub(super) fn refine<T: Real, const M: usize>(p: &[T; M], degree: usize, u: T, v: T) -> Option<(T, T)> {
     let (mut u, mut v) = (u, v);
     for _ in 0..STEPS {
         let first = by_quadratic(p, degree, u, v);

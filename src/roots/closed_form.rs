@@ -178,14 +178,17 @@ impl<T: Real> Factors<T> {
             }
             let next = best.step(lack);
             let (next_lack, next_worst) = next.lack(a, b, c, d);
-            // False where the step is not finite.
-            if next_worst < worst {
+            if next.is_finite() && next_worst < worst {
                 (best, lack, worst) = (next, next_lack, next_worst);
             } else {
                 break;
             }
         }
         best
+    }
+
+    fn is_finite(&self) -> bool {
+        self.u.iter().chain(&self.v).all(|value| value.is_finite())
     }
 
     fn step(&self, [r3, r2, r1, r0]: [T; 4]) -> Self {

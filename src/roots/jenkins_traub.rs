@@ -23,7 +23,7 @@
 //!
 //! The factor is divided out. Since small roots come first, that is stable.
 
-use super::bairstow::turned;
+use super::bairstow::{refine, turned};
 use super::division::{Division, by_linear, by_quadratic, magnitude, smallest_root_bound};
 use super::method::{Method, Tilt};
 use super::quadratic::{Pair, linear, quadratic, split};
@@ -139,9 +139,15 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
                 match self.linear_stage(k, root) {
                     Ok(factor) => return Some(factor),
                     Err(near) => {
-                        // Two roots close together stop the linear iteration near them.
-                        if let Some(factor) = self.quadratic_stage(k, -(near + near), near * near) {
+                        // Two roots close together stop the linear iteration near them. Where they are so close
+                        // that the estimates lose their digits, Newton's method finds the factor.
+                        let (u, v) = (-(near + near), near * near);
+                        if let Some(factor) = self.quadratic_stage(k, u, v) {
                             return Some(factor);
+                        }
+                        if let Some((u, v)) = refine(self.p, n, u, v) {
+                            let quotient = by_quadratic(self.p, n, u, v).quotient;
+                            return Some(Factor::Quadratic { u, v, quotient });
                         }
                     }
                 }

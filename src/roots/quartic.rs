@@ -12,7 +12,8 @@
 //!   candidates, any point of the segment being an upper bound, with the ends, the foot and the plane.
 //!
 //! Roots are fed in as they come, without the test by which [`RootFinder::roots`] vouches for them: a bad
-//! candidate is outdone by a better one.
+//! candidate is outdone by a better one. Only where the coefficients are so wide apart that the polynomial is cut
+//! are they polished on the whole of it.
 
 use super::{Real, RootFinder, approximations};
 use crate::distance::{Closest, DiscSolver, Line, Vec3, disc_point};
@@ -96,11 +97,15 @@ impl<F: RootFinder, const STEPS: usize, T: Real> DiscSolver<T> for RecentredQuar
             }
         }
         consider(line.h.over(line.lambda));
-        let mut s = best.1;
         for _ in 0..STEPS {
-            s = newton(&line, s, radius);
+            // A step that leads away is not taken: the derivative's slope may be nothing but rounding.
+            let s = newton(&line, best.1, radius);
+            let squared = squared_distance(&line, s, radius);
+            if squared < best.0 {
+                best = (squared, s);
+            }
         }
-        line.closest_at(s, false, normal, radius)
+        line.closest_at(best.1, false, normal, radius)
     }
 }
 
@@ -112,7 +117,7 @@ fn squared_distance<T: Real>(line: &Line<T>, s: T, radius: T) -> T {
     height * height + beyond * beyond
 }
 
-/// A Newton step on the derivative of the squared distance, if it leads anywhere.
+/// A Newton step on the derivative of the squared distance, where that has a slope.
 #[inline]
 fn newton<T: Real>(line: &Line<T>, s: T, radius: T) -> T {
     let (rho, w) = line.radial_at(s);
