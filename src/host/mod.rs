@@ -4,6 +4,7 @@
 mod axial;
 mod chain;
 mod dispatcher;
+mod ellipse;
 mod feature;
 mod field;
 mod link_contact;
@@ -13,6 +14,7 @@ mod parts;
 mod point;
 mod ray;
 mod robot_pair;
+mod separation;
 mod shape;
 mod support_map;
 mod watched;
