@@ -96,7 +96,8 @@ mod tests {
             let nearest = (1..4000).map(|k| on(std::f64::consts::PI * k as Real / 4000.0));
             let nearest = nearest.map(|q| (q - point).length()).fold(Real::INFINITY, Real::min);
             let in_ellipse = point.x.powi(2) + (point.y / b).powi(2) < 1.0;
-            let ends = (Vector2::new(1.0, 0.0) - point).length().min((Vector2::new(-1.0, 0.0) - point).length());
+            let ends =
+                (Vector2::new(1.0, 0.0) - point).length().min((Vector2::new(-1.0, 0.0) - point).length());
             match way_out_above(point, b) {
                 Some(n) => {
                     let n = n.normalize();

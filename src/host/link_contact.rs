@@ -143,8 +143,7 @@ impl Local {
     /// The best direction so far or `n`, whichever has the larger gap.
     fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
         let reach = self.link.local_support_point(n);
-        let gap =
-            self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min);
+        let gap = self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min);
         if gap > best.0 { (gap, n) } else { best }
     }
 }

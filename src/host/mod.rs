@@ -7,11 +7,15 @@ mod dispatcher;
 mod ellipse;
 mod feature;
 mod field;
+mod joint;
 mod link_contact;
+mod link_manifold;
 mod manifold;
 mod mass;
 mod parts;
 mod point;
+#[cfg(feature = "rapier")]
+pub mod rapier;
 mod ray;
 mod robot_pair;
 mod separation;

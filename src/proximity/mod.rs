@@ -12,6 +12,8 @@ mod probe;
 mod report;
 mod scan;
 mod search;
+#[cfg(feature = "serde-serialize")]
+mod serialised;
 mod soa;
 mod tree;
 mod walk;
