@@ -40,6 +40,7 @@ where
         let pos21 = pos12.inverse();
         let parts = (g1.as_composite_shape(), g2.as_composite_shape());
         let fields = (g1.as_heightfield(), g2.as_heightfield());
+        let is_link = links_of(g1).or(links_of(g2)).is_some();
         let is_either = |kind| g1.shape_type() == kind || g2.shape_type() == kind;
         Watched::ask(self, |watched| {
             match (parts, fields) {
@@ -61,9 +62,13 @@ where
                 (_, (Some(_), _) | (_, Some(_))) => details::contact_manifolds_heightfield_shape_shapes(
                     watched, pos12, g1, g2, prediction, manifolds, workspace,
                 ),
-                _ if is_either(ShapeType::TriMesh) => details::contact_manifolds_trimesh_shape_shapes(
-                    watched, pos12, g1, g2, prediction, manifolds, workspace,
-                ),
+                // A link's manifolds with a mesh are found like those with any composite: the routine for
+                // meshes looks for triangles within an absolute margin, and drops manifolds by it.
+                _ if is_either(ShapeType::TriMesh) && !is_link => {
+                    details::contact_manifolds_trimesh_shape_shapes(
+                        watched, pos12, g1, g2, prediction, manifolds, workspace,
+                    )
+                }
                 _ if is_either(ShapeType::Voxels) => {
                     voxels(watched, pos12, g1, g2, prediction, manifolds, workspace);
                 }
