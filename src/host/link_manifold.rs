@@ -4,25 +4,23 @@
 //! that a mesh or a chain puts on it. Every point is a pair, one on the link's surface and one on the
 //! triangle, `dist` apart along the normal, exactly:
 //!
-//! 1. **The crest**: the line of the barrel that lies furthest along the normal. Its ends count where the
-//!    triangle is below them, and its crossings with the edges.
-//! 2. **An edge along the crest** touches it all along: it counts with the two ends of what is beside the
-//!    barrel.
-//! 3. **A round cap** counts with its one point furthest along the normal.
-//! 4. **A flat cap** that leans towards the triangle counts with four points of its rim that stay where they
+//! 1. **The crest** of the barrel, and what of the edges is across or along it: see [`crest`](super::crest).
+//! 2. **A round cap** counts with its one point furthest along the normal.
+//! 3. **A flat cap** that leans towards the triangle counts with four points of its rim that stay where they
 //!    are on the link, with the rim's crossings with the edges, and with the corners below the disc. The rim's
 //!    lowest point, at the contact's own azimuth, is the end of the crest.
-//! 5. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
+//! 4. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
 //!    edge across a cap.
 //!
-//! Points that coincide are one, and what is further apart than the prediction is none. Tolerances are
-//! relative to the link, so the unit of length does not matter, and nothing is kept from one call to the next
-//! but what the host stores with its points, which are matched by feature.
+//! Points that coincide are one. Where the nearest is within the prediction, all count, so that the host sees
+//! what a fast link is about to reach. Tolerances are relative to the link, so the unit of length does not
+//! matter. Nothing is kept from one call to the next but what the host stores with its points, which are
+//! matched by feature.
 
-use super::axial::{perpendicular, unit_across};
+use super::axial::perpendicular;
 use super::dispatcher::as_link_and_triangle;
-use super::feature;
 use super::link_contact::{Local, face_normal};
+use super::{crest, feature};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
@@ -33,11 +31,7 @@ use parry3d_f64::shape::{PackedFeatureId, Shape};
 /// rounding, so that no point is lost between two triangles.
 const ON_EDGE: Real = 1e-9;
 /// Points of the link that are closer together than this share of its size are one.
-const SAME_POINT: Real = 1e-6;
-/// An edge that stays within this share of the radius from the crest lies along it.
-const ALONG_CREST: Real = 0.01;
-/// The sine of the lean below which an upright link has no crest: its azimuth would be rounding.
-const UPRIGHT: Real = 1e-6;
+pub(super) const SAME_POINT: Real = 1e-6;
 /// The cosine between the normal and the axis from which a flat cap counts as facing the triangle.
 const FACING: Real = 0.5;
 /// How much deeper than the overlap a point may be where a constraint has turned the normal; as in parry.
@@ -72,8 +66,7 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let before = std::mem::take(&mut manifold.points);
     let found = local.contact();
-    let reach = prediction / local.unit;
-    if found.distance > reach {
+    if found.distance * local.unit > prediction {
         return Ok(true);
     }
     let rotation = pos12.rotation;
@@ -88,7 +81,7 @@ pub(super) fn update<M, C: Default + Copy>(
     let normal = if link_is_first { n1 } else { n2 };
     let is_turned = (normal - found.normal).length() > TURNED;
 
-    let mut meeting = Meeting::new(&local, if is_turned { normal } else { found.normal }, reach);
+    let mut meeting = Meeting::new(&local, if is_turned { normal } else { found.normal });
     meeting.collect();
     let size = meeting.size;
     if !is_turned {
@@ -122,24 +115,22 @@ struct Point {
 }
 
 /// A link and a triangle, seen along the normal from one to the other.
-struct Meeting<'a> {
-    link: &'a ModifiedCylinder,
+pub(super) struct Meeting<'a> {
+    pub link: &'a ModifiedCylinder,
     triangle: [Vector; 3],
-    normal: Vector,
+    pub normal: Vector,
     /// The triangle's unit normal, if it has an area.
     face: Option<Vector>,
-    /// How far apart points may be.
-    reach: Real,
     /// Length and radius of the link.
-    size: Real,
+    pub size: Real,
     points: Vec<Point>,
 }
 
 impl<'a> Meeting<'a> {
-    fn new(local: &'a Local, normal: Vector, reach: Real) -> Self {
+    fn new(local: &'a Local, normal: Vector) -> Self {
         let (link, triangle) = (&local.link, local.triangle);
         let size = link.length() + link.radius();
-        Self { link, triangle, normal, face: face_normal(triangle), reach, size, points: Vec::new() }
+        Self { link, triangle, normal, face: face_normal(triangle), size, points: Vec::new() }
     }
 
     fn collect(&mut self) {
@@ -154,71 +145,10 @@ impl<'a> Meeting<'a> {
                 _ => {}
             }
         }
-        self.collect_crest();
+        crest::collect(self);
     }
 
-    /// Cases 1 and 2.
-    fn collect_crest(&mut self) {
-        let axis = self.link.axis();
-        let Some(lateral) = unit_across(self.normal, axis).filter(|_| axis != Vector::ZERO) else { return };
-        let (across, slope) = (self.normal.dot(lateral), self.normal.dot(axis));
-        if across < UPRIGHT {
-            return;
-        }
-        let (radius, length) = (self.link.radius(), self.link.length());
-        for end in 0..2 {
-            // A round cap that leans towards the triangle ends in its own lowest point.
-            let is_round = self.link.caps()[end] == Cap::Round;
-            if !(is_round && self.normal.dot(self.outward(end)) >= 0.0) {
-                self.add_above_face(self.centre(end) + lateral * radius, crest_end(end));
-            }
-        }
-        let side = axis.cross(lateral);
-        // How far the barrel is from a point of the triangle, back along the normal.
-        let drop = |q: Vector| {
-            let aside = q.dot(side);
-            (q.dot(lateral) - ((radius - aside) * (radius + aside)).max(0.0).sqrt()) / across
-        };
-        let along = |q: Vector| q.dot(axis) - (q.dot(lateral) - radius) / across * slope;
-        for (j, (v, w)) in self.edges().into_iter().enumerate() {
-            let edge = PackedFeatureId::edge(j as u32);
-            // The share of the edge that is beside the barrel.
-            let (at_v, at_w) = (along(v), along(w));
-            let share = |z: Real| (z - at_v) / (at_w - at_v);
-            let is_beside = |z: Real| (0.0..=length).contains(&z);
-            let (mut from, mut to) = (0.0, 1.0);
-            if at_v < at_w {
-                (from, to) = (share(0.0).max(0.0), share(length).min(1.0));
-            } else if at_w < at_v {
-                (from, to) = (share(length).max(0.0), share(0.0).min(1.0));
-            } else if !is_beside(at_v) {
-                continue;
-            }
-            if from > to {
-                continue;
-            }
-            let (first, last) = (v.lerp(w, from), v.lerp(w, to));
-            let (y0, y1) = (first.dot(side), last.dot(side));
-            if y0.abs().max(y1.abs()) <= ALONG_CREST * radius {
-                for (q, id) in [(first, ALONG_EDGE[0]), (last, ALONG_EDGE[1])] {
-                    let dist = drop(q);
-                    let on_link = q - self.normal * dist;
-                    // Beside the crest the way back is a little longer, and can lead past the barrel's end.
-                    let z = on_link.dot(axis);
-                    if (-SAME_POINT * self.size..=length + SAME_POINT * self.size).contains(&z) {
-                        self.add(on_link, dist, PackedFeatureId::edge(id), edge);
-                    }
-                }
-            } else if (y0 <= 0.0) != (y1 <= 0.0) {
-                let q = first.lerp(last, y0 / (y0 - y1));
-                let dist = drop(q);
-                let crest = PackedFeatureId::edge(feature::BARREL_LINE);
-                self.add(q - self.normal * dist, dist, crest, edge);
-            }
-        }
-    }
-
-    /// Case 4.
+    /// Case 3.
     fn collect_disc(&mut self, end: usize, outward: Vector) {
         let (centre, radius) = (self.centre(end), self.link.radius());
         let normal = self.normal;
@@ -257,7 +187,7 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Case 5.
+    /// Case 4.
     fn add_closest(&mut self, distance: Real, on_link: Vector) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > distance + SAME_POINT * self.size {
@@ -266,7 +196,7 @@ impl<'a> Meeting<'a> {
     }
 
     /// Adds a point of the link if the triangle's inside lies along the normal from it.
-    fn add_above_face(&mut self, on_link: Vector, of_link: PackedFeatureId) {
+    pub fn add_above_face(&mut self, on_link: Vector, of_link: PackedFeatureId) {
         let Some(face) = self.face else { return };
         let [a, b, c] = self.triangle;
         let dist = (a - on_link).dot(face) / self.normal.dot(face);
@@ -279,36 +209,41 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    fn add(&mut self, on_link: Vector, dist: Real, of_link: PackedFeatureId, of_triangle: PackedFeatureId) {
+    pub fn add(
+        &mut self,
+        on_link: Vector,
+        dist: Real,
+        of_link: PackedFeatureId,
+        of_triangle: PackedFeatureId,
+    ) {
         let apart = SAME_POINT * self.size;
         let is_new = |point: &Point| (point.on_link - on_link).length() > apart;
-        // Written so that NaN is out of reach.
-        if dist <= self.reach && on_link.is_finite() && self.points.iter().all(is_new) {
+        if dist.is_finite() && on_link.is_finite() && self.points.iter().all(is_new) {
             self.points.push(Point { on_link, dist, of_link, of_triangle });
         }
     }
 
-    fn edges(&self) -> [(Vector, Vector); 3] {
+    pub fn edges(&self) -> [(Vector, Vector); 3] {
         let [a, b, c] = self.triangle;
         [(a, b), (b, c), (c, a)]
     }
 
-    fn centre(&self, end: usize) -> Vector {
+    pub fn centre(&self, end: usize) -> Vector {
         if end == 0 { self.link.start() } else { self.link.end() }
     }
 
-    fn outward(&self, end: usize) -> Vector {
+    pub fn outward(&self, end: usize) -> Vector {
         if end == 0 { -self.link.axis() } else { self.link.axis() }
     }
 }
 
 /// The name of an end of the crest, or of a round cap's lowest point, which it is when the link lies.
-fn crest_end(end: usize) -> PackedFeatureId {
+pub(super) fn crest_end(end: usize) -> PackedFeatureId {
     PackedFeatureId::vertex(end as u32)
 }
 
-/// Names of points of the link's surface beyond those of [`feature`]: where an edge along the crest begins and
-/// ends, and where the rim at either end comes over an edge and leaves it.
-const ALONG_EDGE: [u32; 2] = [feature::SQUARE + 8, feature::SQUARE + 9];
-const RIM: [[u32; 2]; 2] =
-    [[feature::SQUARE + 10, feature::SQUARE + 11], [feature::SQUARE + 12, feature::SQUARE + 13]];
+/// Names of the points where the rim at either end comes over an edge and leaves it.
+const RIM: [[u32; 2]; 2] = [
+    [feature::RIM_CROSSINGS, feature::RIM_CROSSINGS + 1],
+    [feature::RIM_CROSSINGS + 2, feature::RIM_CROSSINGS + 3],
+];

@@ -3,6 +3,7 @@
 
 mod axial;
 mod chain;
+mod crest;
 mod dispatcher;
 mod ellipse;
 mod feature;
