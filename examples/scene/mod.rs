@@ -12,6 +12,7 @@ pub mod figure;
 pub mod lettering;
 pub mod mesh_file;
 pub mod picture;
+pub mod placement;
 pub mod remesh;
 pub mod steer;
 pub mod subdivide;
