@@ -12,7 +12,9 @@ use parry_continuum::parry::shape::{SharedShape, TriMesh};
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x66757f);
 const WIRE: Colour = hex(0x10161c);
-const PANEL: [usize; 2] = [540, 420];
+const PANEL: [usize; 2] = [456, 342];
+/// The height of the two lines below it.
+const CAPTION: usize = 56;
 const GAP: usize = 20;
 const HEAD: usize = 84;
 const FOOT: usize = 96;
@@ -60,7 +62,8 @@ impl<'a> Studio<'a> {
         let mut picture = Picture::new(Some(self.mesh), solids);
         picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
         picture.sky = SKY;
-        let mut canvas = picture.render(&self.camera, PANEL[0], PANEL[1]);
+        let mut canvas = Canvas::new(PANEL[0], PANEL[1] + CAPTION, |_, _| SKY[0]);
+        canvas.paste(&picture.render(&self.camera, PANEL[0], PANEL[1]), [0, 0], 0.0);
         let (clearance, _) = moment.closest();
         let held =
             if moment.force() > 0.0 { format!("{:.0} mN", moment.force()) } else { "no contact".into() };
@@ -68,9 +71,9 @@ impl<'a> Studio<'a> {
             format!("{:.2} s: {:.1} mm out, pushed {:.1} mm", moment.time, moment.out, moment.pushed),
             format!("clearance {clearance:.2} mm, {held}, tip off by {:.2} mm", moment.tip_deviation()),
         ];
-        canvas.panel([8.0, 8.0, PANEL[0] as f32 - 8.0, 66.0], 8.0, SKY[0], 0.82);
         for (row, line) in lines.iter().enumerate() {
-            canvas.text(line, [20.0, 31.0 + 24.0 * row as f32], Align::Left, 12.5, INK);
+            let y = (PANEL[1] + 22 + 24 * row) as f32;
+            canvas.text(line, [14.0, y], Align::Left, 12.0, INK);
         }
         canvas
     }
@@ -78,13 +81,14 @@ impl<'a> Studio<'a> {
     /// Six moments on one sheet, with the meaning of the colours.
     pub fn sheet(&self, moments: &[Moment]) -> Canvas {
         let width = 3 * PANEL[0] + 4 * GAP;
-        let height = HEAD + 2 * (PANEL[1] + GAP) + FOOT;
+        let tall = PANEL[1] + CAPTION;
+        let height = HEAD + 2 * (tall + GAP) + FOOT;
         let mut sheet = Canvas::new(width, height, |_, y| mix(SKY[0], SKY[1], y as f32 / height as f32));
         for (k, moment) in moments.iter().take(6).enumerate() {
-            let (left, top) = (GAP + (k % 3) * (PANEL[0] + GAP), HEAD + (k / 3) * (PANEL[1] + GAP));
+            let (left, top) = (GAP + (k % 3) * (PANEL[0] + GAP), HEAD + (k / 3) * (tall + GAP));
             sheet.paste(&self.frame(moment), [left, top], 12.0);
             let corner = [left as f32, top as f32];
-            let frame = [corner[0], corner[1], corner[0] + PANEL[0] as f32, corner[1] + PANEL[1] as f32];
+            let frame = [corner[0], corner[1], corner[0] + PANEL[0] as f32, corner[1] + tall as f32];
             sheet.frame(frame, 12.0, 2.0, PALE);
         }
         let title = "An elastic concentric tube robot is pushed into a ventricle";
@@ -92,7 +96,7 @@ impl<'a> Studio<'a> {
         let bar = [GAP as f32, (height - FOOT + 32) as f32];
         let size = [0.45 * width as f32, 16.0];
         self.colours.draw(&mut sheet, bar, size, "distance from link to wall (mm)", INK);
-        let note = "dark wire: the kinematic shape, where the wall has bent the robot away from it";
+        let note = "dark wire: the kinematic shape, where the robot is bent away from it";
         sheet.text(note, [width as f32 - GAP as f32, bar[1] + 14.0], Align::Right, 14.0, PALE);
         sheet
     }

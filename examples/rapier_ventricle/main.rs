@@ -57,7 +57,7 @@ struct Options {
     axis: Option<Vector>,
 
     /// How far the base is pushed beyond the plan, in millimetres
-    #[arg(long, value_name = "MM", default_value_t = 5.0, value_parser = distance)]
+    #[arg(long, value_name = "MM", default_value_t = 3.5, value_parser = distance)]
     push: Real,
 
     /// Links, about
@@ -65,7 +65,7 @@ struct Options {
     links: u32,
 
     /// Pictures of the film; 0 for none
-    #[arg(long, value_name = "COUNT", default_value_t = 60)]
+    #[arg(long, value_name = "COUNT", default_value_t = 40)]
     frames: u32,
 
     /// The directory for everything that is written

@@ -51,13 +51,13 @@ const ROBOT: Group = Group::GROUP_1;
 impl Rod {
     /// A robot without links at `base`.
     pub fn new(world: &mut PhysicsWorld, base: Pose) -> Self {
-        let base = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(base));
+        let base = world.insert_body(RigidBodyBuilder::fixed().pose(base));
         Self { base, links: Vec::new() }
     }
 
-    /// Moves the base by the end of the next step.
+    /// Moves the base. rapier takes the root of a multibody along only if it is put there.
     pub fn push(&self, world: &mut PhysicsWorld, base: Pose) {
-        world.bodies[self.base].set_next_kinematic_position(base);
+        world.bodies[self.base].set_position(base, true);
     }
 
     /// Gives the robot another rest shape, with as many links as before or more. New links appear at the tip, unbent.
