@@ -17,7 +17,7 @@ fn program(name: &str, arguments: &[&str]) -> (bool, String, String) {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let directory = BUILT.get_or_init(|| {
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--example", "ventricle", "--example", "figure7"]);
+        build.args(["build", "--quiet", "--example", "ventricle", "--example", "figure7", "--example", "rapier_ventricle"]);
         assert!(build.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
         // This test is target/debug/deps/scene-..; examples are in target/debug/examples.
         std::env::current_exe().unwrap().ancestors().nth(2).unwrap().join("examples")

@@ -110,7 +110,7 @@ fn simulate(options: &Options) -> Result<(), String> {
     let mut world = world_around(surface, 2.0 * thick)?;
     let mut rod = Rod::new(&mut world, plan.entry);
     let steps = (plan.duration() / world.integration_parameters.dt).round() as usize;
-    let picture_every = steps.div_ceil(options.frames.max(1) as usize);
+    let picture_every = steps.div_ceil(options.frames.max(40) as usize);
     let (mut clocks, mut film, mut best) = (Clocks::default(), Vec::new(), Summary::default());
     for step in 1..=steps {
         let time = step as Real * world.integration_parameters.dt;
