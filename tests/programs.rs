@@ -60,7 +60,17 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         assert!(!success && out.is_empty(), "{arguments:?}: {out}");
         assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
     }
-    assert!(program("ventricle", &["--help"]).0);
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--push", "-1"], "from 0 to 100"),
+        (&["--links", "2"], "3..=60"),
+    ] {
+        let (success, out, error) = program("rapier_ventricle", arguments);
+        assert!(!success && out.is_empty(), "{arguments:?}: {out}");
+        assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
+    }
+    assert!(program("ventricle", &["--help"]).0 && program("rapier_ventricle", &["--help"]).0);
 }
 
 #[test]

@@ -39,7 +39,7 @@ const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
 
-/// Brings the manifold up to date, if the shapes are a link and a triangle in either order.
+/// Brings the manifold up to date, if the shapes are a link and a triangle in either order. Returns whether they are.
 ///
 /// # Errors
 /// [`Unsupported`] for a triangle that is not finite, or out of range.
