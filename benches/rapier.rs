@@ -63,10 +63,14 @@ fn step(criterion: &mut Criterion) {
         let along = |link: &ModifiedCylinder| {
             ModifiedCylinder::new(Vector::ZERO, Vector::Z * link.length(), link.radius(), link.caps())
         };
-        let bodies: Vec<_> = chain.links().iter().map(|link| {
-            let shape = SharedShape::new(along(link).expect("a link"));
-            kinematic(&mut per_link, shape, place(link, pose)).0
-        }).collect();
+        let bodies: Vec<_> = chain
+            .links()
+            .iter()
+            .map(|link| {
+                let shape = SharedShape::new(along(link).expect("a link"));
+                kinematic(&mut per_link, shape, place(link, pose)).0
+            })
+            .collect();
         let mut turns = robots.iter().cycle();
         group.bench_function(id("link per body"), |bencher| {
             bencher.iter(|| {

@@ -4,6 +4,7 @@ mod common;
 mod host_common;
 
 use common::Random;
+use host_common::Draw;
 use host_common::scene::{floor_field, floor_mesh, heap, tube};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::details::NormalConstraints;
@@ -109,7 +110,7 @@ fn every_other_shape_answers_or_is_refused() {
         SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1),
         SharedShape::round_cylinder(0.4, 0.3, 0.1),
         SharedShape::polyline(vec![-Vector::X, Vector::ZERO, Vector::Z], None),
-        SharedShape::voxels(Vector::splat(0.3), &[Vector::ZERO, 0.3 * Vector::X]),
+        SharedShape::voxels_from_points(Vector::splat(0.3), &[0.1 * Vector::ONE, 0.4 * Vector::X]),
         SharedShape::new(ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.3).unwrap()),
     ];
     let mut answered = BTreeSet::new();

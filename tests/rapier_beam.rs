@@ -26,7 +26,10 @@ fn a_pulled_tip_moves_as_far_as_that_of_a_beam() {
     robot.set_rest_shape(&mut world, &straight(LENGTH)).unwrap();
     let force = 10.0;
     for _ in 0..400 {
-        robot.pull_tip(&mut world, Vector::X * force);
+        let (body, tip) = robot.tip(&world).unwrap();
+        world.bodies[body].reset_forces(true);
+        world.bodies[body].reset_torques(true);
+        world.bodies[body].add_force_at_point(Vector::X * force, tip, true);
         world.step();
     }
     let tip = robot.points(&world)[LINKS];

@@ -126,9 +126,8 @@ impl Rod {
 
     /// The joints and the tip where they are, in the world.
     pub fn points(&self, world: &PhysicsWorld) -> Vec<Vector> {
-        let place = |link: &Link, z: Real| world.bodies[link.body].position() * (Vector::Z * z);
-        let tip = self.links.last().map(|link| place(link, link.length));
-        self.links.iter().map(|link| place(link, 0.0)).chain(tip).collect()
+        let joints = self.links.iter().map(|link| world.bodies[link.body].position().translation);
+        joints.chain(self.tip(world).map(|(_, tip)| tip)).collect()
     }
 
     /// The force with which the wall holds each link, in mN.
@@ -140,15 +139,11 @@ impl Rod {
         self.links.iter().map(force).collect()
     }
 
-    /// Pulls at the tip with a force in mN, from the next step on.
-    pub fn pull_tip(&self, world: &mut PhysicsWorld, force: Vector) {
-        if let Some(link) = self.links.last() {
-            let body = &mut world.bodies[link.body];
-            let tip = body.position() * (Vector::Z * link.length);
-            body.reset_forces(true);
-            body.reset_torques(true);
-            body.add_force_at_point(force, tip, true);
-        }
+    /// The body of the last link, and where its tip is in the world.
+    pub fn tip(&self, world: &PhysicsWorld) -> Option<(RigidBodyHandle, Vector)> {
+        self.links
+            .last()
+            .map(|link| (link.body, world.bodies[link.body].position() * (Vector::Z * link.length)))
     }
 }
 

@@ -1,16 +1,17 @@
 //! Contact manifolds: which pairs of parts meet, and who answers for each.
 //!
-//! A pair is taken apart as everywhere in this folder, by parry's routines for the shapes that it knows,
-//! because they keep the manifolds of a pair from one step to the next. What is left is
+//! A robot and a mesh are taken apart [here](super::mesh_manifold). Other pairs are taken apart as everywhere in
+//! this folder, by parry's routines for the shapes that it knows, because they keep the manifolds of a pair from
+//! one step to the next. What is left is
 //! - a link against a triangle, answered [here](super::link_manifold), exactly;
 //! - a link against another convex shape, answered by `L`: parry clips the polygons that stand for the link's
 //!   surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
 //!   small link does not rest on a stale one, it is told each time that the shapes have changed.
 
 use super::dispatcher::{ContinuumDispatcher, check_margin, check_pose};
-use super::link_manifold;
 use super::robot_pair::links_of;
 use super::watched::Watched;
+use super::{link_manifold, mesh_manifold};
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
 use parry3d_f64::query::{
@@ -37,10 +38,12 @@ where
         check_margin(prediction)?;
         // parry loosens boxes by the prediction, and wants it positive.
         let prediction = prediction.max(0.0);
+        if mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {
+            return Ok(());
+        }
         let pos21 = pos12.inverse();
         let parts = (g1.as_composite_shape(), g2.as_composite_shape());
         let fields = (g1.as_heightfield(), g2.as_heightfield());
-        let is_link = links_of(g1).or(links_of(g2)).is_some();
         let is_either = |kind| g1.shape_type() == kind || g2.shape_type() == kind;
         Watched::ask(self, |watched| {
             match (parts, fields) {
@@ -62,13 +65,9 @@ where
                 (_, (Some(_), _) | (_, Some(_))) => details::contact_manifolds_heightfield_shape_shapes(
                     watched, pos12, g1, g2, prediction, manifolds, workspace,
                 ),
-                // A link's manifolds with a mesh are found like those with any composite: the routine for
-                // meshes looks for triangles within an absolute margin, and drops manifolds by it.
-                _ if is_either(ShapeType::TriMesh) && !is_link => {
-                    details::contact_manifolds_trimesh_shape_shapes(
-                        watched, pos12, g1, g2, prediction, manifolds, workspace,
-                    )
-                }
+                _ if is_either(ShapeType::TriMesh) => details::contact_manifolds_trimesh_shape_shapes(
+                    watched, pos12, g1, g2, prediction, manifolds, workspace,
+                ),
                 _ if is_either(ShapeType::Voxels) => {
                     voxels(watched, pos12, g1, g2, prediction, manifolds, workspace);
                 }

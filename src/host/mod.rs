@@ -13,6 +13,7 @@ mod link_contact;
 mod link_manifold;
 mod manifold;
 mod mass;
+mod mesh_manifold;
 mod parts;
 mod point;
 #[cfg(feature = "rapier")]
