@@ -14,7 +14,7 @@ use super::soa::load_vertices;
 use super::tree::{Child, Leaf, Tree, WIDTH};
 use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd};
 use parry3d_f64::math::{Real, Vector};
 
 /// How much a search has computed since it was built.
@@ -37,14 +37,18 @@ pub(super) struct SearchMesh {
 }
 
 impl SearchMesh {
-    pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
-        Self { tree: Tree::new(vertices, indices), vertices: vertices.to_vec(), indices: indices.to_vec() }
+    pub(super) fn new(level: Level, vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
+        Self {
+            tree: Tree::new(level, vertices, indices),
+            vertices: vertices.to_vec(),
+            indices: indices.to_vec(),
+        }
     }
 
     /// Takes over moved vertices.
-    pub(super) fn set_vertices(&mut self, vertices: &[Vector]) {
+    pub(super) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.vertices.copy_from_slice(vertices);
-        self.tree.refit(vertices, &self.indices);
+        self.tree.refit(level, vertices, &self.indices);
     }
 
     /// The corners of a triangle.
@@ -250,6 +254,8 @@ impl Descent<'_> {
         let mut candidates = std::mem::take(&mut self.scratch.candidates);
         candidates.retain(|candidate| candidate.0 < quest.limit);
         candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        // A leaf that is not full repeats its last triangle.
+        candidates.dedup_by_key(|candidate| candidate.1);
         for &(distance, triangle) in &candidates {
             if distance >= quest.limit || quest.bound <= 0.0 {
                 break;

@@ -1,6 +1,7 @@
 //! Robot against mesh: the closest triangle of every link, by search or exhaustively.
 
 mod bvh;
+mod certificate;
 mod coarse;
 mod descent;
 mod engine;
@@ -14,6 +15,7 @@ mod scan;
 mod search;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
+mod share;
 mod soa;
 mod tree;
 mod walk;
@@ -22,6 +24,7 @@ pub(crate) use probe::Probe;
 pub(crate) use search::{Found, Until, search};
 
 pub use bvh::BvhSearch;
+pub use certificate::Certificate;
 pub use descent::Visits;
 pub use engine::Proximity;
 pub use exhaustive::{Exhaustive, Precision};

@@ -112,7 +112,8 @@ impl<L: Pack> PackedLink<L> {
         let v = self.offset_from_axis(centre);
         let foot = centre - v;
         let ahead = v.dot(a - foot).min(v.dot(b - foot)).min(v.dot(c - foot)).max(limit.zero());
-        L::bits((ahead * ahead).lt(limit * limit * v.norm_squared()))
+        // A centre on the axis rules nothing out, nor does what falls below the range.
+        L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
     }
 
     /// Which triangles may be nearer than the bound whose axis limit is `limit`.
@@ -149,7 +150,7 @@ impl<L: Pack> PackedLink<L> {
 // without the instruction set.
 
 #[inline(always)]
-fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L> {
+pub(super) fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L> {
     Vec3::new(L::splat(token, point.x), L::splat(token, point.y), L::splat(token, point.z))
 }
 

@@ -63,7 +63,7 @@ impl Probe {
         } else {
             axial.with_caps(&self.link, &face)
         };
-        (closest.distance < bound).then_some(closest)
+        (closest.distance < bound).then(|| closest.met())
     }
 
     /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
@@ -80,11 +80,12 @@ impl Probe {
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
         let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
-        if axial.beyond_flat_cap() {
+        let closest = if axial.beyond_flat_cap() {
             axial.with_caps(&self.link, &face)
         } else {
             axial.without_caps(&self.link)
-        }
+        };
+        closest.met()
     }
 
     fn local(&self, triangle: [Vector; 3]) -> [Vec3<f64>; 3] {
@@ -177,19 +178,26 @@ fn reach_of(point: Vector) -> Real {
 
 /// The largest magnitude of the vertices' coordinates.
 pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<Real, MeshError> {
-    let mut reach: Real = 0.0;
-    for (vertex, point) in vertices.iter().enumerate() {
-        for value in point.to_array() {
-            if !value.is_finite() {
-                return Err(MeshError::NotFinite { vertex, value });
-            }
-            if value.abs() > COORDINATE_LIMIT {
-                return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
-            }
-            reach = reach.max(value.abs());
+    // Written so that NaN is out of range too.
+    if !vertices.iter().all(|point| point.abs().cmple(Vector::splat(COORDINATE_LIMIT)).all()) {
+        for (vertex, point) in vertices.iter().enumerate() {
+            check_vertex(vertex, *point)?;
         }
     }
-    Ok(reach)
+    Ok(vertices.iter().fold(Vector::ZERO, |reach, point| reach.max(point.abs())).max_element())
+}
+
+/// Whether a vertex can be used; `vertex` is its place in the mesh.
+pub(crate) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError> {
+    for value in point.to_array() {
+        if !value.is_finite() {
+            return Err(MeshError::NotFinite { vertex, value });
+        }
+        if value.abs() > COORDINATE_LIMIT {
+            return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
+        }
+    }
+    Ok(())
 }
 
 fn to_vec3(vector: Vector) -> Vec3<f64> {
