@@ -10,12 +10,12 @@ mod scene;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, simplify};
 use scene::ctr::{Centreline, Joints, Robot, three_tubes};
-use scene::{command, figure, mesh_file, steer, timing, ventricle};
+use scene::{command, figure, mesh_file, placement, steer, timing, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -43,11 +43,11 @@ struct Options {
     triangles: u32,
 
     /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = placement::vector, allow_hyphen_values = true)]
     base: Option<Vector>,
 
     /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = placement::direction, allow_hyphen_values = true)]
     axis: Option<Vector>,
 
     /// Links with two round caps, with two flat caps, or each cap as Algorithm 1 says
@@ -72,18 +72,6 @@ enum Model {
     Capsule,
     Cylinder,
     Modified,
-}
-
-fn vector(text: &str) -> Result<Vector, String> {
-    let numbers: Result<Vec<Real>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z]) if Vector::new(x, y, z).is_finite() => Ok(Vector::new(x, y, z)),
-        _ => Err("write three numbers, for example 68.6,105.2,104.6".into()),
-    }
-}
-
-fn direction(text: &str) -> Result<Vector, String> {
-    vector(text)?.try_normalize().ok_or("a direction needs a length; write for example 0,0,-1".into())
 }
 
 fn length(text: &str) -> Result<Real, String> {
@@ -113,20 +101,27 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let robot = three_tubes();
     let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
-    let base = if planned { ventricle::entry() } else { placement(options, &mesh)? };
+    let base = if planned {
+        ventricle::entry()
+    } else {
+        placement::pose(options.base, options.axis, &mesh, options.mesh.as_deref())?
+    };
     if !steer::is_inside(&mesh, base.translation) {
-        eprintln!("note: {} is outside the mesh; --base x,y,z places the robot", show(base.translation));
+        eprintln!(
+            "note: {} is outside the mesh; --base x,y,z places the robot",
+            placement::show(base.translation)
+        );
     }
     let goal = if planned {
         ventricle::goal()
     } else {
-        steer::find_goal(&robot, &mut search, &base).map_err(|none| no_goal(&none, &base))?
+        steer::find_goal(&robot, &mut search, &base).map_err(|none| placement::no_goal(&none, &base))?
     };
     println!(
         "{:.1} mm of robot, from {} along {}",
         robot.length(&goal),
-        show(base.translation),
-        show(base.rotation * Vector::Z)
+        placement::show(base.translation),
+        placement::show(base.rotation * Vector::Z)
     );
 
     // The way in: both engines at every step.
@@ -173,33 +168,6 @@ fn steer(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
-/// The robot's pose as asked for; what is not said is found in the mesh.
-fn placement(options: &Options, mesh: &TriMesh) -> Result<Pose, String> {
-    let base = match (options.base, &options.mesh) {
-        (Some(base), _) => base,
-        (None, None) => ventricle::entry().translation,
-        (None, Some(path)) => steer::deepest_point(mesh).ok_or(format!(
-            "{} encloses nothing, so a start inside cannot be found; name one with --base x,y,z and --axis x,y,z",
-            path.display()
-        ))?,
-    };
-    let axis = options.axis.unwrap_or_else(|| steer::clear_direction(mesh, base));
-    Ok(Pose::from_parts(base, Rot3::from_rotation_arc(Vector::Z, axis)))
-}
-
-fn no_goal(none: &steer::NoGoal, base: &Pose) -> String {
-    match none {
-        steer::NoGoal::NoRoom => format!(
-            "the robot has no room at {} along {}: every shape touches the wall; \
-             move it with --base and --axis, or bring the mesh to millimetres with --scale",
-            show(base.translation),
-            show(base.rotation * Vector::Z)
-        ),
-        steer::NoGoal::Robot(error) => error.to_string(),
-        steer::NoGoal::Query(error) => error.to_string(),
-    }
-}
-
 /// The robot at the given joints, of the model and fineness asked for.
 fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, RobotError> {
     const LINKS: usize = 30;
@@ -227,10 +195,6 @@ fn disagreement(one: &[LinkProximity], other: &[LinkProximity]) -> Real {
         return Real::INFINITY;
     }
     one.iter().zip(other).map(|(a, b)| (a.distance - b.distance).abs()).fold(0.0, Real::max)
-}
-
-fn show(v: Vector) -> String {
-    format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z)
 }
 
 fn print_table(chain: &Chain, answers: &[LinkProximity]) {

@@ -33,6 +33,7 @@
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand a
 //!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
+//!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
 //!
 //! - **The book.** [`book`] explains the shape, the queries, certificates and limits, a chapter each.
@@ -60,6 +61,8 @@ mod robot;
 pub mod roots;
 
 pub use host::ContinuumDispatcher;
+#[cfg(feature = "rapier")]
+pub use host::rapier;
 pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
 
 /// Runs the code in the README.

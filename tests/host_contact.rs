@@ -1,5 +1,4 @@
-//! Contacts: exact while apart, exact for capsules whose axis stays outside, and always a translation that
-//! separates.
+//! Contacts: exact while apart, and otherwise the least translation that separates.
 
 mod common;
 mod host_common;
@@ -130,20 +129,21 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
     }
 }
 
-/// With a flat cap the translation is not promised to be the least. It is, as far as sampled directions and a
-/// descent from the best of them can tell.
+/// Neither sampled directions nor a descent from the best of them separate sooner, whatever the caps, with the
+/// axis outside the triangle or through it, thick links and wires alike.
 #[test]
 fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);
-    let mut checked = 0;
-    for _ in 0..2000 {
+    // By whether the link has a flat cap, and whether its axis crosses the triangle.
+    let mut checked = [[0; 2]; 2];
+    for _ in 0..4000 {
         let link = random.link();
         let Some(triangle) = crossing(&mut random, &link) else { continue };
         let found = contact(&link, &triangle);
-        if link.radius() < 1e-2 || found.dist > -1e-6 {
-            continue;
-        }
-        checked += 1;
+        let vec3 = |v: Vector| Vec3::from(v.to_array());
+        let axis = [vec3(link.start()), vec3(link.end())];
+        let pierced = segment_triangle(axis, triangle.vertices().map(vec3)).distance == 0.0;
+        checked[usize::from(link.caps() != [Cap::Round; 2])][usize::from(pierced)] += 1;
         let try_all = |directions: &mut dyn Iterator<Item = Vector>, best: (Real, Vector)| {
             directions.map(|n| (gap(&link, &triangle, n), n)).fold(best, |a, b| if b.0 > a.0 { b } else { a })
         };
@@ -157,7 +157,8 @@ fn no_sampled_direction_separates_sooner() {
             step *= if next.0 > best.0 { 1.0 } else { 0.5 };
             best = next;
         }
-        assert!(best.0 <= found.dist * (1.0 - 1e-9), "{link:?} {triangle:?}: {found:?}, but {best:?}");
+        let rounding = 32.0 * U * (extent(&link, triangle.a).max(extent(&link, triangle.b)) + 4.0);
+        assert!(best.0 <= found.dist + rounding, "{link:?} {triangle:?}: {found:?}, but {best:?}");
     }
-    assert!(checked > 300, "{checked}");
+    assert!(checked.iter().flatten().all(|&n| n > 100), "{checked:?}");
 }

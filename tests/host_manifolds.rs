@@ -4,12 +4,14 @@ mod common;
 mod host_common;
 
 use common::Random;
+use host_common::Draw;
 use host_common::scene::{floor_field, floor_mesh, heap, tube};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::details::NormalConstraints;
 use parry_continuum::parry::query::*;
 use parry_continuum::parry::shape::{Compound, Cuboid, Shape, SharedShape, TriMesh, Triangle};
-use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
+use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
+use std::collections::BTreeSet;
 
 type Manifold = ContactManifold<(), ()>;
 
@@ -89,6 +91,48 @@ fn a_cylinder_lies_on_a_line_and_stands_on_a_square() {
     let place = Pose::from_translation(Vector::new(2.0, -0.01, -3.0));
     let found = deep(&manifolds(&dispatcher, &place, &floor, &standing, 0.02).unwrap());
     assert!(found.len() >= 3 && found.iter().all(|dist| (dist + 0.01).abs() < 1e-6), "{found:?}");
+}
+
+/// What this crate leaves to parry is answered or refused: an overlap never reads as no contact.
+#[test]
+fn every_other_shape_answers_or_is_refused() {
+    let dispatcher = ContinuumDispatcher::default();
+    let tip = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+    let shapes = [
+        SharedShape::ball(0.5),
+        SharedShape::capsule_y(0.5, 0.3),
+        SharedShape::cuboid(0.5, 0.5, 0.5),
+        SharedShape::cylinder(0.5, 0.4),
+        SharedShape::cone(0.5, 0.4),
+        SharedShape::halfspace(Vector::Y),
+        SharedShape::segment(-Vector::X, Vector::X),
+        SharedShape::convex_hull(&tip).unwrap(),
+        SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1),
+        SharedShape::round_cylinder(0.4, 0.3, 0.1),
+        SharedShape::polyline(vec![-Vector::X, Vector::ZERO, Vector::Z], None),
+        SharedShape::voxels_from_points(Vector::splat(0.3), &[0.1 * Vector::ONE, 0.4 * Vector::X]),
+        SharedShape::new(ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.3).unwrap()),
+    ];
+    let mut answered = BTreeSet::new();
+    let mut random = Random::new(73);
+    for caps in host_common::CAPS {
+        let link = ModifiedCylinder::new(Vector::new(0.0, -0.5, 0.0), Vector::Y, 0.25, caps).unwrap();
+        let chain = Chain::from_centreline(&[-Vector::Y, 0.1 * Vector::Y, Vector::Y], &[0.25; 2]).unwrap();
+        for robot in [&link as &dyn Shape, &chain] {
+            for (kind, shape) in shapes.iter().enumerate() {
+                let pose = Pose::new(random.vector(0.05), random.direction() * 0.2);
+                for (g1, g2, pos12) in [(robot, &**shape, pose), (&**shape, robot, pose.inverse())] {
+                    let Ok(found) = manifolds(&dispatcher, &pos12, g1, g2, 0.02) else { continue };
+                    answered.insert(kind);
+                    let deepest = found.iter().flat_map(|m| &m.points).map(|point| point.dist);
+                    let deepest = deepest.fold(Real::INFINITY, Real::min);
+                    assert!(deepest < 0.0, "{:?} against {:?}: {deepest}", caps, shape.shape_type());
+                }
+            }
+        }
+    }
+    // parry has no contacts for segments in three dimensions... and says so.
+    assert!(answered.len() >= 11, "{answered:?}");
 }
 
 /// Knows nothing.

@@ -17,7 +17,16 @@ fn program(name: &str, arguments: &[&str]) -> (bool, String, String) {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let directory = BUILT.get_or_init(|| {
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--example", "ventricle", "--example", "figure7"]);
+        build.args([
+            "build",
+            "--quiet",
+            "--example",
+            "ventricle",
+            "--example",
+            "figure7",
+            "--example",
+            "rapier_ventricle",
+        ]);
         assert!(build.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
         // This test is target/debug/deps/scene-..; examples are in target/debug/examples.
         std::env::current_exe().unwrap().ancestors().nth(2).unwrap().join("examples")
@@ -60,7 +69,17 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         assert!(!success && out.is_empty(), "{arguments:?}: {out}");
         assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
     }
-    assert!(program("ventricle", &["--help"]).0);
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--push", "101"], "from 0 to 100"),
+        (&["--links", "2"], "3..=60"),
+    ] {
+        let (success, out, error) = program("rapier_ventricle", arguments);
+        assert!(!success && out.is_empty(), "{arguments:?}: {out}");
+        assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
+    }
+    assert!(program("ventricle", &["--help"]).0 && program("rapier_ventricle", &["--help"]).0);
 }
 
 #[test]

@@ -13,6 +13,7 @@ pub mod lettering;
 pub mod levels;
 pub mod mesh_file;
 pub mod picture;
+pub mod placement;
 pub mod remesh;
 pub mod steer;
 pub mod subdivide;

@@ -6,7 +6,11 @@
 //! parry's `Compound`: a hollow ray stops at the next surface of any link, a point is projected to the
 //! nearest surface of any link, also where that surface lies within another link. So the depth of a point
 //! inside is never overstated. Whether a point is inside is exact everywhere.
+//!
+//! Contact manifolds see one surface: a cap that a neighbour covers makes no contacts (see
+//! [`joint`](super::joint)).
 
+use super::joint::Joints;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d_f64::mass_properties::MassProperties;
@@ -93,9 +97,7 @@ impl CompositeShape for Chain {
         shape_id: u32,
         f: &mut dyn FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>),
     ) {
-        if let Some(link) = self.links().get(shape_id as usize) {
-            f(None, link, None);
-        }
+        self.map_untyped_part_at(shape_id, f);
     }
 
     fn bvh(&self) -> &Bvh {
@@ -105,14 +107,15 @@ impl CompositeShape for Chain {
 
 impl TypedCompositeShape for Chain {
     type PartShape = ModifiedCylinder;
-    type PartNormalConstraints = ();
+    type PartNormalConstraints = Joints;
 
     fn map_typed_part_at<T>(
         &self,
         shape_id: u32,
-        mut f: impl FnMut(Option<&Pose>, &ModifiedCylinder, Option<&()>) -> T,
+        mut f: impl FnMut(Option<&Pose>, &ModifiedCylinder, Option<&Joints>) -> T,
     ) -> Option<T> {
-        self.links().get(shape_id as usize).map(|link| f(None, link, None))
+        let link = self.links().get(shape_id as usize)?;
+        Some(f(None, link, Joints::of(self.links(), shape_id as usize).as_ref()))
     }
 
     fn map_untyped_part_at<T>(
@@ -120,7 +123,9 @@ impl TypedCompositeShape for Chain {
         shape_id: u32,
         mut f: impl FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>) -> T,
     ) -> Option<T> {
-        self.links().get(shape_id as usize).map(|link| f(None, link, None))
+        self.map_typed_part_at(shape_id, |pose, link, joints| {
+            f(pose, link, joints.map(|joints| joints as &dyn NormalConstraints))
+        })
     }
 }
 

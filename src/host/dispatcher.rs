@@ -20,12 +20,14 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 /// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
 /// |---|---|
 /// | `distance`, `closest_points`, `intersection_test` | exact |
-/// | `contact` | exact while apart, and for capsules whose axis stays outside; otherwise a translation that separates the two, not promised to be the shortest |
+/// | `contact` | exact; where the two overlap, the shortest translation that separates link and triangle |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
-/// | contact manifolds | parry's, on polygons that stand for the link's surface |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints |
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
 /// `Intersecting`, and a margin is kept only by what is further away than it.
+///
+/// Manifolds against other convex shapes are parry's, on polygons that stand for the link's surface.
 ///
 /// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
 /// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about

@@ -15,6 +15,10 @@ pub(super) const RIM: [FeatureId; 2] = [FeatureId::Edge(0), FeatureId::Edge(1)];
 pub(super) const BARREL_LINE: u32 = 2;
 /// The first of the eight vertices and edges of the squares that stand for flat caps there.
 pub(super) const SQUARE: u32 = 3;
+/// The first of the two edges that stand for what an edge of a triangle along the barrel touches.
+pub(super) const ALONG_EDGE: u32 = SQUARE + 8;
+/// The first of the four edges that stand for the rims where they cross an edge of a triangle.
+pub(super) const RIM_CROSSINGS: u32 = ALONG_EDGE + 2;
 
 /// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces that meet
 /// there. Nothing for a feature that the link does not have, and where there is no normal (on a wire).

@@ -13,21 +13,20 @@
 //! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so
 //!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
 //!    distance `F`.
-//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and the one that parry's
-//!    expanding polytope finds. The translation separates, but it need not be the least: the least can lie
-//!    along a rim, which the polytope only approaches. Moved apart by it the two touch, or come as near as
-//!    that, and the touching points are the contact's.
+//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
+//!    [`separation`](super::separation), where the least translation must be. Moved apart by it the two touch,
+//!    and the touching points are the contact's.
 
 use super::axial::{perpendicular, power_of_two, unit, unit_across};
+use super::separation;
 use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
-use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::details::contact_support_map_support_map;
-use parry3d_f64::shape::{SupportMap, Triangle};
+use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::shape::SupportMap;
 
 /// Where a link and a triangle meet, in the frame of both.
 pub(super) struct LinkContact {
-    /// Distance, or minus the length of the separating translation.
+    /// Distance, or minus the length of the least separating translation.
     pub distance: Real,
     /// A point of the link; beyond the triangle if they overlap.
     pub on_link: Vector,
@@ -51,15 +50,18 @@ pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<
 }
 
 /// The problem from the link's start, in a unit that brings its numbers near one.
-struct Local {
-    origin: Vector,
-    unit: Real,
-    link: ModifiedCylinder,
-    triangle: [Vector; 3],
+pub(super) struct Local {
+    /// The link's start in the caller's frame.
+    pub origin: Vector,
+    /// How long a local unit is to the caller.
+    pub unit: Real,
+    pub link: ModifiedCylinder,
+    pub triangle: [Vector; 3],
 }
 
 impl Local {
-    fn new(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<Self> {
+    /// Nothing if the numbers leave the range of f64.
+    pub fn new(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<Self> {
         let origin = link.start();
         let span = link.end() - origin;
         let offsets = triangle.map(|vertex| vertex - origin);
@@ -73,7 +75,8 @@ impl Local {
         triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
     }
 
-    fn contact(&self) -> LinkContact {
+    /// The contact, in local units.
+    pub fn contact(&self) -> LinkContact {
         let (distance, on_link, on_triangle) = self.closest(self.triangle);
         let radius = self.link.radius();
         let axis_distance = segment_triangle(
@@ -97,11 +100,9 @@ impl Local {
             return LinkContact { distance, on_link: on_axis + normal * radius, on_triangle, normal };
         }
         // Case 3.
-        let [a, b, c] = self.triangle;
-        let polytope =
-            contact_support_map_support_map(&Pose::IDENTITY, &self.link, &Triangle::new(a, b, c), 0.0);
-        let polytope = polytope.and_then(|contact| unit(contact.normal1));
-        let (gap, normal) = self.widest_gap([outward, polytope]);
+        let mut best = self.widest_gap([outward, None]);
+        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
+        let (gap, normal) = best;
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = self.closest(self.triangle.map(|vertex| vertex - normal * distance));
         LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal }
@@ -121,7 +122,7 @@ impl Local {
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = self.link.axis();
-        let face = unit(to_vector(Face::new(self.triangle.map(to_vec3)).normal()));
+        let face = face_normal(self.triangle);
         // Some direction across whatever direction there is, should nothing else be left.
         let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
         let edges = edges.map(unit);
@@ -131,20 +132,25 @@ impl Local {
         let straight = || edges.into_iter().chain([unit(axis)]).flatten();
         let turned = more.clone().flat_map(|n| straight().map(move |line| unit_across(n, line)));
 
-        let gap = |n: Vector| {
-            let reach = self.link.local_support_point(n);
-            self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min)
-        };
         let mut best = (Real::NEG_INFINITY, across);
         // The first of equals stays, so `more` goes first.
         for n in more.chain(turned.flatten()).chain(lines.flat_map(|n| [n, -n])) {
-            let gap = gap(n);
-            if gap > best.0 {
-                best = (gap, n);
-            }
+            best = self.wider(best, n);
         }
         best
     }
+
+    /// The best direction so far or `n`, whichever has the larger gap.
+    fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
+        let reach = self.link.local_support_point(n);
+        let gap = self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min);
+        if gap > best.0 { (gap, n) } else { best }
+    }
+}
+
+/// The unit normal of a triangle whose numbers are near one, if it has one.
+pub(super) fn face_normal(triangle: [Vector; 3]) -> Option<Vector> {
+    unit(to_vector(Face::new(triangle.map(to_vec3)).normal()))
 }
 
 fn to_vec3(vector: Vector) -> Vec3<f64> {

@@ -1,12 +1,17 @@
-//! Contact manifolds: parry's own, led through this crate's dispatcher.
+//! Contact manifolds: which pairs of parts meet, and who answers for each.
 //!
-//! A pair is taken apart as everywhere in this folder, by parry's routines for the shapes that it knows,
-//! because they keep the manifolds of a pair from one step to the next. What is left, a link against a
-//! triangle or another convex shape, is answered by `L`: parry clips the polygons that stand for the link's
-//! surface.
+//! A robot and a mesh are taken apart [here](super::mesh_manifold). Other pairs are taken apart as everywhere in
+//! this folder, by parry's routines for the shapes that it knows, because they keep the manifolds of a pair from
+//! one step to the next. What is left is
+//! - a link against a triangle, answered [here](super::link_manifold), exactly;
+//! - a link against another convex shape, answered by `L`: parry clips the polygons that stand for the link's
+//!   surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
+//!   small link does not rest on a stale one, it is told each time that the shapes have changed.
 
-use super::dispatcher::{ContinuumDispatcher, as_link_and_triangle, check_margin, check_pose};
+use super::dispatcher::{ContinuumDispatcher, check_margin, check_pose};
+use super::robot_pair::links_of;
 use super::watched::Watched;
+use super::{link_manifold, mesh_manifold};
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
 use parry3d_f64::query::{
@@ -33,6 +38,9 @@ where
         check_margin(prediction)?;
         // parry loosens boxes by the prediction, and wants it positive.
         let prediction = prediction.max(0.0);
+        if mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {
+            return Ok(());
+        }
         let pos21 = pos12.inverse();
         let parts = (g1.as_composite_shape(), g2.as_composite_shape());
         let fields = (g1.as_heightfield(), g2.as_heightfield());
@@ -94,8 +102,13 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        // Refuses a triangle that is not finite.
-        as_link_and_triangle(g1, g2)?;
+        let constraints = (normal_constraints1, normal_constraints2);
+        if link_manifold::update(pos12, (g1, g2), constraints, prediction, manifold)? {
+            return Ok(());
+        }
+        if links_of(g1).or(links_of(g2)).is_some() {
+            manifold.mark_shapes_deformed();
+        }
         self.0.contact_manifold_convex_convex(
             pos12,
             g1,

@@ -13,6 +13,8 @@ mod probe;
 mod report;
 mod scan;
 mod search;
+#[cfg(feature = "serde-serialize")]
+mod serialised;
 mod share;
 mod soa;
 mod tree;

@@ -1,5 +1,6 @@
 /// The end of a [`ModifiedCylinder`](crate::ModifiedCylinder).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Cap {
     /// A disc perpendicular to the axis: the link ends at its end point.
     Flat,

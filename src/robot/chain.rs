@@ -43,6 +43,11 @@ use std::ops::Range;
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "super::serialised::Links", into = "super::serialised::Links")
+)]
 pub struct Chain {
     links: Vec<ModifiedCylinder>,
     segments: Vec<Range<usize>>,
@@ -164,7 +169,7 @@ impl Chain {
         Ok(Self::of(links, segments))
     }
 
-    fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
+    pub(super) fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
         let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
         let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
         Self { links, segments, bvh, runs }

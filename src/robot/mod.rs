@@ -9,6 +9,8 @@ mod error;
 mod exact;
 mod modified_cylinder;
 mod scale;
+#[cfg(feature = "serde-serialize")]
+mod serialised;
 mod simplify;
 mod to_trimesh;
 

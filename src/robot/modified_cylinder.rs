@@ -22,6 +22,11 @@ pub(crate) const COORDINATE_LIMIT: Real = 1.0e150;
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "super::serialised::Link", into = "super::serialised::Link")
+)]
 pub struct ModifiedCylinder {
     start: Vector,
     end: Vector,

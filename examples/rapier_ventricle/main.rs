@@ -1,0 +1,278 @@
+//! Pushes an elastic concentric tube robot into a brain ventricle, in a rapier world.
+//!
+//! `cargo run --release --example rapier_ventricle` lets the three tubes come out along the planned way into the third
+//! ventricle, then pushes the base on. Where the robot touches the wall, contact forces bend it. At every step the
+//! crate's search finds the clearance of every link. Into `target/rapier_ventricle` (or `--out`) go `steps.csv` and
+//! `links.csv` with clearances, forces and the deviation from the kinematic shape, a film as numbered pictures, and
+//! a sheet of six moments. Two runs give the same files. `--mesh` takes real anatomy instead (in millimetres, or
+//! with `--scale`).
+
+mod film;
+mod plan;
+mod record;
+mod rod;
+#[path = "../scene/mod.rs"]
+mod scene;
+
+use clap::Parser;
+use film::Studio;
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Proximity};
+use plan::Plan;
+use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, TriMeshFlags};
+use record::{Moment, Recorder};
+use rod::Rod;
+use scene::ctr::three_tubes;
+use scene::surface::Mesh;
+use scene::{command, mesh_file, placement, steer, ventricle};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Push an elastic concentric tube robot into a brain ventricle, in a rapier world.
+#[derive(Parser)]
+struct Options {
+    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+
+    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        requires = "mesh",
+        allow_negative_numbers = true
+    )]
+    scale: Real,
+
+    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
+    #[arg(long, value_name = "X,Y,Z", value_parser = placement::vector, allow_hyphen_values = true)]
+    base: Option<Vector>,
+
+    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
+    #[arg(long, value_name = "X,Y,Z", value_parser = placement::direction, allow_hyphen_values = true)]
+    axis: Option<Vector>,
+
+    /// How far the base is pushed beyond the plan, in millimetres
+    #[arg(long, value_name = "MM", default_value_t = 3.5, value_parser = distance)]
+    push: Real,
+
+    /// Links, about
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(3..=60))]
+    links: u32,
+
+    /// Pictures of the film; 0 for none
+    #[arg(long, value_name = "COUNT", default_value_t = 40)]
+    frames: u32,
+
+    /// The directory for everything that is written
+    #[arg(long, value_name = "DIRECTORY", default_value = "target/rapier_ventricle")]
+    out: PathBuf,
+}
+
+fn distance(text: &str) -> Result<Real, String> {
+    match text.parse() {
+        Ok(length) if (0.0..=100.0).contains(&length) => Ok(length),
+        _ => Err("write a length from 0 to 100, for example 5".into()),
+    }
+}
+
+fn main() -> ExitCode {
+    command::run(simulate)
+}
+
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn simulate(options: &Options) -> Result<(), String> {
+    let surface = match &options.mesh {
+        Some(path) => mesh_file::load(path, options.scale)?,
+        None => ventricle::mesh(ventricle::DEFAULT_TRIANGLES),
+    };
+    let mesh = TriMesh::new(surface.0.clone(), surface.1.clone()).map_err(text)?;
+    let mut search = BvhSearch::new(&mesh).map_err(text)?;
+    let plan = plan(options, &mesh, &mut search)?;
+    let cannot =
+        |error| format!("cannot write into {} ({error}); choose another --out", options.out.display());
+    std::fs::create_dir_all(&options.out).map_err(cannot)?;
+    let mut recorder = Recorder::new(&options.out).map_err(cannot)?;
+
+    let thick = plan.robot.sections.iter().map(|section| section.radius).fold(0.0, Real::max);
+    let end = plan.at(plan.duration());
+    let places =
+        [plan.entry, plan.base(end)].map(|base| plan.shape(end).points.iter().map(|p| base * p).collect());
+    let studio = Studio::new(&mesh, &places.map(|places: Vec<_>| places).concat(), thick);
+
+    let mut world = world_around(surface, 2.0 * thick)?;
+    let mut rod = Rod::new(&mut world, plan.entry);
+    let steps = (plan.duration() / world.integration_parameters.dt).round() as usize;
+    let picture_every = steps.div_ceil(options.frames.max(40) as usize);
+    let (mut clocks, mut film, mut best) = (Clocks::default(), Vec::new(), Summary::default());
+    for step in 1..=steps {
+        let time = step as Real * world.integration_parameters.dt;
+        let moment = advance(&mut world, &mut rod, &plan, &mut search, time, &mut clocks)?;
+        recorder.write(step, &moment).map_err(cannot)?;
+        best.take_note(&moment);
+        if step % picture_every == 0 || step == steps {
+            film.push(moment);
+        }
+    }
+    recorder.finish().map_err(cannot)?;
+    best.print(steps, &plan);
+    clocks.print();
+
+    if options.frames > 0 {
+        for (k, moment) in film.iter().enumerate() {
+            let path = options.out.join(format!("frame_{k:03}.png"));
+            studio.frame(moment).save(&path).map_err(cannot)?;
+        }
+    }
+    studio.sheet(&six(film, &plan)).save(&options.out.join("sheet.png")).map_err(cannot)?;
+    println!("tables and pictures: {}", options.out.display());
+    Ok(())
+}
+
+/// Where the robot starts and where its tubes go.
+fn plan(options: &Options, mesh: &TriMesh, search: &mut BvhSearch) -> Result<Plan, String> {
+    let robot = three_tubes();
+    let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
+    let (entry, goal) = if planned {
+        (ventricle::entry(), ventricle::goal())
+    } else {
+        let entry = placement::pose(options.base, options.axis, mesh, options.mesh.as_deref())?;
+        let goal =
+            steer::find_goal(&robot, search, &entry).map_err(|none| placement::no_goal(&none, &entry))?;
+        (entry, goal)
+    };
+    Ok(Plan::new(robot, goal, entry, options.push, options.links as usize))
+}
+
+/// The wall as a fixed body. The robot is inside it, so its inner edges are two-sided.
+fn world_around((vertices, triangles): Mesh, size: Real) -> Result<PhysicsWorld, String> {
+    let mut world = rod::world(size).map_err(text)?;
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+    let wall = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags).map_err(text)?;
+    world.insert(RigidBodyBuilder::fixed(), wall.friction(0.0));
+    Ok(world)
+}
+
+/// One step of the plan and of the world, and what came of it.
+fn advance(
+    world: &mut PhysicsWorld,
+    rod: &mut Rod,
+    plan: &Plan,
+    search: &mut BvhSearch,
+    time: Real,
+    clocks: &mut Clocks,
+) -> Result<Moment, String> {
+    let progress = plan.at(time);
+    let (rest, base) = (plan.shape(progress), plan.base(progress));
+    rod.set_rest_shape(world, &rest).map_err(text)?;
+    rod.push(world, base);
+    let begin = Instant::now();
+    world.step();
+    clocks.steps.push(begin.elapsed());
+
+    let (points, mut found) = (rod.points(world), Vec::new());
+    let robot = Chain::from_centreline(&points, &rest.radii).map_err(text)?;
+    let begin = Instant::now();
+    search.per_link(&robot, &Pose::IDENTITY, &mut found).map_err(text)?;
+    clocks.queries.push(begin.elapsed());
+
+    let planned: Vec<_> = rest.points.iter().map(|p| base * p).collect();
+    let deviations = points.iter().zip(&planned).skip(1).map(|(is, planned)| (*is - *planned).length());
+    Ok(Moment {
+        time,
+        out: progress.out,
+        pushed: progress.pushed,
+        robot,
+        found,
+        forces: rod.forces(world),
+        deviations: deviations.collect(),
+        planned,
+    })
+}
+
+/// Two moments of the way out, its end, and three of the push.
+fn six(film: Vec<Moment>, plan: &Plan) -> Vec<Moment> {
+    let whole = plan.robot.length(&plan.goal);
+    let mut wanted = [0.35, 0.7, 1.0].map(|share| (share * whole, 0.0)).to_vec();
+    wanted.extend([0.4, 0.7, 1.0].map(|share| (whole, share * plan.push)));
+    let mut film = film.into_iter().peekable();
+    let mut chosen = Vec::new();
+    for (out, pushed) in wanted {
+        let reached = |moment: &Moment| moment.out >= out && moment.pushed >= pushed;
+        chosen.extend(film.by_ref().find(reached));
+    }
+    chosen
+}
+
+/// How long the steps and the queries took.
+#[derive(Default)]
+struct Clocks {
+    steps: Vec<Duration>,
+    queries: Vec<Duration>,
+}
+
+impl Clocks {
+    /// Medians, slowest, and their share of a control loop of 1 kHz.
+    fn print(&mut self) {
+        println!("\ntime                        median     slowest   share of a 1 kHz loop");
+        for (name, times) in
+            [("rapier's step", &mut self.steps), ("clearance of all links", &mut self.queries)]
+        {
+            times.sort();
+            let at = |share: f64| times.get((share * (times.len().max(1) - 1) as f64) as usize).copied();
+            let [median, slowest] = [0.5, 1.0].map(|share| at(share).unwrap_or_default().as_secs_f64());
+            println!(
+                "  {name:<22} {:>8.1} us {:>8.1} us   {:>6.1} %",
+                median * 1e6,
+                slowest * 1e6,
+                median * 1e5
+            );
+        }
+    }
+}
+
+/// The extremes of a run.
+#[derive(Default)]
+struct Summary {
+    first_touch: Option<Real>,
+    force: Real,
+    deviation: Real,
+    free_deviation: Real,
+}
+
+impl Summary {
+    fn take_note(&mut self, moment: &Moment) {
+        if moment.force() > 0.0 && self.first_touch.is_none() {
+            self.first_touch = Some(moment.time);
+        }
+        let largest = moment.deviations.iter().copied().fold(0.0, Real::max);
+        if self.first_touch.is_none() {
+            self.free_deviation = self.free_deviation.max(largest);
+        }
+        self.force = self.force.max(moment.force());
+        self.deviation = self.deviation.max(largest);
+    }
+
+    fn print(&self, steps: usize, plan: &Plan) {
+        println!(
+            "{steps} steps: {:.1} mm of robot came out, then its base was pushed by {:.1} mm",
+            plan.robot.length(&plan.goal),
+            plan.push
+        );
+        println!("until it touched, it was within {:.3} mm of the kinematic shape", self.free_deviation);
+        match self.first_touch {
+            Some(time) => println!(
+                "it touched the wall after {time:.2} s, with up to {:.0} mN, and was bent away by up to {:.2} mm",
+                self.force, self.deviation
+            ),
+            None => println!("it never touched the wall"),
+        }
+    }
+}

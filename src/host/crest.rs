@@ -1,0 +1,140 @@
+//! The crest of a link: its outline in the plane of its axis and a contact's normal, on the triangle's side.
+//!
+//! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on around the
+//! cap to the cap's point furthest along the normal. A surface that is only touched by the crest cannot be
+//! touched by anything else of barrel or cap, so these count:
+//!
+//! 1. **Its ends**, where the triangle is below them.
+//! 2. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge is left out:
+//!    that point speaks for it, and one beside it would hinder the cap from rolling.
+//! 3. **An edge along it**, with the two ends of what is beside the barrel.
+
+use super::axial::unit_across;
+use super::feature;
+use super::link_manifold::{Meeting, SAME_POINT, crest_end};
+use crate::Cap;
+use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::shape::PackedFeatureId;
+
+/// An edge that stays within this share of the radius from the crest lies along it.
+const ALONG_CREST: Real = 0.01;
+/// The sine of the lean below which an upright link has no crest: its azimuth would be rounding.
+const UPRIGHT: Real = 1e-6;
+/// The share of its radius around a round cap's lowest point in which no edge counts.
+const LOWEST: Real = 0.25;
+
+/// Adds the points of the crest.
+pub(super) fn collect(meeting: &mut Meeting) {
+    let Some(crest) = Crest::of(meeting) else { return };
+    for end in 0..2 {
+        // A round cap that leans towards the triangle ends in its own lowest point.
+        if !crest.leans_round(meeting, end) {
+            meeting.add_above_face(meeting.centre(end) + crest.lateral * crest.radius, crest_end(end));
+        }
+    }
+    for (j, (v, w)) in meeting.edges().into_iter().enumerate() {
+        let edge = PackedFeatureId::edge(j as u32);
+        if let Some(ends) = crest.along_barrel(v, w) {
+            for (q, id) in ends.into_iter().zip([feature::ALONG_EDGE, feature::ALONG_EDGE + 1]) {
+                let dist = crest.drop(q);
+                let on_link = q - meeting.normal * dist;
+                // Beside the crest the way back is a little longer, and can lead past the barrel's end.
+                let slack = SAME_POINT * meeting.size;
+                if (-slack..=crest.length + slack).contains(&on_link.dot(crest.axis)) {
+                    meeting.add(on_link, dist, PackedFeatureId::edge(id), edge);
+                }
+            }
+        } else if let Some(q) = crest.across(v, w)
+            && let Some(dist) = crest.below(meeting, q)
+        {
+            let name = PackedFeatureId::edge(feature::BARREL_LINE);
+            meeting.add(q - meeting.normal * dist, dist, name, edge);
+        }
+    }
+}
+
+/// The plane of axis and normal, from the link's start. All directions are unit vectors.
+struct Crest {
+    axis: Vector,
+    normal: Vector,
+    /// From the axis to the crest.
+    lateral: Vector,
+    /// Across the plane.
+    side: Vector,
+    /// The normal's parts along `lateral` and along the axis.
+    across: Real,
+    slope: Real,
+    radius: Real,
+    length: Real,
+}
+
+impl Crest {
+    fn of(meeting: &Meeting) -> Option<Self> {
+        let (link, normal, axis) = (meeting.link, meeting.normal, meeting.link.axis());
+        let lateral = unit_across(normal, axis).filter(|_| axis != Vector::ZERO)?;
+        let (across, slope) = (normal.dot(lateral), normal.dot(axis));
+        let (radius, length) = (link.radius(), link.length());
+        let side = axis.cross(lateral);
+        (across >= UPRIGHT).then_some(Self { axis, normal, lateral, side, across, slope, radius, length })
+    }
+
+    fn leans_round(&self, meeting: &Meeting, end: usize) -> bool {
+        meeting.link.caps()[end] == Cap::Round && self.normal.dot(meeting.outward(end)) >= 0.0
+    }
+
+    /// How far the barrel is from a point of the triangle, back along the normal.
+    fn drop(&self, q: Vector) -> Real {
+        let aside = q.dot(self.side);
+        let height = ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
+        (q.dot(self.lateral) - height) / self.across
+    }
+
+    /// Where along the axis a point of the triangle, taken back along the normal, meets the crest's line.
+    fn along(&self, q: Vector) -> Real {
+        q.dot(self.axis) - (q.dot(self.lateral) - self.radius) / self.across * self.slope
+    }
+
+    /// Case 3: the ends of an edge along the crest, as far as it is beside the barrel.
+    fn along_barrel(&self, v: Vector, w: Vector) -> Option<[Vector; 2]> {
+        let (at_v, at_w) = (self.along(v), self.along(w));
+        let share = |z: Real| (z - at_v) / (at_w - at_v);
+        let (from, to) = if at_v < at_w {
+            (share(0.0).max(0.0), share(self.length).min(1.0))
+        } else if at_w < at_v {
+            (share(self.length).max(0.0), share(0.0).min(1.0))
+        } else if (0.0..=self.length).contains(&at_v) {
+            (0.0, 1.0)
+        } else {
+            return None;
+        };
+        let ends = [v.lerp(w, from), v.lerp(w, to)];
+        let is_near = |q: &Vector| q.dot(self.side).abs() <= ALONG_CREST * self.radius;
+        (from <= to && ends.iter().all(is_near)).then_some(ends)
+    }
+
+    /// Case 2: where an edge crosses the plane.
+    fn across(&self, v: Vector, w: Vector) -> Option<Vector> {
+        let (y0, y1) = (v.dot(self.side), w.dot(self.side));
+        ((y0 <= 0.0) != (y1 <= 0.0)).then(|| v.lerp(w, y0 / (y0 - y1)))
+    }
+
+    /// Case 2: how far the crest is from a point of its plane, back along the normal, if it is there.
+    fn below(&self, meeting: &Meeting, q: Vector) -> Option<Real> {
+        let z = self.along(q);
+        if (0.0..=self.length).contains(&z) {
+            return Some(self.drop(q));
+        }
+        let end = usize::from(z > self.length);
+        let offset = q - meeting.centre(end);
+        let height = offset.dot(self.normal);
+        let aside = (offset - self.normal * height).length();
+        let is_on_cap =
+            self.leans_round(meeting, end) && (LOWEST * self.radius..self.radius).contains(&aside);
+        let on_cap = height - ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
+        // From where the barrel begins to the cap's lowest point.
+        let outward = meeting.outward(end);
+        let beyond = (offset - self.normal * on_cap).dot(outward);
+        let is_between = (0.0..=self.radius * self.normal.dot(outward)).contains(&beyond);
+        (is_on_cap && is_between).then_some(on_cap)
+    }
+}

@@ -1,0 +1,85 @@
+//! Links and chains in a [rapier](https://rapier.rs) world (feature `rapier`).
+//!
+//! [`install`] does what such a world needs. Where links and chains go from there is up to the scene:
+//! - **One collider for the whole robot**, a [`Chain`](crate::Chain) on one body, when something else moves the
+//!   robot and only its contacts matter.
+//! - **One body per link**, held together by joints, when contacts shall bend the robot. Neighbouring links
+//!   overlap at round joints, so build each joint with `contacts_enabled(false)`; links closer than a radius
+//!   to their next but one need an `InteractionGroups` that leaves the robot out of itself.
+//!
+//! ```
+//! use parry_continuum::{Chain, parry::math::Vector, rapier};
+//! use rapier3d_f64::prelude::*;
+//!
+//! let mut world = PhysicsWorld::default();
+//! rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, 1.0)?;
+//! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::trimesh(
+//!     vec![Vector::new(-9.0, 0.0, -9.0), Vector::new(9.0, 0.0, -9.0), Vector::new(0.0, 0.0, 18.0)],
+//!     vec![[0, 2, 1]],
+//! )?);
+//! let robot = Chain::from_centreline(&[Vector::ZERO, 2.0 * Vector::X, Vector::new(3.5, 0.0, 1.0)], &[0.5, 0.5])?;
+//! let above = RigidBodyBuilder::dynamic().translation(Vector::new(-1.0, 0.6, 0.0));
+//! let (robot, _) = world.insert(above, ColliderBuilder::new(SharedShape::new(robot)));
+//! for _ in 0..120 {
+//!     world.step();
+//! }
+//! assert!((world.bodies[robot].translation().y - 0.5).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What rapier cannot do with custom shapes
+//! | | why | the way round |
+//! |---|---|---|
+//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), build the colliders again after loading |
+//! | load a `NarrowPhase` | it comes back with parry's dispatcher, which reads our pairs as free | call [`install`] after loading |
+//! | `KinematicCharacterController` | it always asks parry's dispatcher | move a kinematic body and ask [`ContinuumDispatcher`] for the way that is free |
+//! | draw in the debug renderer | it draws nothing for a custom shape | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link |
+//!
+//! A query pipeline takes its dispatcher when it is made: `broad_phase.as_query_pipeline(&dispatcher, ..)`, or
+//! `narrow_phase.query_dispatcher()` for the installed one. A kinematic robot and a fixed wall are compared only
+//! if one of their colliders has `ActiveCollisionTypes::KINEMATIC_FIXED`. A robot inside a closed mesh needs
+//! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: the one-sided flag discards every contact from within.
+
+use crate::ContinuumDispatcher;
+use parry3d_f64::math::Real;
+use rapier3d_f64::dynamics::IntegrationParameters;
+use rapier3d_f64::geometry::NarrowPhase;
+use thiserror::Error;
+
+/// Makes a rapier world fit for links and chains. `size` is the thickness of a link in the world's unit of
+/// length: 1e-3 for a robot of a millimetre in metres, 1 for the same in millimetres.
+///
+/// - The narrow phase gets a [`ContinuumDispatcher`].
+/// - `length_unit` becomes `size`. rapier is tuned for things of size 1: prediction, slop, the speed at which
+///   overlaps are resolved and the speed below which bodies fall asleep are all multiples of it.
+/// - Contact recycling is switched off: it would keep a contact while the link moves by up to `size / 20`.
+/// - The largest speed is lifted. It would be 400 `size` per second, which a link of a millimetre reaches by
+///   falling 8 mm.
+///
+/// Gravity, the time step and damping remain as they are. They are in the world's own units.
+///
+/// # Errors
+/// `size` is not a finite number above 0. Nothing is changed then.
+pub fn install(
+    narrow_phase: &mut NarrowPhase,
+    parameters: &mut IntegrationParameters,
+    size: Real,
+) -> Result<(), BadSize> {
+    if !(size.is_finite() && size > 0.0) {
+        return Err(BadSize { size });
+    }
+    narrow_phase.set_query_dispatcher(ContinuumDispatcher::default());
+    parameters.length_unit = size;
+    parameters.contact_recycling = false;
+    parameters.normalized_max_linear_velocity = Real::MAX;
+    Ok(())
+}
+
+/// The size given to [`install`] is no size.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the size of a link is {size}; it must be finite and above 0")]
+#[non_exhaustive]
+pub struct BadSize {
+    /// The offending size.
+    pub size: Real,
+}
