@@ -221,7 +221,28 @@ impl Pair {
             .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
             .into_iter()
             .fold(zero, Scalar::max);
-        (lower - SLACK.into(), between + off + SLACK.into())
+        let upper = between + off;
+        // A difference of points that nearly touch is less precise than the directions of what they lie on.
+        let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
+        let lower = if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
+        (lower - SLACK.into(), upper + SLACK.into())
+    }
+
+    /// How far the planes keep link and triangle apart whose normals are those of features: the face, the axis and an
+    /// edge, an edge and an end, the axis and a vertex.
+    fn apart_by_features(&self) -> impl Iterator<Item = Number> {
+        let [a, b, c] = self.triangle;
+        let across = |direction: Point, from: Point| {
+            let unit = direction.normalised();
+            from - unit * unit.dot(from)
+        };
+        let edges = [(a, b), (b, c), (c, a)].into_iter().flat_map(move |(from, to)| {
+            let edge = to - from;
+            [self.axis.cross(edge), across(edge, from), across(edge, from - self.end)]
+        });
+        let vertices = self.triangle.map(|vertex| across(self.axis, vertex));
+        let all = edges.chain(vertices).chain([(b - a).cross(c - a)]).map(Vec3::normalised);
+        all.flat_map(|direction| [self.apart(direction), self.apart(-direction)])
     }
 
     /// How far the plane with the normal `direction`, from triangle to link, keeps them apart.
