@@ -11,30 +11,6 @@ use common::problems::Family;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 
-/// What a pair is made of, for its extent: the points, and whether it has a radius.
-fn parts<T: Precision>(input: &Input<T>) -> [(Vec<Vector>, bool); KERNELS.len()] {
-    let [a, b, c] = input.triangle.map(vector);
-    let (start, end) = (vector(input.start), vector(input.end));
-    let link = || (vec![a, b, c, start, end], true);
-    [
-        (vec![start, end, a, b], false),
-        (vec![end, a, b, c], false),
-        (vec![start, end, a, b, c], false),
-        (vec![a, end], true),
-        (vec![a, b, end], true),
-        (vec![a, end], true),
-        (vec![a, b, c, end], true),
-        (vec![a, start, end], true),
-        (vec![a, start, end], true),
-        (vec![a, start, end], true),
-        link(),
-        link(),
-        link(),
-        link(),
-        link(),
-    ]
-}
-
 fn exact<T: Precision>(number: T) -> DoubleDouble {
     DoubleDouble::from(number.into())
 }
@@ -99,13 +75,12 @@ fn check<T: Precision>(input: &Input<T>, worst: &mut [f64; KERNELS.len()], seen:
     let directions = directions(&precise, &proofs);
     let answers = input.answers();
     let disc_has_normal = vector(input.disc_normal) != Vector::ZERO;
-    for (kernel, (points, has_radius)) in parts(input).iter().enumerate() {
+    for (kernel, (points, radius)) in input.parts().iter().enumerate() {
         if !disc_has_normal && KERNELS[kernel].ends_with("disc") {
             continue;
         }
-        let radius = if *has_radius { input.radius.into() } else { 0.0 };
-        let extent = extent(points, radius);
-        let far = points.iter().map(|p| p.abs().max_element()).fold(radius, f64::max);
+        let extent = extent(points, *radius);
+        let far = points.iter().map(|p| p.abs().max_element()).fold(*radius, f64::max);
         let (unit, place) = (T::UNIT * extent, T::UNIT * (extent + far));
         let (shapes, closest) = (&shapes[kernel], &answers[kernel]);
         let fail = |what: &str, error: f64| {

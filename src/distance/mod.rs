@@ -16,6 +16,7 @@
 //! assert_eq!(round.distance, 0.5);
 //! ```
 
+mod at_level;
 mod bounds;
 mod disc_solver;
 mod double_double;
@@ -40,6 +41,8 @@ pub(crate) use point_modified_cylinder::Link;
 pub(crate) use segment_disc::Line;
 pub(crate) use triangle_modified_cylinder::Axial;
 
+#[doc(hidden)] // for the comparison of instruction sets
+pub use at_level::{Kernel, at_level};
 pub use disc_solver::{Convex, DiscSolver};
 pub use double_double::DoubleDouble;
 pub use plane_disc::plane_disc;

@@ -1,6 +1,7 @@
 //! Every public function of the narrow phase on one input.
 
 use super::Case;
+use super::precision::{Precision, extent, vector};
 use super::problems::Problem;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
@@ -72,6 +73,72 @@ impl<T: Scalar> Input<T> {
             disc_normal: vector(self.disc_normal),
             radius: number(self.radius),
         }
+    }
+}
+
+impl<T: Precision> Input<T> {
+    /// The extent of each kernel's pair: the largest difference of two of its points in a coordinate, or its radius.
+    pub fn extents(&self) -> [f64; KERNELS.len()] {
+        self.parts().map(|(points, radius)| extent(&points, radius))
+    }
+
+    /// The points of each kernel's pair, and its radius if it has one.
+    pub fn parts(&self) -> [(Vec<Vector>, f64); KERNELS.len()] {
+        let [a, b, c] = self.triangle.map(vector);
+        let (start, end, radius) = (vector(self.start), vector(self.end), self.radius.into());
+        let link = || (vec![a, b, c, start, end], radius);
+        let point_link = || (vec![a, start, end], radius);
+        [
+            (vec![start, end, a, b], 0.0),
+            (vec![end, a, b, c], 0.0),
+            (vec![start, end, a, b, c], 0.0),
+            (vec![a, end], radius),
+            (vec![a, b, end], radius),
+            (vec![a, end], radius),
+            (vec![a, b, c, end], radius),
+            point_link(),
+            point_link(),
+            point_link(),
+            link(),
+            link(),
+            link(),
+            link(),
+            link(),
+        ]
+    }
+}
+
+/// The distances of every kernel, for packs: [`Input::answers`] of the numbers of [`Input::numbers`].
+pub struct Distances;
+
+/// How many numbers an input has.
+pub const NUMBERS: usize = 22;
+
+impl Kernel<NUMBERS, { KERNELS.len() }> for Distances {
+    fn run<T: Scalar>(n: [T; NUMBERS]) -> [T; KERNELS.len()] {
+        let vector = |i: usize| Vec3::new(n[i], n[i + 1], n[i + 2]);
+        let input = Input {
+            triangle: [vector(0), vector(3), vector(6)],
+            plane_normal: vector(9),
+            start: vector(12),
+            end: vector(15),
+            disc_normal: vector(18),
+            radius: n[21],
+        };
+        input.answers().map(|closest| closest.distance)
+    }
+}
+
+impl<T: Copy> Input<T> {
+    /// All numbers in a row.
+    pub fn numbers(&self) -> [T; NUMBERS] {
+        let Self { triangle: [a, b, c], plane_normal, start, end, disc_normal, radius } = *self;
+        let [a, b, c, d, e, f, g] =
+            [a, b, c, plane_normal, start, end, disc_normal].map(|v| [v.x, v.y, v.z]);
+        let mut numbers = [radius; NUMBERS];
+        let in_a_row = [a, b, c, d, e, f, g].into_iter().flatten();
+        numbers.iter_mut().zip(in_a_row).for_each(|(to, from)| *to = from);
+        numbers
     }
 }
 
