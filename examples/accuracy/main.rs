@@ -1,23 +1,28 @@
-//! Measures the narrow phase, and parry's, on the reference cases: `cargo run --release --example accuracy`.
+//! Measures the narrow phase, the engines and parry: `cargo run --release --example accuracy`.
 //!
-//! Writes `docs/ACCURACY.md`. It tells how far this crate's distances are from the reference, for every kind of
-//! pair and category of case, and how far those of parry's `query::distance` are for the same links: as given, and
-//! in another unit of length.
+//! Writes `docs/ACCURACY.md`, `docs/accuracy.csv` and the picture `docs/correctness.png`. They tell how far this crate's
+//! distances are from the truth, on the reference cases and on seeded problems at the extremes, and how far those of
+//! parry's `query::distance` are for the same links.
 
-#[path = "scene/accuracy.rs"]
-mod accuracy;
-#[path = "../tests/common/mod.rs"]
+#[path = "../../tests/common/mod.rs"]
 mod common;
+mod extremes;
+#[path = "../scene/mod.rs"]
+mod scene;
+mod peers;
+mod reference;
+mod slice;
 
-use accuracy::{categories, distance, median_and_worst, tables};
-use common::{Case, distance_cases};
-use parry_continuum::parry::math::{Pose, Rot3, Vector};
-use parry_continuum::parry::query;
-use parry_continuum::parry::shape::{Capsule, Cylinder, Triangle};
+use common::distance_cases;
+use extremes::measure::{Measurement, measure, problems, range};
+use extremes::{EACH, LARGEST, engines, tables};
+use peers::{Peer, comparison};
+use scene::levels::levels;
 use std::fmt::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/ACCURACY.md");
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs");
 
 const INTRODUCTION: &str = "# Accuracy
 
@@ -40,8 +45,38 @@ correctly.
 <!-- ours -->
 ";
 
-const COMPARISON: &str = "<!-- /ours -->
+const EXTREMES: &str = "<!-- /ours -->
 
+## At the extremes
+
+Seeded problems, each driven to an extreme: a triangle and a link, from which every pair takes its part. The expected
+distance is proven for each, by two points and a plane between the shapes, computed with twice the digits of f64. k goes
+from 1 to 12, or to the last digit of the precision. Among subnormal numbers half their spacing is the unit, as no
+answer can be nearer. `docs/accuracy.csv` has each pair in each category by itself.
+
+<!-- extremes -->
+";
+
+const LEVELS: &str = "<!-- /extremes -->
+
+The same links and triangles computed in packs, at each instruction set of the machine that wrote this page. Fused
+operations make the difference.
+
+";
+
+const ENGINES: &str = "
+The engines on meshes of a dozen of these triangles, each with a cylinder and with a capsule. The error is that of the
+least distance, in units of the link and the triangle that are named. Exhaustive engines ran with and without culling.
+
+";
+
+const PEERS: &str = "
+parry's `distance` for the same capsules and cylinders, in the same units (u x extent, f64). An over-estimate reports more
+clearance than there is, by more than 1e-9 of the extent. *No answer* is a panic, NaN or infinity.
+
+";
+
+const COMPARISON: &str = "
 ## Beside parry
 
 The same triangles and links, asked of `parry::query::distance`: capsules and cylinders, which parry has too. Errors are
@@ -56,127 +91,56 @@ the extent.
 ";
 
 fn main() -> ExitCode {
-    let cases = distance_cases();
-    let text = format!("{INTRODUCTION}{}{COMPARISON}{}", tables(&cases), comparison(&cases));
-    match std::fs::write(FILE, text) {
-        Ok(()) => {
-            println!("{} cases, tables: {FILE}", cases.len());
-            ExitCode::SUCCESS
-        }
+    match write_all(Path::new(DOCS)) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: cannot write {FILE} ({error})");
+            eprintln!("error: {error}");
             ExitCode::FAILURE
         }
     }
 }
 
-/// A way to answer a case after its lengths are multiplied by a factor.
-type Program = fn(&Case, f64) -> f64;
-const PROGRAMS: [(&str, Program); 2] = [("this crate", distance::<f64>), ("parry", parry)];
-const UNITS: [(&str, f64); 2] = [("as given", 1.0), ("x 1e-3", 1e-3)];
-
-/// parry's distance between the triangle and the link of a case.
-fn parry(case: &Case, factor: f64) -> f64 {
-    let point = |p: [f64; 3]| Vector::from(p) * factor;
-    let triangle = Triangle::new(point(case.tri[0]), point(case.tri[1]), point(case.tri[2]));
-    let (start, end, radius) = (point(case.p0), point(case.p1), case.r * factor);
-    let world = Pose::identity();
-    let answer = if case.flat() == [true; 2] {
-        // parry's cylinder stands on the y axis.
-        let turn = (end - start)
-            .try_normalize()
-            .map_or(Rot3::IDENTITY, |axis| Rot3::from_rotation_arc(Vector::Y, axis));
-        let pose = Pose::from_parts(start + (end - start) * 0.5, turn);
-        query::distance(&world, &triangle, &pose, &Cylinder::new((end - start).length() * 0.5, radius))
-    } else {
-        query::distance(&world, &triangle, &world, &Capsule::new(start, end, radius))
-    };
-    answer.map_or(f64::NAN, |answer| answer.distance)
+fn write_all(docs: &Path) -> Result<(), String> {
+    let cases = distance_cases();
+    let levels = levels();
+    let (problems, single) = (problems::<f64>(EACH), measure(&extremes::measure::problems::<f32>(EACH), &levels));
+    let double = measure(&problems, &levels);
+    let peer = Peer::ask(&problems);
+    let page = format!(
+        "{INTRODUCTION}{}{EXTREMES}{}{LEVELS}{}{ENGINES}{}{PEERS}{}{COMPARISON}{}",
+        reference::tables(&cases),
+        tables::tables(&double, &single, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
+        tables::by_level(&double, &single),
+        engines_table(&engines::measure(&problems, &levels)),
+        peer.table(),
+        comparison(&cases),
+    );
+    save(&docs.join("ACCURACY.md"), &page)?;
+    save(&docs.join("accuracy.csv"), &file(&double, &single, &peer))?;
+    let picture = docs.join("correctness.png");
+    slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
+    println!("{}", picture.display());
+    Ok(())
 }
 
-fn comparison(cases: &[Case]) -> String {
-    let is_link = |case: &&Case| case.kind.contains("capsule") || case.kind.contains("cylinder");
-    let alike = |case: &&Case, flat| is_link(case) && case.flat() == [flat; 2];
-    let capsules: Vec<_> = cases.iter().filter(|case| alike(case, false)).collect();
-    let cylinders: Vec<_> = cases.iter().filter(|case| alike(case, true)).collect();
-    let mut text = String::from(
-        "| link | cases | lengths | program | median | worst | off by > 1e-6 | over-estimates | largest, of the distance |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-    );
-    for (name, cases) in [("capsule", &capsules), ("cylinder", &cylinders)] {
-        for (unit, factor) in UNITS {
-            for (program, answer) in PROGRAMS {
-                let total = Total::of(cases, answer, factor);
-                writeln!(text, "| {name} | {} | {unit} | {program} | {total} |", cases.len()).ok();
-            }
-        }
-    }
-    text += "\nThe worst error relative to the extent, and parry's over-estimates, by category:\n";
-    for (name, cases) in [("Capsules", &capsules), ("Cylinders", &cylinders)] {
-        write!(
-            text,
-            "\n### {name} by category\n\n| category | cases | this crate | parry | parry, x 1e-3 | over-estimates | x 1e-3 |\n|---|---|---|---|---|---|---|\n"
-        )
-        .ok();
-        for category in categories(cases) {
-            let some: Vec<_> = cases.iter().copied().filter(|case| case.cat == category).collect();
-            let ours = Total::of(&some, distance::<f64>, 1.0);
-            let [given, metres] = UNITS.map(|(_, factor)| Total::of(&some, parry, factor));
-            writeln!(
-                text,
-                "| {} | {} | {} | {} | {} | {} | {} |",
-                category.replace('_', " "),
-                some.len(),
-                digit(ours.worst),
-                digit(given.worst),
-                digit(metres.worst),
-                given.over,
-                metres.over
-            )
-            .ok();
-        }
+fn file(double: &Measurement, single: &Measurement, peer: &Peer) -> String {
+    let mut lines = vec![tables::head()];
+    lines.extend(tables::lines(double, |extreme, kernels| peer.cells(extreme, kernels)));
+    lines.extend(tables::lines(single, |_, _| "-,-".into()));
+    lines.join("\n") + "\n"
+}
+
+fn engines_table(errors: &engines::Errors) -> String {
+    let mut text = String::from("| engine | queries | median | worst |\n|---|---|---|---|\n");
+    for (name, errors) in errors {
+        let (median, worst) = reference::median_and_worst(errors.clone()).unwrap_or_default();
+        writeln!(text, "| {name} | {} | {median:.2} | {worst:.2} |", errors.len()).ok();
     }
     text
 }
 
-/// How a program does on some cases.
-struct Total {
-    median: f64,
-    worst: f64,
-    /// Errors beyond 1e-6 of the extent.
-    off: usize,
-    /// Over-estimates beyond 1e-9 of the extent.
-    over: usize,
-    /// The largest over-estimate relative to the distance.
-    largest: f64,
-}
-
-impl Total {
-    fn of(cases: &[&Case], answer: Program, factor: f64) -> Self {
-        let signed: Vec<_> =
-            cases.iter().map(|case| (answer(case, factor) / factor - case.distance()) / case.scale).collect();
-        let (median, worst) =
-            median_and_worst(signed.iter().map(|error| error.abs()).collect()).unwrap_or_default();
-        let relative = signed.iter().zip(cases).filter(|(_, case)| case.distance() >= 1e-3 * case.scale);
-        Self {
-            median,
-            worst,
-            off: signed.iter().filter(|error| error.abs() > 1e-6).count(),
-            over: signed.iter().filter(|&&error| error > 1e-9).count(),
-            largest: relative.map(|(error, case)| error * case.scale / case.distance()).fold(0.0, f64::max),
-        }
-    }
-}
-
-impl std::fmt::Display for Total {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let Self { median, worst, off, over, largest } = self;
-        let [median, worst, largest] = [*median, *worst, *largest].map(digit);
-        write!(f, "{median} | {worst} | {off} | {over} | {largest}")
-    }
-}
-
-/// One digit and the power of ten.
-fn digit(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.0e}") }
+fn save(path: &Path, text: &str) -> Result<(), String> {
+    std::fs::write(path, text).map_err(|error| format!("cannot write {} ({error})", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
 }

@@ -17,6 +17,30 @@ pub struct Input<T> {
     pub radius: T,
 }
 
+// The kernels are inlined wherever they are called; these are compiled once for all kinds of caps.
+
+#[inline(never)]
+fn point_apart<T: Scalar>(
+    point: Vec3<T>,
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
+    point_modified_cylinder(point, start, end, radius, flat)
+}
+
+#[inline(never)]
+fn link_apart<T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
+    triangle_modified_cylinder(triangle, start, end, radius, flat)
+}
+
 /// The names of what [`Input::answers`] returns.
 pub const KERNELS: [&str; 15] = [
     "segment-segment",
@@ -42,8 +66,8 @@ impl<T: Scalar> Input<T> {
         let Self { triangle, plane_normal, start, end, disc_normal, radius } = *self;
         let [a, b, _] = triangle;
         let (yes, no) = (radius.le(radius), radius.lt(radius));
-        let to_point = |flat| point_modified_cylinder(a, start, end, radius, flat);
-        let to_triangle = |flat| triangle_modified_cylinder(triangle, start, end, radius, flat);
+        let to_point = |flat| point_apart(a, start, end, radius, flat);
+        let to_triangle = |flat| link_apart(triangle, start, end, radius, flat);
         [
             segment_segment([start, end], [a, b]),
             point_triangle(end, triangle),
@@ -108,36 +132,32 @@ impl<T: Precision> Input<T> {
     }
 }
 
-/// The distances of every kernel, for packs: [`Input::answers`] of the numbers of [`Input::numbers`].
-pub struct Distances;
+/// The distance of triangle and link, for packs; the caps are numbers, 1 where they are flat.
+pub struct LinkDistance;
 
-/// How many numbers an input has.
-pub const NUMBERS: usize = 22;
+/// How many numbers a triangle and a link have.
+pub const NUMBERS: usize = 18;
 
-impl Kernel<NUMBERS, { KERNELS.len() }> for Distances {
-    fn run<T: Scalar>(n: [T; NUMBERS]) -> [T; KERNELS.len()] {
-        let vector = |i: usize| Vec3::new(n[i], n[i + 1], n[i + 2]);
-        let input = Input {
-            triangle: [vector(0), vector(3), vector(6)],
-            plane_normal: vector(9),
-            start: vector(12),
-            end: vector(15),
-            disc_normal: vector(18),
-            radius: n[21],
-        };
-        input.answers().map(|closest| closest.distance)
+impl Kernel<NUMBERS, 1> for LinkDistance {
+    #[inline(always)]
+    fn run<T: Scalar>(n: [T; NUMBERS]) -> [T; 1] {
+        let (triangle, [start, end]) = (
+            [Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]), Vec3::new(n[6], n[7], n[8])],
+            [Vec3::new(n[9], n[10], n[11]), Vec3::new(n[12], n[13], n[14])],
+        );
+        let flat = [n[16].zero().lt(n[16]), n[17].zero().lt(n[17])];
+        [triangle_modified_cylinder(triangle, start, end, n[15], flat).distance]
     }
 }
 
-impl<T: Copy> Input<T> {
-    /// All numbers in a row.
-    pub fn numbers(&self) -> [T; NUMBERS] {
-        let Self { triangle: [a, b, c], plane_normal, start, end, disc_normal, radius } = *self;
-        let [a, b, c, d, e, f, g] =
-            [a, b, c, plane_normal, start, end, disc_normal].map(|v| [v.x, v.y, v.z]);
-        let mut numbers = [radius; NUMBERS];
-        let in_a_row = [a, b, c, d, e, f, g].into_iter().flatten();
-        numbers.iter_mut().zip(in_a_row).for_each(|(to, from)| *to = from);
+impl<T: Precision> Input<T> {
+    /// Triangle, link and caps in a row.
+    pub fn link_numbers(&self, flat: [bool; 2]) -> [T; NUMBERS] {
+        let Self { triangle: [a, b, c], start, end, .. } = *self;
+        let mut numbers = [self.radius; NUMBERS];
+        let points = [a, b, c, start, end].map(|v| [v.x, v.y, v.z]);
+        numbers.iter_mut().zip(points.into_iter().flatten()).for_each(|(to, from)| *to = from);
+        [numbers[16], numbers[17]] = flat.map(|flat| T::from_f64(f64::from(u8::from(flat))));
         numbers
     }
 }

@@ -2,7 +2,7 @@
 
 use super::problems::{Extreme, Range, Sample, samples};
 use crate::common::certificate::{certify, directions, shapes};
-use crate::common::kernels::{Distances, Input, KERNELS, NUMBERS};
+use crate::common::kernels::{Input, KERNELS, LinkDistance, NUMBERS};
 use crate::common::precision::Precision;
 use fearless_simd::Level;
 use parry_continuum::distance::{DoubleDouble, Vec3, at_level};
@@ -22,26 +22,30 @@ pub const PAIRS: [(&str, &[usize]); 11] = [
     ("triangle and modified cylinder", &[13, 14]),
 ];
 
+/// The kernels that engines run on packs, and their caps: first of them in [`KERNELS`] is the capsule.
+const PACKED: [(usize, [bool; 2]); 4] =
+    [(10, [false; 2]), (12, [true; 2]), (13, [true, false]), (14, [false, true])];
+
 /// A precision that is measured.
 pub trait Measured: Precision {
     const NAME: &str;
     const RANGE: Range;
-    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; KERNELS.len()]>;
+    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; 1]>;
 }
 
 impl Measured for f64 {
     const NAME: &str = "f64";
     const RANGE: Range = Range { digits: 16, scale: 300, smallest: -1074 };
-    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; KERNELS.len()]> {
-        at_level::<Distances, Self, NUMBERS, { KERNELS.len() }>(level, problems)
+    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; 1]> {
+        at_level::<LinkDistance, Self, NUMBERS, 1>(level, problems)
     }
 }
 
 impl Measured for f32 {
     const NAME: &str = "f32";
     const RANGE: Range = Range { digits: 8, scale: 90, smallest: -149 };
-    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; KERNELS.len()]> {
-        at_level::<Distances, Self, NUMBERS, { KERNELS.len() }>(level, problems)
+    fn at_level(level: Level, problems: &[[Self; NUMBERS]]) -> Vec<[Self; 1]> {
+        at_level::<LinkDistance, Self, NUMBERS, 1>(level, problems)
     }
 }
 
@@ -92,21 +96,23 @@ impl<T: Measured> Problem<T> {
     /// Rounds a sample to the precision and proves its distances.
     pub fn new(sample: &Sample) -> Self {
         let Sample { extreme, power, exponent, .. } = *sample;
-        // Rounded near one, scaled, and back again, so that the proof is of the very numbers the kernels get.
-        let rounded = sample.input.map(|x| T::from_f64(x).into());
-        let input = rounded.map(|x| T::from_f64(scaled(x, exponent)));
-        let near_one = input.map(|x| scaled(x.into(), -exponent));
+        // Rounded near one, scaled, and back again, so that the proof is of the very numbers the kernels get. Normals
+        // have no length to speak of.
+        let rounded = sample.input.map(T::from_f64);
+        let mut input = rounded.map(|x| T::from_f64(scaled(x.into(), exponent)));
+        (input.plane_normal, input.disc_normal) = (rounded.plane_normal, rounded.disc_normal);
+        let mut near_one = input.map(|x| scaled(x.into(), -exponent));
+        let exact = rounded.map(Into::into);
+        (near_one.plane_normal, near_one.disc_normal) = (exact.plane_normal, exact.disc_normal);
         let spacing = scaled(0.5, T::RANGE.smallest - exponent);
         let units = near_one.extents().map(|extent| (T::UNIT * extent).max(spacing));
         Self { extreme, power, exponent, input, near_one, proofs: proofs(&near_one, units) }
     }
 
-    /// The error of each kernel's distance.
-    fn errors(&self, distances: [T; KERNELS.len()]) -> [Option<f64>; KERNELS.len()] {
-        std::array::from_fn(|kernel| {
-            let distance = scaled(distances[kernel].into(), -self.exponent);
-            self.proofs[kernel].map(|proof| proof.error(distance))
-        })
+    /// The error of a kernel's distance.
+    fn error(&self, kernel: usize, distance: T) -> Option<f64> {
+        let distance = scaled(distance.into(), -self.exponent);
+        self.proofs[kernel].map(|proof| proof.error(distance))
     }
 }
 
@@ -137,7 +143,7 @@ pub struct Found {
     /// Index into [`KERNELS`].
     pub kernel: usize,
     pub scalar: f64,
-    /// At each instruction set.
+    /// At each instruction set, for what engines run on packs.
     pub levels: Vec<f64>,
 }
 
@@ -155,24 +161,46 @@ pub fn problems<T: Measured>(each: usize) -> Vec<Problem<T>> {
     samples(T::RANGE, each).iter().map(Problem::new).collect()
 }
 
+/// From which power of two to which a precision answers problems of that size within 16 units: the smallest and the
+/// largest exponent around 0 up to which none is worse.
+pub fn range<T: Measured>(largest: i32) -> [i32; 2] {
+    let smallest = T::RANGE.smallest;
+    let near_one: Vec<_> = samples(Range { scale: 0, ..T::RANGE }, 1)
+        .into_iter()
+        .filter(|sample| sample.extreme <= Extreme::Crossing && sample.power <= 2)
+        .take(12)
+        .collect();
+    let holds = |exponent: &i32| {
+        near_one.iter().all(|sample| {
+            let sample = Sample { input: sample.input, exponent: *exponent, ..*sample };
+            let problem = Problem::<T>::new(&sample);
+            let answers = problem.input.answers().into_iter().enumerate();
+            let mut errors = answers.filter_map(|(kernel, answer)| problem.error(kernel, answer.distance));
+            errors.all(|error| error <= 16.0)
+        })
+    };
+    // Every exponent near the ends of the range, every tenth between.
+    let step = |exponent: &i32| exponent % 10 == 0 || *exponent < smallest + 60 || largest - 10 < *exponent;
+    let low = (smallest..=0).rev().filter(step).take_while(holds).last().unwrap_or(0);
+    let high = (0..=largest).filter(step).take_while(holds).last().unwrap_or(0);
+    [low, high]
+}
+
 /// The errors on the given problems.
 pub fn measure<T: Measured>(problems: &[Problem<T>], levels: &[(&'static str, Level)]) -> Measurement {
-    let numbers: Vec<_> = problems.iter().map(|problem| problem.input.numbers()).collect();
-    let packed: Vec<_> = levels.iter().map(|(_, level)| T::at_level(*level, &numbers)).collect();
+    let packed: Vec<_> = PACKED.map(|(kernel, flat)| {
+        let numbers: Vec<_> = problems.iter().map(|problem| problem.input.link_numbers(flat)).collect();
+        let answers = levels.iter().map(|(_, level)| T::at_level(*level, &numbers));
+        (kernel, answers.collect::<Vec<_>>())
+    }).into();
     let (mut found, mut gap) = (Vec::new(), 0.0_f64);
     for (index, problem) in problems.iter().enumerate() {
-        let scalar = problem.errors(problem.input.answers().map(|closest| closest.distance));
-        let levels: Vec<_> = packed.iter().map(|answers| problem.errors(answers[index])).collect();
-        for kernel in 0..KERNELS.len() {
-            let (Some(proof), Some(scalar)) = (problem.proofs[kernel], scalar[kernel]) else { continue };
-            gap = gap.max(if proof.gap == 0.0 { 0.0 } else { proof.gap / proof.unit });
-            found.push(Found {
-                extreme: problem.extreme,
-                power: problem.power,
-                kernel,
-                scalar,
-                levels: levels.iter().filter_map(|errors| errors[kernel]).collect(),
-            });
+        for (kernel, answer) in problem.input.answers().into_iter().enumerate() {
+            let Some(scalar) = problem.error(kernel, answer.distance) else { continue };
+            let at_levels = packed.iter().filter(|(packed, _)| *packed == kernel).flat_map(|(_, levels)| levels);
+            let levels = at_levels.filter_map(|answers| problem.error(kernel, answers[index][0])).collect();
+            found.push(Found { extreme: problem.extreme, power: problem.power, kernel, scalar, levels });
+            gap = problem.proofs[kernel].iter().map(|proof| proof.gap / proof.unit).fold(gap, f64::max);
         }
     }
     Measurement { precision: T::NAME, levels: levels.iter().map(|(name, _)| *name).collect(), found, gap }
