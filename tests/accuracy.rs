@@ -44,7 +44,11 @@ fn assert_lines(written: &[&str], measurement: &Measurement) {
     assert_eq!(written.len(), measured.len());
     for (written, measured) in written.iter().zip(&measured) {
         let [written_cells, cells] = [*written, measured].map(|line| line.split(',').collect::<Vec<_>>());
-        assert_eq!(written_cells[..6], cells[..6], "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}");
+        assert_eq!(
+            written_cells[..6],
+            cells[..6],
+            "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}"
+        );
         for (bound, cell) in written_cells.iter().zip(&cells).skip(6).take(2 * tables::LEVELS.len()) {
             if let (Ok(bound), Ok(cell)) = (bound.parse::<f64>(), cell.parse::<f64>()) {
                 assert!(cell <= bound, "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}");

@@ -4,11 +4,11 @@
 
 mod common;
 
+use common::Random;
 use common::certificate::{Exact, Shape};
 use common::distance_cases;
 use common::kernels::Input;
 use common::problems::Family;
-use common::Random;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::{Cap, Chain};
@@ -212,10 +212,7 @@ impl View {
     fn beyond(&self) -> [bool; 2] {
         let axis = self.end - self.start;
         let point = self.triangle[0];
-        [
-            (point - self.start).dot(axis).rounded() < 0.0,
-            (point - self.end).dot(axis).rounded() > 0.0,
-        ]
+        [(point - self.start).dot(axis).rounded() < 0.0, (point - self.end).dot(axis).rounded() > 0.0]
     }
 
     fn count(&self, mut seen: impl FnMut(&str, &str)) {

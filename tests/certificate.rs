@@ -183,3 +183,24 @@ fn a_lattice_segment_that_passes_just_inside_the_rim() {
     let single = segment_disc([a, a + e].map(single), single(centre), single(normal), 0.5).distance;
     assert!((f64::from(single) - expected).abs() <= 16.0 * f32::UNIT * 3.0, "{single}");
 }
+
+/// Both ends of a link far shorter than the rounding of its distance are equally near. The answer must be that of the
+/// end that faces the triangle: here a flat cap of radius 1 under the plane z = 1 + x / 2, whose nearest point is the
+/// rim's (-1, 0, 0), at 0.5 / sqrt(1.25).
+#[test]
+fn the_flat_cap_of_a_link_shorter_than_rounding_decides() {
+    fn check<T: Precision>(length: f64) {
+        let point = |x, y, z| T::vec3(Vector::new(x, y, z));
+        let triangle = [point(-5.0, -4.0, -1.5), point(4.0, -4.0, 3.0), point(-0.5, 8.0, 0.75)];
+        let (low, high) = (point(0.0, 0.0, 0.0), point(0.0, 0.0, length));
+        let radius = T::from_f64(1.0);
+        let forward = triangle_modified_cylinder(triangle, low, high, radius, [false, true]);
+        let backward = triangle_modified_cylinder(triangle, high, low, radius, [true, false]);
+        for distance in [forward, backward].map(|closest| closest.distance.into()) {
+            let error = (distance - 0.2_f64.sqrt()).abs();
+            assert!(error <= 16.0 * T::UNIT * 12.0, "{length}: {distance}");
+        }
+    }
+    [1e-17, 1e-20, 1e-30].map(check::<f64>);
+    [1e-9, 1e-12, 1e-20].map(check::<f32>);
+}

@@ -95,7 +95,8 @@ fn ten_million_triangles() {
     // A chain of ten thousand links in the same mesh.
     let robot = helix(10_000);
     let mut search = BvhSearch::new(&mesh).expect("a mesh");
-    timed("search, 10,000 links, cold", || search.per_link(&robot, &pose, &mut found)).expect("a valid query");
+    timed("search, 10,000 links, cold", || search.per_link(&robot, &pose, &mut found))
+        .expect("a valid query");
     assert_proven(&found, &robot, &pose, &mesh);
     assert_least(&found[4_321], &robot, &pose, &mesh);
 }

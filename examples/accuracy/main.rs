@@ -7,10 +7,10 @@
 #[path = "../../tests/common/mod.rs"]
 mod common;
 mod extremes;
-#[path = "../scene/mod.rs"]
-mod scene;
 mod peers;
 mod reference;
+#[path = "../scene/mod.rs"]
+mod scene;
 mod slice;
 
 use common::distance_cases;
@@ -51,7 +51,7 @@ const EXTREMES: &str = "<!-- /ours -->
 
 Seeded problems, each driven to an extreme: a triangle and a link, from which every pair takes its part. The expected
 distance is proven for each, by two points and a plane between the shapes, computed with twice the digits of f64. k goes
-from 1 to 12, or to the last digit of the precision. Among subnormal numbers half their spacing is the unit, as no
+from 1 to 12, to 16 for short links, or to the last digit of the precision. Among subnormal numbers half their spacing is the unit, as no
 answer can be nearer. `docs/accuracy.csv` has each pair in each category by itself.
 
 <!-- extremes -->
@@ -103,7 +103,8 @@ fn main() -> ExitCode {
 fn write_all(docs: &Path) -> Result<(), String> {
     let cases = distance_cases();
     let levels = levels();
-    let (problems, single) = (problems::<f64>(EACH), measure(&extremes::measure::problems::<f32>(EACH), &levels));
+    let (problems, single) =
+        (problems::<f64>(EACH), measure(&extremes::measure::problems::<f32>(EACH), &levels));
     let double = measure(&problems, &levels);
     let peer = Peer::ask(&problems);
     let page = format!(

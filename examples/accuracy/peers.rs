@@ -91,9 +91,8 @@ impl Peer {
             [12] => true,
             _ => return "-,-".into(),
         };
-        self.of(extreme, flat).map_or("-,-".into(), |(median, worst, ..)| {
-            format!("{},{}", digit(median), digit(worst))
-        })
+        self.of(extreme, flat)
+            .map_or("-,-".into(), |(median, worst, ..)| format!("{},{}", digit(median), digit(worst)))
     }
 
     /// A row for each category.

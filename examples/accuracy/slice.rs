@@ -50,7 +50,7 @@ fn errors(column: usize, row: usize) -> [f64; 2] {
     let near = side * (RADIUS + gap);
     let triangle = [
         near - axis * 2e-3 - other * 1e-3,
-        near + (axis + side * tilt) * 3e-3 + other * 1.5e-3,
+        near + (axis + side * tilt) * 3e-3 + other * 2e-3,
         near + (axis + side * tilt) * 1e-3 - other * 2.5e-3 + side * (1e-3 * tilt),
     ];
     let Ok(link) = ModifiedCylinder::cylinder(start, end, RADIUS) else { return [f64::NAN; 2] };
@@ -70,7 +70,8 @@ pub fn draw() -> Canvas {
     let panel = CELLS * CELL;
     let (left, top, between) = (150, 150, 60);
     let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 290, |_, _| PAPER);
-    let title = "How wrong is the clearance? A tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
+    let title =
+        "How wrong is the clearance? A tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
     canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
     for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);
@@ -90,7 +91,9 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4], names_tilt: bool) {
     let mark = |canvas: &mut Canvas, from: [f32; 2], to: [f32; 2]| {
         canvas.stroke(&[vec![from, to]], 2.0, INK, 1.0);
     };
-    let decades = |[low, high]: [f64; 2]| (low as i32..=high as i32).map(move |k| (k, (f64::from(k) - low) / (high - low)));
+    let decades = |[low, high]: [f64; 2]| {
+        (low as i32..=high as i32).map(move |k| (k, (f64::from(k) - low) / (high - low)))
+    };
     for (power, at) in decades(GAP) {
         let x = x0 + (x1 - x0) * at as f32;
         mark(canvas, [x, y1], [x, y1 + 8.0]);

@@ -15,7 +15,9 @@
 //!
 //! Rounding: to take case 1 where the truth is an end costs no more than the rounding of F. To take case 2
 //! where the truth lies inside would cost far more when the link touches; `segment_triangle` therefore makes s
-//! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate.
+//! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate. Both ends of a
+//! link that is shorter than the rounding of F are equally near, and either may be taken: p* tells which of them it
+//! lies beyond.
 
 use super::point_modified_cylinder::Link;
 use super::{
@@ -84,10 +86,14 @@ impl<T: Scalar> Axial<T> {
         let axis = segment_triangle::from_start(link.end, face);
         let (zero, one) = (axis.s.zero(), axis.s.one());
         let has_axis = zero.lt(link.axis.norm_squared());
+        let (at_start, at_end) = (axis.s.le(zero), one.le(axis.s));
+        let past_end = at_start & zero.lt((axis.on_triangle - link.end).dot(link.axis));
+        let past_start = at_end & axis.on_triangle.dot(link.axis).lt(zero);
+        let (at_start, at_end) = ((at_start & !past_end) | past_start, (at_end & !past_start) | past_end);
         Self {
             axis_squared: axis.squared,
             on_triangle: axis.on_triangle,
-            at_flat: [link.flat[0] & has_axis & axis.s.le(zero), link.flat[1] & has_axis & one.le(axis.s)],
+            at_flat: [link.flat[0] & has_axis & at_start, link.flat[1] & has_axis & at_end],
         }
     }
 

@@ -188,16 +188,19 @@ pub fn range<T: Measured>(largest: i32) -> [i32; 2] {
 
 /// The errors on the given problems.
 pub fn measure<T: Measured>(problems: &[Problem<T>], levels: &[(&'static str, Level)]) -> Measurement {
-    let packed: Vec<_> = PACKED.map(|(kernel, flat)| {
-        let numbers: Vec<_> = problems.iter().map(|problem| problem.input.link_numbers(flat)).collect();
-        let answers = levels.iter().map(|(_, level)| T::at_level(*level, &numbers));
-        (kernel, answers.collect::<Vec<_>>())
-    }).into();
+    let packed: Vec<_> = PACKED
+        .map(|(kernel, flat)| {
+            let numbers: Vec<_> = problems.iter().map(|problem| problem.input.link_numbers(flat)).collect();
+            let answers = levels.iter().map(|(_, level)| T::at_level(*level, &numbers));
+            (kernel, answers.collect::<Vec<_>>())
+        })
+        .into();
     let (mut found, mut gap) = (Vec::new(), 0.0_f64);
     for (index, problem) in problems.iter().enumerate() {
         for (kernel, answer) in problem.input.answers().into_iter().enumerate() {
             let Some(scalar) = problem.error(kernel, answer.distance) else { continue };
-            let at_levels = packed.iter().filter(|(packed, _)| *packed == kernel).flat_map(|(_, levels)| levels);
+            let at_levels =
+                packed.iter().filter(|(packed, _)| *packed == kernel).flat_map(|(_, levels)| levels);
             let levels = at_levels.filter_map(|answers| problem.error(kernel, answers[index][0])).collect();
             found.push(Found { extreme: problem.extreme, power: problem.power, kernel, scalar, levels });
             gap = problem.proofs[kernel].iter().map(|proof| proof.gap / proof.unit).fold(gap, f64::max);

@@ -67,7 +67,8 @@ impl Extreme {
         match self {
             Self::NearParallel | Self::CapTransition | Self::TangentRim | Self::Contact => digits,
             Self::Needle | Self::Sliver | Self::SmallTriangle | Self::LargeTriangle => 12,
-            Self::ShortLink | Self::LongLink | Self::Offset => 12,
+            Self::LongLink | Self::Offset => 12,
+            Self::ShortLink => 16,
             _ => 0,
         }
     }
@@ -229,8 +230,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
             let normal = random.direction();
             let side = random.perpendicular_to(normal);
             let (other, size) = (normal.cross(side), ten_to(random.below(2) as i32));
-            problem.triangle = [0.0, 1.7, -1.7]
-                .map(|by| at + turned(side, other, by) * (size * random.between(0.1, 1.0)));
+            problem.triangle =
+                [0.0, 1.7, -1.7].map(|by| at + turned(side, other, by) * (size * random.between(0.1, 1.0)));
         }
         Extreme::Needle => {
             let which = random.below(3) as usize;
@@ -264,7 +265,11 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
             problem = self::problem(random, other, power);
             problem.radius = 0.0;
         }
-        Extreme::ShortLink => problem.end = start + axis * (radius * tenth),
+        Extreme::ShortLink => {
+            // From the origin no digit of the length is rounded away.
+            problem.start = if random.below(2) == 0 { start } else { Vector::ZERO };
+            problem.end = problem.start + axis * (radius * tenth);
+        }
         Extreme::LongLink => {
             let length = radius * ten_to(power);
             problem.end = start + axis * length;

@@ -16,10 +16,7 @@ fn cell(errors: Vec<f64>) -> String {
 }
 
 /// One line for each precision, category and pair. `peer` writes what is known of parry.
-pub fn lines(
-    measurement: &Measurement,
-    mut peer: impl FnMut(Extreme, &[usize]) -> String,
-) -> Vec<String> {
+pub fn lines(measurement: &Measurement, mut peer: impl FnMut(Extreme, &[usize]) -> String) -> Vec<String> {
     let mut lines = Vec::new();
     for (extreme, category, _) in Extreme::ALL {
         for (pair, kernels) in PAIRS {
@@ -29,7 +26,8 @@ pub fn lines(
             let mut line = format!("{},{category},{pair},{},{scalar}", measurement.precision, found.len());
             for level in LEVELS {
                 let index = measurement.levels.iter().position(|name| *name == level);
-                let errors = |index: usize| found.iter().filter_map(|f| f.levels.get(index).copied()).collect();
+                let errors =
+                    |index: usize| found.iter().filter_map(|f| f.levels.get(index).copied()).collect();
                 write!(line, ",{}", cell(index.map(errors).unwrap_or_default())).ok();
             }
             write!(line, ",{}", peer(extreme, kernels)).ok();
@@ -107,7 +105,8 @@ pub fn by_level(double: &Measurement, single: &Measurement) -> String {
         write!(text, "| {name} |").ok();
         for measurement in [double, single] {
             let packed = measurement.found.iter().filter(|found| !found.levels.is_empty());
-            let errors = packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
+            let errors =
+                packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
             write!(text, " {} |", cell(errors.collect()).replace(',', " | ")).ok();
         }
         text.push('\n');
