@@ -35,6 +35,8 @@
 //!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
 //!
+//! - **The book.** [`book`] explains the shape, the queries, certificates and limits, a chapter each.
+//!
 //! # What an answer means
 //! Distances are to the mesh's surface and unsigned: 0 where a link touches or crosses it. A robot that starts inside a
 //! closed wall and touches nothing is inside. Distances are exact up to rounding: within 16 u x extent of the true
@@ -50,6 +52,7 @@
 
 pub use parry3d_f64 as parry;
 
+pub mod book;
 pub mod distance;
 mod host;
 pub mod proximity;

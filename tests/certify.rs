@@ -46,6 +46,30 @@ fn the_reference_cases_lie_within_tight_bounds() {
     assert!(apart > 300 && nearly_touching > 20 && touching > 50);
 }
 
+/// Both ends of a link much shorter than its radius are as near as rounding can tell; the caps still differ.
+#[test]
+fn links_much_shorter_than_their_radius() {
+    let mut random = Random::new(41);
+    let (mut apart, mut touching) = (0, 0);
+    for round in 0..4000 {
+        let length = 10.0_f64.powi(-(round % 18));
+        let (start, axis) = (random.point(), random.direction());
+        let flat = [[false, true], [true, false], [true, true]][random.below(3) as usize];
+        let link = link_of(start, start + axis * length, random.between(0.1, 1.0), flat);
+        let triangle = [random.point(), random.point(), random.point()].map(|v| v * 2.0);
+        let bounds = Certificate::between(&link, &Pose::IDENTITY, triangle).unwrap();
+        let found = ContinuumPair { triangle, link: &link }.distance();
+        let slack = 16.0 * UNIT * 4.0;
+        assert!(bounds.upper - bounds.lower <= slack, "length {length}: {bounds:?}");
+        assert!(
+            bounds.lower - slack <= found && found <= bounds.upper + slack,
+            "length {length}: {found} {bounds:?}"
+        );
+        if found > 0.0 { apart += 1 } else { touching += 1 }
+    }
+    assert!(apart > 1000 && touching > 500, "{apart} apart, {touching} touching");
+}
+
 /// A triangle of a random problem, its link, and the problem's extent.
 fn random_pair(random: &mut Random, family: Family) -> ([Vector; 3], ModifiedCylinder, Real) {
     let Problem { triangle, start, end, radius, .. } = random.problem(family, -17.0);

@@ -186,6 +186,18 @@ fn near_ties_are_decided_in_double_precision() {
     }
 }
 
+/// The plane through the nearest axis point towards the triangle's centre has no direction there.
+#[test]
+fn a_triangle_with_its_centre_on_the_axis_is_seen() {
+    let pierced = [[2.0, -1.0, 0.0], [-1.0, 2.0, 0.0], [-1.0, -1.0, 0.0]];
+    let aside = [[2.0, -1.0, 3.0], [-1.0, 2.0, 3.0], [-1.0, -1.0, 3.0]];
+    let robot = Chain::capsules(&[Vector::new(0.0, 0.0, -1.0), Vector::Z], &[0.25]).unwrap();
+    for triangles in [vec![pierced], vec![aside, pierced], vec![pierced, aside]] {
+        let found = check_agreement(&mesh_of(&triangles), &robot, &Pose::IDENTITY, 0.0);
+        assert_eq!(found, [0.0]);
+    }
+}
+
 #[test]
 fn moved_vertices_are_seen() {
     let mut random = Random::new(11);

@@ -18,6 +18,13 @@ use std::path::Path;
 /// One line: the file cannot be read, is of unknown format or broken, has no triangle, a vertex is not finite, a
 /// triangle names a vertex that is not there, or the scale is not a positive number.
 pub fn load(path: &Path, scale: Real) -> Result<Mesh, String> {
+    let bytes = std::fs::read(path)
+        .map_err(|error| format!("cannot read {} ({error}); check the path", path.display()))?;
+    from_bytes(path, bytes, scale)
+}
+
+/// As [`load`], for a file of this name that holds these bytes.
+pub fn from_bytes(path: &Path, bytes: Vec<u8>, scale: Real) -> Result<Mesh, String> {
     let name = path.display();
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(format!(
@@ -35,8 +42,6 @@ pub fn load(path: &Path, scale: Real) -> Result<Mesh, String> {
             ));
         }
     };
-    let bytes =
-        std::fs::read(path).map_err(|error| format!("cannot read {name} ({error}); check the path"))?;
     let broken = |reason: String| {
         let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
         format!("{name} is not a valid {} file ({reason}); export it again", extension.to_uppercase())

@@ -57,5 +57,6 @@ impl<T: Scalar> Frame<T> {
             point1: self.origin + local.point1 * unfit * grow,
             point2: self.origin + local.point2 * unfit * grow,
         }
+        .met()
     }
 }

@@ -71,6 +71,13 @@ pub struct Closest<T> {
 }
 
 impl<T: Scalar> Closest<T> {
+    /// The same, with one common point where the distance is 0: rounding may have put the two points apart.
+    #[inline(always)]
+    pub(crate) fn met(self) -> Self {
+        let meet = self.distance.le(self.distance.zero());
+        Self { point2: Vec3::select(meet, self.point1, self.point2), ..self }
+    }
+
     /// `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub(crate) fn select(mask: T::Mask, yes: Self, no: Self) -> Self {

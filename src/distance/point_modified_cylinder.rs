@@ -30,7 +30,7 @@ pub fn point_modified_cylinder<T: Scalar>(
 pub(crate) struct Link<T: Scalar> {
     /// The end point of the axis.
     pub end: Vec3<T>,
-    /// The unit direction of the axis, zero for a ball.
+    /// The unit direction of the axis; zero for a ball, whose caps count as round.
     pub axis: Vec3<T>,
     pub radius: T,
     /// Which caps are flat.
@@ -40,7 +40,10 @@ pub(crate) struct Link<T: Scalar> {
 impl<T: Scalar> Link<T> {
     #[inline(always)]
     pub(crate) fn new(end: Vec3<T>, radius: T, flat: [T::Mask; 2]) -> Self {
-        Self { end, axis: end.normalised(), radius, flat }
+        // Where the squared length is below the normal numbers, nothing can tell the ends apart.
+        let squared = end.norm_squared();
+        let has_direction = squared.zero().lt(squared * squared.lit(2.0 * T::UNIT_ROUNDOFF));
+        Self { end, axis: Vec3::select(has_direction, end.normalised(), Vec3::zero(radius)), radius, flat }
     }
 
     /// The distance of a point from the solid link, and the link's nearest point (the point itself inside).

@@ -13,11 +13,10 @@
 //! plane of the cap; the distance from the axis is convex along that way with its least value at p*, so it
 //! does not shrink after the crossing, and the disc is no farther from the crossing than the link from p.
 //!
-//! Rounding: to take case 1 where the truth is an end costs no more than the rounding of F. To take case 2
-//! where the truth lies inside would cost far more when the link touches; `segment_triangle` therefore makes s
-//! exact near the ends, and the distance between p* and the link, in closed form, is always a candidate. Both ends of a
-//! link that is shorter than the rounding of F are equally near, and either may be taken: p* tells which of them it
-//! lies beyond.
+//! Rounding: `segment_triangle` makes s exact near the ends. Where a link is so short that both ends are equally
+//! near as far as rounding can tell, s may name the wrong one, so an end also counts where p* lies beyond it. In
+//! case 2 the distance between p* and the link, in closed form, is a candidate beside the disc's: both are distances
+//! to points of the link, so that the lesser is right wherever either is.
 
 use super::point_modified_cylinder::Link;
 use super::{
@@ -29,7 +28,8 @@ use super::{
 /// `flat` says which of the two caps are flat.
 ///
 /// `point1` lies on the triangle and `point2` in the link. Where the two meet, both are a common point.
-/// A link of length 0 has no direction: its caps count as round.
+/// A link of length 0, or of one whose square falls below the range beside the problem's extent (1e-19 of it in
+/// `f32`, 1e-154 in `f64`), has no direction: its caps count as round.
 #[inline(always)]
 pub fn triangle_modified_cylinder<T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -86,10 +86,11 @@ impl<T: Scalar> Axial<T> {
         let axis = segment_triangle::from_start(link.end, face);
         let (zero, one) = (axis.s.zero(), axis.s.one());
         let has_axis = zero.lt(link.axis.norm_squared());
-        let (at_start, at_end) = (axis.s.le(zero), one.le(axis.s));
-        let past_end = at_start & zero.lt((axis.on_triangle - link.end).dot(link.axis));
-        let past_start = at_end & axis.on_triangle.dot(link.axis).lt(zero);
-        let (at_start, at_end) = ((at_start & !past_end) | past_start, (at_end & !past_start) | past_end);
+        // Both ends of a short link may be as near as rounding can tell; then the end that p* is beyond decides.
+        let before_start = axis.on_triangle.dot(link.axis).lt(zero);
+        let beyond_end = zero.lt((axis.on_triangle - link.end).dot(link.axis));
+        let at_start = before_start | (axis.s.le(zero) & !beyond_end);
+        let at_end = beyond_end | (one.le(axis.s) & !before_start);
         Self {
             axis_squared: axis.squared,
             on_triangle: axis.on_triangle,

@@ -9,7 +9,7 @@
 use super::probe::check_vertex;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
-use crate::robot::{COORDINATE_LIMIT, Cap, Chain, ModifiedCylinder, distance_to_segment};
+use crate::robot::{COORDINATE_LIMIT, Cap, Chain, ModifiedCylinder, distance_to_segment, has_direction};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -145,7 +145,7 @@ impl Placed {
         if !(largest([start, end]) <= COORDINATE_LIMIT) {
             return Err(ProximityError::OutOfRange { link: number, limit: COORDINATE_LIMIT });
         }
-        let flat = link.caps().map(|cap| cap == Cap::Flat && start != end);
+        let flat = link.caps().map(|cap| cap == Cap::Flat && has_direction(start, end, link.radius()));
         Ok(Self { start, end, radius: link.radius(), flat })
     }
 
@@ -169,7 +169,11 @@ impl Placed {
         let start = self.start * coarse;
         let offset = |p: Vector| p * coarse - start;
         let radius = self.radius * coarse;
-        let fine = largest([self.end, a, b, c].map(offset)).max(radius).power_of_two_to_unity();
+        let extent = largest([self.end, a, b, c].map(offset)).max(radius);
+        if extent == 0.0 {
+            return Certificate { lower: 0.0, upper: 0.0 }; // one point
+        }
+        let fine = extent.power_of_two_to_unity();
         let local = |p: Vector| {
             let [x, y, z] = (p * coarse).to_array();
             let exact = |x: Real, from: Real| (Number::from(x) - from.into()) * fine.into();

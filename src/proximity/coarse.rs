@@ -83,6 +83,11 @@ impl<E: Lane> CoarseLink<E> {
         }
         let along = end - start;
         let length = along.length();
+        // A link too short for its flat caps in this precision is one for double precision alone.
+        let squared = E::round(length) * E::round(length);
+        if flat.contains(&true) && !squared.zero().lt(squared * squared.lit(2.0 * E::UNIT_ROUNDOFF)) {
+            return None;
+        }
         // The mesh's own rounding, where it lies far from the origin, is that of double precision.
         let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach);
         Some(Self {

@@ -254,6 +254,8 @@ impl Descent<'_> {
         let mut candidates = std::mem::take(&mut self.scratch.candidates);
         candidates.retain(|candidate| candidate.0 < quest.limit);
         candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        // A leaf that is not full repeats its last triangle.
+        candidates.dedup_by_key(|candidate| candidate.1);
         for &(distance, triangle) in &candidates {
             if distance >= quest.limit || quest.bound <= 0.0 {
                 break;

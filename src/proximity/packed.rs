@@ -112,7 +112,8 @@ impl<L: Pack> PackedLink<L> {
         let v = self.offset_from_axis(centre);
         let foot = centre - v;
         let ahead = v.dot(a - foot).min(v.dot(b - foot)).min(v.dot(c - foot)).max(limit.zero());
-        L::bits((ahead * ahead).lt(limit * limit * v.norm_squared()))
+        // A centre on the axis rules nothing out, nor does what falls below the range.
+        L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
     }
 
     /// Which triangles may be nearer than the bound whose axis limit is `limit`.

@@ -63,7 +63,7 @@ impl Probe {
         } else {
             axial.with_caps(&self.link, &face)
         };
-        (closest.distance < bound).then_some(closest)
+        (closest.distance < bound).then(|| closest.met())
     }
 
     /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
@@ -80,11 +80,12 @@ impl Probe {
     pub(crate) fn closest(&self, triangle: [Vector; 3]) -> Closest<f64> {
         let face = Face::new(self.local(triangle));
         let axial = Axial::new(&self.link, &face);
-        if axial.beyond_flat_cap() {
+        let closest = if axial.beyond_flat_cap() {
             axial.with_caps(&self.link, &face)
         } else {
             axial.without_caps(&self.link)
-        }
+        };
+        closest.met()
     }
 
     fn local(&self, triangle: [Vector; 3]) -> [Vec3<f64>; 3] {

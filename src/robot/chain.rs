@@ -1,7 +1,7 @@
 //! A robot as a chain of links.
 
 use super::envelope::{self, Run};
-use super::modified_cylinder::{check_points, check_radii};
+use super::modified_cylinder::{check_points, check_radii, has_direction};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Real, Vector};
@@ -142,7 +142,8 @@ impl Chain {
 
     /// Leaves out the segments without length; radii and caps are per segment.
     fn assemble(points: &[Vector], radii: &[Real], caps: &[[Cap; 2]]) -> Result<Self, RobotError> {
-        let with_length: Vec<_> = (0..radii.len()).filter(|&k| points[k] != points[k + 1]).collect();
+        let with_length: Vec<_> =
+            (0..radii.len()).filter(|&k| has_direction(points[k], points[k + 1], radii[k])).collect();
         if with_length.is_empty() {
             return Err(RobotError::AllPointsEqual);
         }

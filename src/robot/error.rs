@@ -33,9 +33,9 @@ pub enum RobotError {
         /// The largest radius accepted.
         limit: Real,
     },
-    /// A flat cap has no direction on a link of length zero.
+    /// A flat cap has no direction on a link without length.
     #[error(
-        "the link from point {index} has length 0, so the direction of its flat cap is undefined; \
+        "the link from point {index} has length 0 or nearly so, and the direction of its flat cap is undefined; \
          use two round caps (a ball) or move one end point"
     )]
     FlatCapWithoutAxis {

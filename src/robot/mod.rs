@@ -16,6 +16,6 @@ pub use cap::Cap;
 pub use chain::Chain;
 pub(crate) use envelope::{Envelope, Run, distance_to_segment};
 pub use error::RobotError;
-pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
+pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub use simplify::simplify;

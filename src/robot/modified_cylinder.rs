@@ -34,11 +34,11 @@ impl ModifiedCylinder {
     ///
     /// # Errors
     /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap is flat
-    /// although the length is 0.
+    /// although the length is 0, or vanishes beside the radius (2^-400 of it).
     pub fn new(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Result<Self, RobotError> {
         check_points(&[start, end])?;
         check_radii(&[radius])?;
-        if start == end && caps != [Cap::Round; 2] {
+        if !has_direction(start, end, radius) && caps != [Cap::Round; 2] {
             return Err(RobotError::FlatCapWithoutAxis { index: 0 });
         }
         Ok(Self { start, end, radius, caps })
@@ -96,8 +96,16 @@ impl ModifiedCylinder {
     /// holds the link whichever way its lost axis pointed.
     pub fn transformed(&self, pose: &Pose) -> Self {
         let (start, end) = (pose * self.start, pose * self.end);
-        Self { start, end, caps: if start == end { [Cap::Round; 2] } else { self.caps }, ..*self }
+        let caps = if has_direction(start, end, self.radius) { self.caps } else { [Cap::Round; 2] };
+        Self { start, end, caps, ..*self }
     }
+}
+
+/// Whether a link is long enough for flat caps. Where its length is 2^-400 of its radius, its square would vanish in
+/// the narrow phase.
+pub(crate) fn has_direction(start: Vector, end: Vector, radius: Real) -> bool {
+    const LEAST: Real = Real::from_bits((1023 - 400) << 52);
+    (end - start).abs().max_element() > radius * LEAST
 }
 
 impl TryFrom<&Capsule> for ModifiedCylinder {

@@ -1,0 +1,13 @@
+//! What stands behind the reference, a chapter at a time.
+
+#[doc = include_str!("../docs/book/shape.md")]
+pub mod shape {}
+
+#[doc = include_str!("../docs/book/queries.md")]
+pub mod queries {}
+
+#[doc = include_str!("../docs/book/certificates.md")]
+pub mod certificates {}
+
+#[doc = include_str!("../docs/book/limits.md")]
+pub mod limits {}

@@ -1,0 +1,48 @@
+//! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something (fuzz/corpus).
+
+#[path = "../fuzz/bodies/mod.rs"]
+mod bodies;
+mod common;
+#[path = "../examples/scene/mod.rs"]
+mod scene;
+
+use common::Random;
+use std::fs;
+use std::path::Path;
+
+fn try_bytes(name: &str, body: fn(&[u8]), count: usize) {
+    let mut random = Random::new(1);
+    for _ in 0..count {
+        let bytes: Vec<_> = (0..random.below(400)).map(|_| random.bits() as u8).collect();
+        body(&bytes);
+    }
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(name);
+    for entry in fs::read_dir(corpus).expect("a corpus").map(|entry| entry.expect("an entry")) {
+        body(&fs::read(entry.path()).expect("a file"));
+    }
+}
+
+#[test]
+fn link_triangle() {
+    try_bytes("link_triangle", bodies::link_triangle, 3000);
+}
+
+#[test]
+fn chain_mesh() {
+    try_bytes("chain_mesh", bodies::chain_mesh, 1000);
+}
+
+#[test]
+fn constructors() {
+    try_bytes("constructors", bodies::constructors, 3000);
+}
+
+#[test]
+fn mesh_file() {
+    try_bytes("mesh_file", bodies::mesh_file, 3000);
+}
+
+#[test]
+fn root_finders() {
+    try_bytes("root_finders", bodies::root_finders, 2000);
+}
