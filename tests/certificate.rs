@@ -201,6 +201,6 @@ fn the_flat_cap_of_a_link_shorter_than_rounding_decides() {
             assert!(error <= 16.0 * T::UNIT * 12.0, "{length}: {distance}");
         }
     }
-    [1e-17, 1e-20, 1e-30].map(check::<f64>);
-    [1e-9, 1e-12, 1e-16].map(check::<f32>);
+    [1e-17, 1e-20, 1e-30].into_iter().for_each(check::<f64>);
+    [1e-9, 1e-12, 1e-16].into_iter().for_each(check::<f32>);
 }
