@@ -1,26 +1,89 @@
 //! What docs/ACCURACY.md says of this crate is what this crate computes.
 
-#[path = "../examples/scene/accuracy.rs"]
-mod accuracy;
 mod common;
+#[path = "../examples/accuracy/extremes/mod.rs"]
+mod extremes;
+#[path = "../examples/scene/levels.rs"]
+mod levels;
+#[path = "../examples/accuracy/reference.rs"]
+mod reference;
+
+use extremes::measure::{Measured, Measurement, measure, problems, range};
+use extremes::{EACH, LARGEST, engines, tables};
+
+/// The part of the page between two marks.
+fn written(mark: &str) -> &'static str {
+    let page = include_str!("../docs/ACCURACY.md");
+    let (_, rest) = page.split_once(&format!("<!-- {mark} -->\n")).expect("where the tables begin");
+    rest.split_once(&format!("<!-- /{mark} -->")).expect("where the tables end").0
+}
 
 /// The kernels are scalar IEEE arithmetic, so the numbers agree to the last digit on any machine. An error that
 /// grew is a fault, one that shrank is news: either way the tables are to be written again, and looked at.
-#[test]
-fn the_written_errors_are_the_measured_ones() {
-    let written = include_str!("../docs/ACCURACY.md");
-    let (_, ours) = written.split_once("<!-- ours -->\n").expect("the start of this crate's tables");
-    let (ours, _) = ours.split_once("<!-- /ours -->").expect("the end of this crate's tables");
-    let measured = accuracy::tables(&common::distance_cases());
-    let differs = ours.lines().zip(measured.lines()).find(|(written, measured)| written != measured);
+fn assert_same(written: &str, measured: &str) {
+    let differs = written.lines().zip(measured.lines()).find(|(written, measured)| written != measured);
     if let Some((written, measured)) = differs {
         panic!(
             "docs/ACCURACY.md says\n{written}\nbut measured is\n{measured}\n\
              `cargo run --release --example accuracy` writes the tables again"
         );
     }
-    assert_eq!(ours.lines().count(), measured.lines().count());
+    assert_eq!(written.lines().count(), measured.lines().count());
+}
+
+#[test]
+fn the_written_errors_are_the_measured_ones() {
+    let measured = reference::tables(&common::distance_cases());
+    assert_same(written("ours"), &measured);
     assert!(measured.lines().count() > 200, "every kind and category has a row");
+}
+
+/// Of each line of the file: scalar cells as they are, the cells of an instruction set of this machine as upper bounds.
+fn assert_lines(written: &[&str], measurement: &Measurement) {
+    let measured = tables::lines(measurement, |_, _| "-,-".into());
+    assert_eq!(written.len(), measured.len());
+    for (written, measured) in written.iter().zip(&measured) {
+        let [written_cells, cells] = [*written, measured].map(|line| line.split(',').collect::<Vec<_>>());
+        assert_eq!(
+            written_cells[..6],
+            cells[..6],
+            "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}"
+        );
+        for (bound, cell) in written_cells.iter().zip(&cells).skip(6).take(2 * tables::LEVELS.len()) {
+            if let (Ok(bound), Ok(cell)) = (bound.parse::<f64>(), cell.parse::<f64>()) {
+                assert!(cell <= bound, "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}");
+                assert!(bound <= 16.0, "{written}");
+            }
+        }
+        assert!(cells[5] == "-" || cells[5].parse::<f64>().is_ok_and(|worst| worst <= 16.0), "{measured}");
+    }
+}
+
+fn measured<T: Measured>() -> Measurement {
+    measure(&problems::<T>(EACH), &levels::levels())
+}
+
+#[test]
+fn the_written_extremes_are_the_measured_ones() {
+    let (double, single) = (measured::<f64>(), measured::<f32>());
+    let ranges = [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])];
+    assert_same(written("extremes"), &tables::tables(&double, &single, ranges));
+    let file: Vec<_> = include_str!("../docs/accuracy.csv").lines().collect();
+    assert_eq!(file[0], tables::head());
+    let (double_lines, single_lines) = file[1..].split_at((file.len() - 1) / 2);
+    assert_lines(double_lines, &double);
+    assert_lines(single_lines, &single);
+}
+
+#[test]
+fn every_engine_is_exact_at_the_extremes() {
+    let errors = engines::measure(&problems::<f64>(4), &levels::levels());
+    assert!(errors.len() > 2 * levels::levels().len());
+    for (engine, errors) in errors {
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        println!("{engine}: {worst:.2} in {}", errors.len());
+        assert!(errors.len() > 100 && worst <= 16.0, "{engine}: {worst} of {}", errors.len());
+    }
 }
 
 #[test]

@@ -11,30 +11,6 @@ use common::problems::Family;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 
-/// What a pair is made of, for its extent: the points, and whether it has a radius.
-fn parts<T: Precision>(input: &Input<T>) -> [(Vec<Vector>, bool); KERNELS.len()] {
-    let [a, b, c] = input.triangle.map(vector);
-    let (start, end) = (vector(input.start), vector(input.end));
-    let link = || (vec![a, b, c, start, end], true);
-    [
-        (vec![start, end, a, b], false),
-        (vec![end, a, b, c], false),
-        (vec![start, end, a, b, c], false),
-        (vec![a, end], true),
-        (vec![a, b, end], true),
-        (vec![a, end], true),
-        (vec![a, b, c, end], true),
-        (vec![a, start, end], true),
-        (vec![a, start, end], true),
-        (vec![a, start, end], true),
-        link(),
-        link(),
-        link(),
-        link(),
-        link(),
-    ]
-}
-
 fn exact<T: Precision>(number: T) -> DoubleDouble {
     DoubleDouble::from(number.into())
 }
@@ -99,13 +75,12 @@ fn check<T: Precision>(input: &Input<T>, worst: &mut [f64; KERNELS.len()], seen:
     let directions = directions(&precise, &proofs);
     let answers = input.answers();
     let disc_has_normal = vector(input.disc_normal) != Vector::ZERO;
-    for (kernel, (points, has_radius)) in parts(input).iter().enumerate() {
+    for (kernel, (points, radius)) in input.parts().iter().enumerate() {
         if !disc_has_normal && KERNELS[kernel].ends_with("disc") {
             continue;
         }
-        let radius = if *has_radius { input.radius.into() } else { 0.0 };
-        let extent = extent(points, radius);
-        let far = points.iter().map(|p| p.abs().max_element()).fold(radius, f64::max);
+        let extent = extent(points, *radius);
+        let far = points.iter().map(|p| p.abs().max_element()).fold(*radius, f64::max);
         let (unit, place) = (T::UNIT * extent, T::UNIT * (extent + far));
         let (shapes, closest) = (&shapes[kernel], &answers[kernel]);
         let fail = |what: &str, error: f64| {
@@ -207,4 +182,25 @@ fn a_lattice_segment_that_passes_just_inside_the_rim() {
     let single = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);
     let single = segment_disc([a, a + e].map(single), single(centre), single(normal), 0.5).distance;
     assert!((f64::from(single) - expected).abs() <= 16.0 * f32::UNIT * 3.0, "{single}");
+}
+
+/// Both ends of a link far shorter than the rounding of its distance are equally near. The answer must be that of the
+/// end that faces the triangle: here a flat cap of radius 1 under the plane z = 1 + x / 2, whose nearest point is the
+/// rim's (-1, 0, 0), at 0.5 / sqrt(1.25).
+#[test]
+fn the_flat_cap_of_a_link_shorter_than_rounding_decides() {
+    fn check<T: Precision>(length: f64) {
+        let point = |x, y, z| T::vec3(Vector::new(x, y, z));
+        let triangle = [point(-5.0, -4.0, -1.5), point(4.0, -4.0, 3.0), point(-0.5, 8.0, 0.75)];
+        let (low, high) = (point(0.0, 0.0, 0.0), point(0.0, 0.0, length));
+        let radius = T::from_f64(1.0);
+        let forward = triangle_modified_cylinder(triangle, low, high, radius, [false, true]);
+        let backward = triangle_modified_cylinder(triangle, high, low, radius, [true, false]);
+        for distance in [forward, backward].map(|closest| closest.distance.into()) {
+            let error = (distance - 0.2_f64.sqrt()).abs();
+            assert!(error <= 16.0 * T::UNIT * 12.0, "{length}: {distance}");
+        }
+    }
+    [1e-17, 1e-20, 1e-30].into_iter().for_each(check::<f64>);
+    [1e-9, 1e-12, 1e-16].into_iter().for_each(check::<f32>);
 }

@@ -1,7 +1,7 @@
 //! Every instruction set of this machine gives the scalar's answers, lane by lane.
 
 use super::*;
-use crate::distance::{Vec3, segment_disc, triangle_modified_cylinder};
+use crate::distance::{Kernel, Vec3, at_level, segment_disc, triangle_modified_cylinder};
 use fearless_simd::{Level, dispatch};
 
 fn levels() -> Vec<Level> {
@@ -29,52 +29,34 @@ fn numbers(count: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-const PROBLEM: usize = 17;
-
 /// Distances of link and triangle, and of segment and disc, for a problem of 17 numbers.
-#[inline(always)]
-fn distances<T: Scalar>(number: impl Fn(usize) -> T, zero: T) -> [T; 2] {
-    let point = |i: usize| Vec3::new(number(i), number(i + 1), number(i + 2));
-    let radius = number(15).abs() * number(15).lit(0.25);
-    let flat = [zero.lt(number(16)), zero.lt(number(15))];
-    let triangle = [point(0), point(3), point(6)];
-    [
-        triangle_modified_cylinder(triangle, point(9), point(12), radius, flat).distance,
-        segment_disc([point(0), point(3)], point(9), point(12), radius).distance,
-    ]
-}
+struct Distances;
 
-#[inline(always)]
-fn in_lanes<L: Pack>(token: L::Token, numbers: &[L::Element], out: &mut [[L::Element; 2]])
-where
-    L::Element: Default,
-{
-    for first in (0..out.len()).step_by(L::LANES) {
-        let gather = |i: usize| {
-            let lanes: Vec<_> = (0..L::LANES).map(|lane| numbers[(first + lane) * PROBLEM + i]).collect();
-            L::load(token, &lanes)
-        };
-        let found = distances(gather, L::splat(token, L::Element::default()));
-        for (kind, pack) in found.into_iter().enumerate() {
-            let mut lanes = vec![L::Element::default(); L::LANES];
-            pack.store(&mut lanes);
-            for (lane, distance) in lanes.into_iter().enumerate() {
-                out[first + lane][kind] = distance;
-            }
-        }
+impl Kernel<17, 2> for Distances {
+    #[inline(always)]
+    fn run<T: Scalar>(number: [T; 17]) -> [T; 2] {
+        let point = |i: usize| Vec3::new(number[i], number[i + 1], number[i + 2]);
+        let radius = number[15].abs() * number[15].lit(0.25);
+        let zero = radius.zero();
+        let flat = [zero.lt(number[16]), zero.lt(number[15])];
+        let triangle = [point(0), point(3), point(6)];
+        [
+            triangle_modified_cylinder(triangle, point(9), point(12), radius, flat).distance,
+            segment_disc([point(0), point(3)], point(9), point(12), radius).distance,
+        ]
     }
 }
 
-fn compare<E: Lane + Into<f64>>() {
+fn compare<E: Lane>() {
     let count = 4096;
-    let numbers: Vec<E> = numbers(count * PROBLEM, 5).into_iter().map(E::round).collect();
-    let scalar: Vec<_> =
-        (0..count).map(|problem| distances(|i| numbers[problem * PROBLEM + i], E::default())).collect();
+    let numbers = numbers(count * 17, 5);
+    let problems: Vec<[E; 17]> =
+        numbers.as_chunks().0.iter().map(|problem: &[f64; 17]| problem.map(E::round)).collect();
+    let scalar: Vec<_> = problems.iter().map(|&problem| Distances::run(problem)).collect();
     let touching = scalar.iter().filter(|d| d[0].into() == 0.0).count();
     assert!(touching > count / 20 && touching < count / 2, "{touching}");
     for level in levels() {
-        let mut packed = vec![[E::default(); 2]; count];
-        dispatch!(level, simd => in_lanes::<E::Pack<_>>(simd, &numbers, &mut packed));
+        let packed = at_level::<Distances, E, 17, 2>(level, &problems);
         for (packed, scalar) in packed.iter().zip(&scalar) {
             for (packed, scalar) in packed.iter().zip(scalar) {
                 let error = ((*packed).into() - (*scalar).into()).abs();
@@ -107,7 +89,7 @@ where
     })
 }
 
-fn compare_helpers<E: Lane + Into<f64>>(exponents: std::ops::Range<i32>) {
+fn compare_helpers<E: Lane>(exponents: std::ops::Range<i32>) {
     for exponent in exponents {
         for mantissa in [1.0, 1.1, 1.5, 1.99] {
             let value = E::round(mantissa * 2.0_f64.powi(exponent));

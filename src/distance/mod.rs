@@ -16,6 +16,7 @@
 //! assert_eq!(round.distance, 0.5);
 //! ```
 
+mod at_level;
 mod bounds;
 mod disc_solver;
 mod double_double;
@@ -41,6 +42,8 @@ pub(crate) use segment_disc::Line;
 pub(crate) use triangle_disc::pack_from_centre as pack_disc;
 pub(crate) use triangle_modified_cylinder::Axial;
 
+#[doc(hidden)] // for the comparison of instruction sets
+pub use at_level::{Kernel, at_level};
 pub use disc_solver::{Convex, DiscSolver};
 pub use double_double::DoubleDouble;
 pub use plane_disc::plane_disc;

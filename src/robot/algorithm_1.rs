@@ -2,10 +2,15 @@
 //!
 //! A round end fills the wedge that opens between two links where the centreline bends. But it also reaches one
 //! radius along the tube, and must not stick out of a face that the tube really has: its two ends, and each place
-//! where a thicker tube begins. So one walk goes along the centreline with the last such face as its *limit*. A
-//! link that begins thicker than the link before has a face there, which becomes the limit. Any other link may
-//! begin round if its start is at least one radius away from the limit. A second walk comes back from the tip and
-//! treats the links' other ends in the same way.
+//! where a thicker tube begins. So one walk goes along the centreline with the last such face as its *limit*, and
+//! decides how each link begins:
+//!
+//! 1. **The first link** begins with a face, the first limit.
+//! 2. **A thicker link** than the one before begins with a face too, which becomes the limit.
+//! 3. **Room for a ball**: any other link begins round if its start is at least one radius away from the limit,
+//! 4. **Too near**: and flat if it is not.
+//!
+//! A second walk comes back from the tip and treats the links' other ends in the same way.
 //!
 //! The test is on the chord between limit and joint, as printed, without the paper's division: 0/0 at radius 0
 //! would leave the cap of a wire undecided. Equal radii may be round. A thick tube shorter than two radii keeps

@@ -1,6 +1,6 @@
 //! The errors of the narrow phase on the reference cases, as tables.
 //!
-//! `examples/accuracy.rs` writes them, `tests/accuracy.rs` computes them again. The kernels use only operations
+//! This example writes them, `tests/accuracy.rs` computes them again. The kernels use only operations
 //! that IEEE 754 rounds correctly, so these tables are the same on every machine. Both programs have the
 //! reference cases in a module `common`.
 

@@ -1,87 +1,26 @@
-//! Measures the narrow phase, and parry's, on the reference cases: `cargo run --release --example accuracy`.
-//!
-//! Writes `docs/ACCURACY.md`. It tells how far this crate's distances are from the reference, for every kind of
-//! pair and category of case, and how far those of parry's `query::distance` are for the same links: as given, and
-//! in another unit of length.
+//! parry's answers beside this crate's.
 
-#[path = "scene/accuracy.rs"]
-mod accuracy;
-#[path = "../tests/common/mod.rs"]
-mod common;
-
-use accuracy::{categories, distance, median_and_worst, tables};
-use common::{Case, distance_cases};
+use crate::common::Case;
+use crate::extremes::measure::{Problem, scaled};
+use crate::extremes::problems::Extreme;
+use crate::reference::{categories, distance, median_and_worst};
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Capsule, Cylinder, Triangle};
 use std::fmt::Write;
-use std::process::ExitCode;
-
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/ACCURACY.md");
-
-const INTRODUCTION: &str = "# Accuracy
-
-Written by `cargo run --release --example accuracy`. `cargo test --test accuracy` computes this crate's errors again and
-fails if one of them differs from what is written here.
-
-The 2,050 reference cases (`tests/data/distance.jsonl`) were computed with far more digits than a double has. They
-include what usually goes wrong: contact, near-parallel edges, needles, triangles without area, wires, huge and tiny
-sizes, and problems far from the origin.
-
-## This crate
-
-The error is the difference from the reference distance, in units of u x extent. u is 2^-53 in double precision (f64)
-and 2^-24 in single precision (f32). The extent is the largest difference between two coordinates of the problem, or
-its radius. An error of 1 means one rounding of a number as large as the problem. The crate promises at most 16.
-Single precision is measured on the cases whose input it can hold. Of two errors in the middle, the median is the
-smaller. The numbers do not depend on the machine, because the kernels use only operations that IEEE 754 rounds
-correctly.
-
-<!-- ours -->
-";
-
-const COMPARISON: &str = "<!-- /ours -->
-
-## Beside parry
-
-The same triangles and links, asked of `parry::query::distance`: capsules and cylinders, which parry has too. Errors are
-relative to the extent here. *As given*, nine in ten cases have an extent between 1 and 250. *x 1e-3* is the same
-problem with all lengths multiplied by 1e-3, as when millimetres become metres; that rounds the input once more, for
-parry and for this crate. parry stops on absolute tolerances, so its worst answers are those of the smallest problems.
-
-An *over-estimate* reports more clearance than there is, by more than 1e-9 of the extent: the unsafe side. The last
-column is the largest over-estimate relative to the true distance, among the cases whose distance is at least 1/1000 of
-the extent.
-
-";
-
-fn main() -> ExitCode {
-    let cases = distance_cases();
-    let text = format!("{INTRODUCTION}{}{COMPARISON}{}", tables(&cases), comparison(&cases));
-    match std::fs::write(FILE, text) {
-        Ok(()) => {
-            println!("{} cases, tables: {FILE}", cases.len());
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("error: cannot write {FILE} ({error})");
-            ExitCode::FAILURE
-        }
-    }
-}
+use std::panic::catch_unwind;
 
 /// A way to answer a case after its lengths are multiplied by a factor.
 type Program = fn(&Case, f64) -> f64;
 const PROGRAMS: [(&str, Program); 2] = [("this crate", distance::<f64>), ("parry", parry)];
 const UNITS: [(&str, f64); 2] = [("as given", 1.0), ("x 1e-3", 1e-3)];
 
-/// parry's distance between the triangle and the link of a case.
-fn parry(case: &Case, factor: f64) -> f64 {
-    let point = |p: [f64; 3]| Vector::from(p) * factor;
-    let triangle = Triangle::new(point(case.tri[0]), point(case.tri[1]), point(case.tri[2]));
-    let (start, end, radius) = (point(case.p0), point(case.p1), case.r * factor);
+/// parry's distance between a triangle and a capsule or a cylinder; NaN where it gives none.
+pub fn parry_distance(triangle: [Vector; 3], [start, end]: [Vector; 2], radius: f64, flat: bool) -> f64 {
+    let [a, b, c] = triangle;
+    let triangle = Triangle::new(a, b, c);
     let world = Pose::identity();
-    let answer = if case.flat() == [true; 2] {
+    let answer = if flat {
         // parry's cylinder stands on the y axis.
         let turn = (end - start)
             .try_normalize()
@@ -94,7 +33,89 @@ fn parry(case: &Case, factor: f64) -> f64 {
     answer.map_or(f64::NAN, |answer| answer.distance)
 }
 
-fn comparison(cases: &[Case]) -> String {
+/// parry's distance between the triangle and the link of a case.
+fn parry(case: &Case, factor: f64) -> f64 {
+    let point = |p: [f64; 3]| Vector::from(p) * factor;
+    let ends = [point(case.p0), point(case.p1)];
+    parry_distance(case.tri.map(point), ends, case.r * factor, case.flat() == [true; 2])
+}
+
+/// What parry makes of the extreme problems.
+pub struct Peer {
+    /// For each category, for capsules and cylinders.
+    answers: Vec<(Extreme, bool, Answer)>,
+}
+
+/// One answer of parry.
+struct Answer {
+    /// In units of u x extent, infinite where there was no answer.
+    error: f64,
+    /// More clearance than there is, by over 1e-9 of the extent.
+    is_over: bool,
+}
+
+impl Peer {
+    /// Asks parry about every problem; a panic counts as no answer.
+    pub fn ask(problems: &[Problem<f64>]) -> Self {
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| {}));
+        let mut answers = Vec::new();
+        for problem in problems {
+            let vector = |point| Vector::from_array(<[f64; 3]>::from(point));
+            let input = &problem.input;
+            let ends = [vector(input.start), vector(input.end)];
+            for (kernel, flat) in [(10, false), (12, true)] {
+                let Some(proof) = problem.proofs[kernel] else { continue };
+                let ask = || parry_distance(input.triangle.map(vector), ends, input.radius, flat);
+                let distance = scaled(catch_unwind(ask).unwrap_or(f64::NAN), -problem.exponent);
+                let over = distance - proof.middle.rounded();
+                let is_over = over > 1e-9 * problem.near_one.extents()[kernel];
+                answers.push((problem.extreme, flat, Answer { error: proof.error(distance), is_over }));
+            }
+        }
+        std::panic::set_hook(hook);
+        Self { answers }
+    }
+
+    fn of(&self, extreme: Extreme, flat: bool) -> Option<(f64, f64, usize, usize)> {
+        let here = |(category, caps, _): &&(Extreme, bool, Answer)| *category == extreme && *caps == flat;
+        let answers: Vec<_> = self.answers.iter().filter(here).map(|(.., answer)| answer).collect();
+        let (median, worst) = median_and_worst(answers.iter().map(|answer| answer.error).collect())?;
+        Some((median, worst, answers.iter().filter(|answer| answer.is_over).count(), answers.len()))
+    }
+
+    /// Median and worst error of a line of the file.
+    pub fn cells(&self, extreme: Extreme, kernels: &[usize]) -> String {
+        let flat = match kernels {
+            [10] => false,
+            [12] => true,
+            _ => return "-,-".into(),
+        };
+        self.of(extreme, flat)
+            .map_or("-,-".into(), |(median, worst, ..)| format!("{},{}", digit(median), digit(worst)))
+    }
+
+    /// A row for each category.
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "| category | problems | capsule: median | worst | over-estimates | cylinder: median | worst | \
+             over-estimates |\n|---|---|---|---|---|---|---|---|\n",
+        );
+        for (extreme, name, _) in Extreme::ALL {
+            let row = [false, true].map(|flat| self.of(extreme, flat));
+            if let [Some(capsule), Some(cylinder)] = row {
+                write!(text, "| {name} | {} |", capsule.3).ok();
+                for (median, worst, over, _) in [capsule, cylinder] {
+                    write!(text, " {} | {} | {over} |", digit(median), digit(worst)).ok();
+                }
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+pub fn comparison(cases: &[Case]) -> String {
     let is_link = |case: &&Case| case.kind.contains("capsule") || case.kind.contains("cylinder");
     let alike = |case: &&Case, flat| is_link(case) && case.flat() == [flat; 2];
     let capsules: Vec<_> = cases.iter().filter(|case| alike(case, false)).collect();
@@ -178,5 +199,11 @@ impl std::fmt::Display for Total {
 
 /// One digit and the power of ten.
 fn digit(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.0e}") }
+    if value == 0.0 {
+        "0".into()
+    } else if value.is_infinite() {
+        "no answer".into()
+    } else {
+        format!("{value:.0e}")
+    }
 }

@@ -1,0 +1,12 @@
+//! How far the numbers hold: the kernels and engines on seeded problems that are driven to an extreme.
+
+pub mod engines;
+pub mod measure;
+pub mod problems;
+pub mod tables;
+
+/// How many problems there are for every power of ten.
+pub const EACH: usize = 12;
+
+/// The largest size of the tables' range in f64 and f32, as a power of two: distances beyond could overflow.
+pub const LARGEST: [i32; 2] = [1019, 123];

@@ -1,0 +1,51 @@
+//! Any kernel on packs of an instruction set of one's choice: how the accuracy of packs is measured.
+
+use super::Scalar;
+use super::lanes::{Lane, Pack};
+use fearless_simd::{Level, dispatch};
+
+/// What is run: one text for single numbers and for packs of them.
+pub trait Kernel<const IN: usize, const OUT: usize> {
+    /// The numbers of a problem to those of its answer.
+    fn run<T: Scalar>(problem: [T; IN]) -> [T; OUT];
+}
+
+/// The answers to all problems, computed a pack at a time.
+#[allow(private_bounds)] // f32 or f64
+pub fn at_level<K: Kernel<IN, OUT>, E: Lane, const IN: usize, const OUT: usize>(
+    level: Level,
+    problems: &[[E; IN]],
+) -> Vec<[E; OUT]> {
+    let mut answers = Vec::with_capacity(problems.len());
+    dispatch!(level, simd => on_packs::<K, E::Pack<_>, IN, OUT>(simd, problems, &mut answers));
+    answers
+}
+
+#[inline(always)]
+fn on_packs<K: Kernel<IN, OUT>, L: Pack, const IN: usize, const OUT: usize>(
+    token: L::Token,
+    problems: &[[L::Element; IN]],
+    answers: &mut Vec<[L::Element; OUT]>,
+) where
+    L::Element: Lane,
+{
+    let mut lanes = vec![L::Element::default(); L::LANES];
+    for pack in problems.chunks(L::LANES) {
+        let problem = std::array::from_fn(|number| {
+            // The last pack is filled up with its last problem.
+            for (lane, value) in lanes.iter_mut().enumerate() {
+                *value = pack[lane.min(pack.len() - 1)][number];
+            }
+            L::load(token, &lanes)
+        });
+        let answer = K::run(problem);
+        let first = answers.len();
+        answers.resize(first + pack.len(), [L::Element::default(); OUT]);
+        for (number, value) in answer.into_iter().enumerate() {
+            value.store(&mut lanes);
+            for (answer, value) in answers[first..].iter_mut().zip(&lanes) {
+                answer[number] = *value;
+            }
+        }
+    }
+}
