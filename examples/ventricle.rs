@@ -10,12 +10,13 @@ mod scene;
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, simplify};
+use scene::anatomy::Anatomy;
 use scene::ctr::{Centreline, Joints, Robot, three_tubes};
-use scene::{command, figure, mesh_file, steer, timing, ventricle};
+use scene::{command, figure, steer, timing, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -23,32 +24,8 @@ use std::time::Duration;
 /// Steer a concentric tube robot into a brain ventricle and measure its clearance, link by link.
 #[derive(Parser)]
 struct Options {
-    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
-    #[arg(long, value_name = "FILE")]
-    mesh: Option<PathBuf>,
-
-    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
-    #[arg(
-        long,
-        value_name = "FACTOR",
-        default_value_t = 1.0,
-        requires = "mesh",
-        allow_negative_numbers = true
-    )]
-    scale: Real,
-
-    /// Triangles of the generated ventricle, about
-    #[arg(long, value_name = "COUNT", default_value_t = ventricle::DEFAULT_TRIANGLES as u32, conflicts_with = "mesh",
-          value_parser = clap::value_parser!(u32).range(ventricle::DEFAULT_TRIANGLES as i64..=20_000_000))]
-    triangles: u32,
-
-    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    base: Option<Vector>,
-
-    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    axis: Option<Vector>,
+    #[command(flatten)]
+    anatomy: Anatomy,
 
     /// Links with two round caps, with two flat caps, or each cap as Algorithm 1 says
     #[arg(long, value_enum, default_value_t = Model::Modified)]
@@ -74,18 +51,6 @@ enum Model {
     Modified,
 }
 
-fn vector(text: &str) -> Result<Vector, String> {
-    let numbers: Result<Vec<Real>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z]) if Vector::new(x, y, z).is_finite() => Ok(Vector::new(x, y, z)),
-        _ => Err("write three numbers, for example 68.6,105.2,104.6".into()),
-    }
-}
-
-fn direction(text: &str) -> Result<Vector, String> {
-    vector(text)?.try_normalize().ok_or("a direction needs a length; write for example 0,0,-1".into())
-}
-
 fn length(text: &str) -> Result<Real, String> {
     match text.parse() {
         Ok(length) if length >= 0.0 && Real::is_finite(length) => Ok(length),
@@ -102,22 +67,17 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn steer(options: &Options) -> Result<(), String> {
-    let (points, triangles) = match &options.mesh {
-        Some(path) => mesh_file::load(path, options.scale)?,
-        None => ventricle::mesh(options.triangles as usize),
-    };
-    let mesh = TriMesh::new(points, triangles).map_err(text)?;
+    let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let mut exhaustive = Exhaustive::<Real>::new(&mesh).map_err(text)?;
     let out = command::picture_path(&options.out, "ventricle.png")?;
 
     let robot = three_tubes();
-    let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
-    let base = if planned { ventricle::entry() } else { placement(options, &mesh)? };
+    let base = options.anatomy.pose(&mesh)?;
     if !steer::is_inside(&mesh, base.translation) {
         eprintln!("note: {} is outside the mesh; --base x,y,z places the robot", show(base.translation));
     }
-    let goal = if planned {
+    let goal = if options.anatomy.is_planned() {
         ventricle::goal()
     } else {
         steer::find_goal(&robot, &mut search, &base).map_err(|none| no_goal(&none, &base))?
@@ -171,20 +131,6 @@ fn steer(options: &Options) -> Result<(), String> {
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
     println!("\npicture: {}", out.display());
     Ok(())
-}
-
-/// The robot's pose as asked for; what is not said is found in the mesh.
-fn placement(options: &Options, mesh: &TriMesh) -> Result<Pose, String> {
-    let base = match (options.base, &options.mesh) {
-        (Some(base), _) => base,
-        (None, None) => ventricle::entry().translation,
-        (None, Some(path)) => steer::deepest_point(mesh).ok_or(format!(
-            "{} encloses nothing, so a start inside cannot be found; name one with --base x,y,z and --axis x,y,z",
-            path.display()
-        ))?,
-    };
-    let axis = options.axis.unwrap_or_else(|| steer::clear_direction(mesh, base));
-    Ok(Pose::from_parts(base, Rot3::from_rotation_arc(Vector::Z, axis)))
 }
 
 fn no_goal(none: &steer::NoGoal, base: &Pose) -> String {
