@@ -8,7 +8,7 @@ use crate::subject::{Model, Subject};
 use crate::ways::{self, text};
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::simplify;
+use parry_continuum::{Chain, simplify};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -17,11 +17,20 @@ const TURNS: usize = 3;
 
 /// Median seconds over the shapes.
 pub struct Times {
-    /// At each tolerance: every way's name, model and time.
-    pub queries: Vec<Vec<(Model, &'static str, f64)>>,
+    /// At each tolerance.
+    pub queries: Vec<Vec<Timed>>,
     pub building: Vec<Building>,
     /// The largest difference of two ways to ask for the same model by this crate, mm.
     pub apart: Real,
+}
+
+/// A way to ask.
+pub struct Timed {
+    pub model: Model,
+    pub way: &'static str,
+    pub links: usize,
+    /// Seconds a query.
+    pub time: f64,
 }
 
 /// What comes before the query, at a tolerance.
@@ -36,11 +45,16 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(text)?;
     pool.install(|| {
         let mut times = Times { queries: Vec::new(), building: Vec::new(), apart: 0.0 };
-        let curve = |joints: &Joints| Stations::even(robot, joints, INPUT_SPACING).curve(robot, joints);
+        let curve = |joints: &Joints| {
+            let stations = Stations::even(robot, joints, INPUT_SPACING);
+            (stations.curve(robot, joints), stations.at_faces)
+        };
         let curves: Vec<_> = shapes.iter().map(|joints| [curve(&step_before(joints)), curve(joints)]).collect();
         for tolerance in TOLERANCES {
             times.building.push(building(&curves, tolerance)?);
-            let subject = |curve| Subject::new(curve, tolerance).map_err(text);
+            let subject = |(curve, at_faces): &(Centreline, Vec<usize>)| {
+                Subject::new(curve, at_faces, tolerance).map_err(text)
+            };
             let subjects: Result<Vec<_>, String> =
                 curves.iter().map(|[before, now]| Ok([subject(before)?, subject(now)?])).collect();
             let (rows, apart) = queries(&subjects?, mesh, base)?;
@@ -52,12 +66,11 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
 }
 
 /// The times of every way to ask, and by how much this crate's differ from each other.
-#[allow(clippy::type_complexity, reason = "a list of rows and a number")]
 fn queries(
     subjects: &[[Subject; 2]],
     mesh: &TriMesh,
     base: &Pose,
-) -> Result<(Vec<(Model, &'static str, f64)>, Real), String> {
+) -> Result<(Vec<Timed>, Real), String> {
     let mut rows = Vec::new();
     let mut apart: Real = 0.0;
     let mut first: Vec<(Model, Vec<Real>)> = Vec::new();
@@ -88,20 +101,26 @@ fn queries(
                 None => first.push((way.model, clearances)),
             }
         }
-        rows.push((way.model, way.name, quantile(times, 0.5).unwrap_or(f64::NAN)));
+        let links = subjects.iter().map(|[_, now]| now.chain(way.model).links().len() as f64).collect();
+        rows.push(Timed {
+            model: way.model,
+            way: way.name,
+            links: quantile(links, 0.5).unwrap_or(f64::NAN) as usize,
+            time: quantile(times, 0.5).unwrap_or(f64::NAN),
+        });
     }
     Ok((rows, apart))
 }
 
 /// From the curve to the links, and from the links to the chain.
-fn building(curves: &[[Centreline; 2]], tolerance: Real) -> Result<Building, String> {
+fn building(curves: &[[(Centreline, Vec<usize>); 2]], tolerance: Real) -> Result<Building, String> {
     let (mut links, mut simplifying, mut chaining) = (Vec::new(), Vec::new(), Vec::new());
-    for [_, curve] in curves {
+    for [_, (curve, _)] in curves {
         let begin = Instant::now();
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance).map_err(text)?;
         simplifying.push(begin.elapsed().as_secs_f64());
         let begin = Instant::now();
-        black_box(Model::Modified.chain(&points, &radii).map_err(text)?);
+        black_box(Chain::from_centreline(&points, &radii).map_err(text)?);
         chaining.push(begin.elapsed().as_secs_f64());
         links.push(radii.len() as f64);
     }

@@ -31,15 +31,14 @@ pub fn errors(outcomes: &[Outcome]) -> Vec<[Errors; Model::ALL.len()]> {
 pub fn combinations(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> Vec<Combination> {
     let mut all = Vec::new();
     for (index, ways) in times.queries.iter().enumerate() {
-        for &(model, way, time) in ways {
-            let which = Model::ALL.iter().position(|other| *other == model).unwrap_or(0);
+        for timed in ways {
             all.push(Combination {
-                model,
+                model: timed.model,
                 tolerance: TOLERANCES[index],
-                links: times.building[index].links,
-                way,
-                time,
-                error: errors[index][which].worst(),
+                links: timed.links,
+                way: timed.way,
+                time: timed.time,
+                error: errors[index][timed.model.index()].worst(),
             });
         }
     }

@@ -9,6 +9,7 @@
 //! numbers of shapes.
 
 #[path = "../speed/machine.rs"]
+#[allow(dead_code, reason = "the speed program measures memory too")]
 mod machine;
 #[path = "../scene/mod.rs"]
 mod scene;
@@ -95,7 +96,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let checked = reference::check(&robot, &timed, &mesh, &base)?;
     stage("torsion");
     let some = TWISTED.min(shapes.len());
-    let kinematics = kinematics::chapter(&robot, &shapes[..some], &outcomes[..some], &mesh, &base)?;
+    let (kinematics, torsion_median, torsion_worst) =
+        kinematics::chapter(&robot, &shapes[..some], &outcomes[..some], &mesh, &base)?;
     stage("times");
     let times = clock::time(&robot, &timed, &mesh, &base)?;
 
@@ -124,7 +126,14 @@ fn measure(options: &Options) -> Result<(), String> {
     fs::write(&file, page + "\n" + &shares::chapter(&outcomes) + "\n" + &kinematics)
         .map_err(|error| unwritable(&file, error))?;
     plot::draw(&all, &out.join("tradeoff.svg"))?;
-    quote::in_readme(&guide::text(&command, &all), "tradeoff", &out)?;
+    let guide = guide::text(&guide::Facts {
+        command: &command,
+        all: &all,
+        times: &times,
+        forbidden: shares::forbidden(&outcomes, subject::Model::Capsule),
+        torsion: [torsion_median, torsion_worst],
+    });
+    quote::in_readme(&guide, "tradeoff", &out)?;
     stage("done");
     println!("{}", file.display());
     Ok(())

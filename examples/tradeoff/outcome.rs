@@ -28,6 +28,8 @@ pub struct Outcome {
     pub truth: Real,
     /// Whether the base's face, not what is further out, is nearest to the wall.
     pub at_base: bool,
+    /// Whether it is the base's round cap that is nearest in the model of capsules.
+    pub cap_at_base: bool,
     pub each: [AtTolerance; TOLERANCES.len()],
     /// parry's clearances of capsules and cylinders with all lengths in metres, as millimetres.
     pub metres: [Real; 2],
@@ -36,7 +38,6 @@ pub struct Outcome {
 /// What is known of one shape at one tolerance.
 #[derive(Clone, Copy, Default)]
 pub struct AtTolerance {
-    pub links: usize,
     /// In the order of [`Model::ALL`].
     pub clearances: [Real; Model::ALL.len()],
     /// By how much the rim of a flat face is out of place at most, because the face follows the last link.
@@ -76,21 +77,26 @@ fn outcome(
 ) -> Result<Outcome, String> {
     let chain = reference(robot, joints, REFERENCE_SPACING)?;
     let nearest = search.minimum(&chain, base).map_err(text)?;
-    let curve = Stations::even(robot, joints, INPUT_SPACING).curve(robot, joints);
+    let stations = Stations::even(robot, joints, INPUT_SPACING);
+    let curve = stations.curve(robot, joints);
     let faces = faces(robot, joints);
     let mut outcome = Outcome {
         truth: nearest.distance,
         at_base: base.inverse_transform_point(nearest.on_robot).z < 1e-3,
+        cap_at_base: false,
         each: Default::default(),
         metres: [0.0; 2],
     };
     for (index, (each, tolerance)) in outcome.each.iter_mut().zip(TOLERANCES).enumerate() {
-        let subject = Subject::new(&curve, tolerance).map_err(text)?;
-        each.links = subject.links();
+        let subject = Subject::new(&curve, &stations.at_faces, tolerance).map_err(text)?;
         each.tilt = tilt(&subject, &faces);
         for (clearance, model) in each.clearances.iter_mut().zip(Model::ALL) {
             *clearance = if Model::OURS.contains(&model) {
-                search.minimum(subject.chain(model), base).map_err(text)?.distance
+                let found = search.minimum(subject.chain(model), base).map_err(text)?;
+                if model == Model::Capsule {
+                    outcome.cap_at_base = base.inverse_transform_point(found.on_robot).z < 0.0;
+                }
+                found.distance
             } else {
                 Peer { mesh, model }.clearance(&subject, base)?
             };
@@ -141,7 +147,7 @@ fn faces(robot: &Robot, joints: &Joints) -> Vec<Face> {
 
 /// By how much the rim of a face is out of place, at most.
 fn tilt(subject: &Subject, faces: &[Face]) -> Real {
-    let links = subject.chains[2].links();
+    let links = subject.chain(Model::Modified).links();
     let at = |face: &Face| {
         let ends = |link: &&parry_continuum::ModifiedCylinder| {
             link.radius() == face.radius

@@ -38,15 +38,16 @@ pub fn page(facts: &Facts) -> String {
          The *true* clearance is that of the swept tube with flat faces: a chain of flat links along the true curve, at \
          most {REFERENCE_SPACING} mm long and a hundredth of that at the faces, in f64. Stations twice as close change it \
          by at most {} mm, four times as close by {} mm. Chains by Algorithm 1 at the same stations differ from it by up \
-         to {} mm, because a round cap that has just been admitted behind a face sticks out of it a little.\n\n\
+         to {} mm: a round cap that has just been admitted behind a face can stick out of it, by r - sqrt(r^2 - (r^2 kappa / \
+         2)^2) or {} mm at most.\n\n\
          ## The trade\n\n\
          The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
          thread. Times are medians over the shapes, the chain already built. *Cold*: without the last answers. *Warm*: after \
          a query for the shape a small step earlier (0.1 mm of each extension, 0.01 rad of each angle). The search works \
          in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
-         that precision costs time, not accuracy: here the engines agree to {} mm. parry's programs ask link after link (or \
+         that precision costs time, not accuracy: here the engines differ by at most {:.0e} mm. parry's programs ask link after link (or \
          sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
-         less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n\
+         less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
          ### What geometry predicts\n\n\
@@ -54,7 +55,10 @@ pub fn page(facts: &Facts) -> String {
          the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
          which a chord of sagitta t turns by sqrt(2 t kappa) from the curve's: at a radius r the rim is out of place by r \
          sqrt(2 t kappa), here at most with r = {widest} mm and kappa = {CURVATURE} / mm. A capsule's end reaches r beyond a \
-         flat face: its clearance falls short by up to r, at any tolerance.\n\n{}\n\
+         flat face: its clearance falls short by up to r, at any tolerance.\n\n\
+         *Faces fixed*: two more links, that end 0.3 and 0.01 mm before each face. The last one is so short that the \
+         face has the curve's direction, and the one before ends so near that its tilted end stays behind the face. What \
+         is left is the tolerance.\n\n{}\n\
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),
@@ -62,8 +66,10 @@ pub fn page(facts: &Facts) -> String {
         length(checked.halved),
         length(checked.quartered),
         length(checked.algorithm_1),
-        length(times.apart),
+        length(widest - (widest * widest - (0.5 * widest * widest * CURVATURE).powi(2)).sqrt()),
+        times.apart,
         table(times, errors),
+        base_cap(outcomes),
         front_table(all),
         predictions(outcomes, errors, widest),
         building(times)
@@ -79,10 +85,11 @@ fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
     for (which, model) in Model::ALL.into_iter().enumerate() {
         for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
             let error = &errors[index][which];
+            let links = times.queries[index].iter().find(|timed| timed.model == model);
             let mut cells: Vec<_> = times.queries[index]
                 .iter()
-                .filter(|(of, ..)| *of == model)
-                .map(|(_, _, time)| microseconds(*time))
+                .filter(|timed| timed.model == model)
+                .map(|timed| microseconds(timed.time))
                 .collect();
             // parry has one way, a search without memory.
             cells.resize(4, String::new());
@@ -91,7 +98,7 @@ fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
                 page,
                 "| {} | {tolerance} mm | {} | {} | {} | {} | {} |",
                 model.name(),
-                times.building[index].links,
+                links.map_or(0, |timed| timed.links),
                 cells.join(" | "),
                 signed(error.median),
                 signed(error.over),
@@ -123,24 +130,45 @@ fn front_table(all: &[Combination]) -> String {
 /// What geometry predicts, beside what was measured.
 fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], widest: f64) -> String {
     let mut page = String::from(
-        "| within | face out of place: predicted | found | Z*: worst over | worst under | K: worst over | worst under |\n\
-         |---|---|---|---|---|---|---|\n",
+        "| within | face out of place: predicted | found | Z*: worst over | worst under | Z*, faces fixed: over | under | K: over | under |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
         let found = outcomes.iter().map(|shape| shape.each[index].tilt).fold(0.0, f64::max);
-        let [k, _, modified, ..] = &errors[index];
+        let [k, _, modified, faced, ..] = &errors[index];
         let _ = writeln!(
             page,
-            "| {tolerance} mm | {} | {} | {} | {} | {} | {} |",
+            "| {tolerance} mm | {} | {} | {} | {} | {} | {} | {} | {} |",
             length(widest * (2.0 * tolerance * CURVATURE).sqrt()),
             length(found),
             signed(modified.over),
             signed(modified.under),
+            signed(faced.over),
+            signed(faced.under),
             signed(k.over),
             signed(k.under),
         );
     }
     page
+}
+
+/// What the base's cap does to capsules.
+fn base_cap(outcomes: &[Outcome]) -> String {
+    let free: Vec<_> = outcomes.iter().filter(|shape| shape.truth > 0.0).collect();
+    let others: Vec<_> = free.iter().filter(|shape| !shape.cap_at_base).collect();
+    let k = Model::Capsule.index();
+    let errors = Errors::of(others.iter().map(|shape| shape.each[0].clearances[k] - shape.truth));
+    format!(
+        "In {} of the {} free shapes it is the round cap at the robot's base that is nearest in the model K, where it \
+         reaches back towards the wall around the entry. In the other {} the error of K within {} mm is {} mm in the \
+         median and at worst {} mm.",
+        free.len() - others.len(),
+        free.len(),
+        others.len(),
+        TOLERANCES[0],
+        signed(errors.median),
+        signed(errors.under)
+    )
 }
 
 /// What comes before a query.

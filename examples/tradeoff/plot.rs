@@ -37,8 +37,8 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
         .margin(16)
         .x_label_area_size(44)
         .y_label_area_size(64)
-        // Room for the front's labels on the left and below, and for the legend on the right.
-        .build_cartesian_2d((fast * 0.25..slow * 30.0).log_scale(), (good * 0.4..bad * 2.0).log_scale())?;
+        // Room for the front's labels on the left, and for the legend on the right.
+        .build_cartesian_2d((fast * 0.3..slow * 25.0).log_scale(), (good * 0.4..bad * 2.0).log_scale())?;
     chart
         .configure_mesh()
         .x_desc("microseconds a query of the whole robot (median)")
@@ -65,8 +65,9 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
     }
     for one in &line {
         let style = ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
-        let name = one.model.name().split(',').next().unwrap_or_default();
-        let label = format!("{name} within {} mm, {}", one.tolerance, one.way);
+        let (name, extra) = one.model.name().split_once(',').unwrap_or_default();
+        let name = if one.model == Model::Faced { format!("{name}{extra}") } else { name.into() };
+        let label = format!("{name}, {} mm", one.tolerance);
         let at = EmptyElement::at((one.time * 1e6, one.error));
         chart.draw_series([at + Text::new(label, (-7, 4), style)])?;
     }
@@ -132,7 +133,8 @@ fn colour(model: Model) -> RGBColor {
     match model {
         Model::Capsule => RGBColor(230, 140, 0),
         Model::Cylinder => RGBColor(60, 150, 230),
-        Model::Modified => RGBColor(0, 120, 70),
+        Model::Modified => RGBColor(120, 190, 60),
+        Model::Faced => RGBColor(0, 100, 60),
         Model::ParryCapsule => RGBColor(200, 60, 60),
         Model::ParryCylinder => RGBColor(150, 60, 170),
         Model::Spheres => RGBColor(130, 130, 130),

@@ -11,8 +11,10 @@ const MARGINS: [f64; 2] = [0.0, 0.5];
 /// The tolerances that are shown: fine, middle and coarse.
 const SHOWN: [usize; 3] = [2, 4, 6];
 
-fn at(model: Model) -> usize {
-    Model::ALL.iter().position(|other| *other == model).unwrap_or(0)
+/// The free shapes that a model takes for touching, within the middle tolerance.
+pub fn forbidden(outcomes: &[Outcome], model: Model) -> Share {
+    let free = outcomes.iter().filter(|shape| shape.truth > 0.0);
+    Share::of(free, |shape| shape.each[SHOWN[1]].clearances[model.index()] <= 0.0)
 }
 
 /// The chapter of the page.
@@ -27,8 +29,10 @@ pub fn chapter(outcomes: &[Outcome]) -> String {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            for tolerance in SHOWN {
-                let model_of = |shape: &&Outcome| shape.each[tolerance].clearances[at(model)];
+            // parry's answers are those of K and Z but for what GJK does, which has its own table.
+            for tolerance in if Model::OURS.contains(&model) { &SHOWN[..] } else { &SHOWN[1..2] } {
+                let tolerance = *tolerance;
+                let model_of = |shape: &&Outcome| shape.each[tolerance].clearances[model.index()];
                 let forbids = Share::of(outcomes.iter().filter(|shape| shape.truth > margin), |shape| {
                     model_of(shape) <= margin
                 });
@@ -74,7 +78,7 @@ fn alone(outcomes: &[Outcome]) -> String {
     let pair = |one: Model, other: Model, tolerance: usize| {
         move |shape: &Outcome| {
             let each = &shape.each[tolerance].clearances;
-            (each[at(one)], each[at(other)])
+            (each[one.index()], each[other.index()])
         }
     };
     for tolerance in SHOWN {
@@ -86,7 +90,7 @@ fn alone(outcomes: &[Outcome]) -> String {
     }
     for (index, model) in [Model::Capsule, Model::Cylinder].into_iter().enumerate() {
         let name = format!("GJK: the same in metres, {}", if index == 0 { "Capsule" } else { "Cylinder" });
-        row(&name, METRES_AT, &|shape| (shape.metres[index], shape.each[METRES_AT].clearances[at(model)]));
+        row(&name, METRES_AT, &|shape| (shape.metres[index], shape.each[METRES_AT].clearances[model.index()]));
     }
     page
 }

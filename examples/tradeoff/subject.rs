@@ -12,43 +12,44 @@ pub enum Model {
     Capsule,
     Cylinder,
     Modified,
+    /// With two more links at each face, so that the face has the curve's direction.
+    Faced,
     ParryCapsule,
     ParryCylinder,
     Spheres,
 }
 
 impl Model {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Capsule,
         Self::Cylinder,
         Self::Modified,
+        Self::Faced,
         Self::ParryCapsule,
         Self::ParryCylinder,
         Self::Spheres,
     ];
 
     /// Those of this crate.
-    pub const OURS: [Self; 3] = [Self::Capsule, Self::Cylinder, Self::Modified];
+    pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
+
+    /// Its place in [`Model::ALL`], and in [`Model::OURS`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Capsule => "K, capsules",
             Self::Cylinder => "Z, cylinders",
             Self::Modified => "Z*, modified",
+            Self::Faced => "Z*, faces fixed",
             Self::ParryCapsule => "parry's Capsule",
             Self::ParryCylinder => "parry's Cylinder",
             Self::Spheres => "7 spheres a link",
         }
     }
 
-    /// The chain of one of this crate's models.
-    pub fn chain(self, points: &[Vector], radii: &[Real]) -> Result<Chain, RobotError> {
-        match self {
-            Self::Capsule | Self::ParryCapsule | Self::Spheres => Chain::capsules(points, radii),
-            Self::Cylinder | Self::ParryCylinder => Chain::cylinders(points, radii),
-            Self::Modified => Chain::from_centreline(points, radii),
-        }
-    }
 }
 
 /// The spheres that stand for a link in the way of the sphere chains: as many, evenly along the axis, ends included.
@@ -56,10 +57,8 @@ const SPHERES: usize = 7;
 
 /// The robot with the fewest links within a tolerance.
 pub struct Subject {
-    pub points: Vec<Vector>,
-    pub radii: Vec<Real>,
     /// In the order of [`Model::OURS`].
-    pub chains: [Chain; 3],
+    chains: [Chain; 4],
     pub capsules: Vec<(Pose, Capsule)>,
     pub cylinders: Vec<(Pose, Cylinder)>,
     /// Centres and radii.
@@ -67,12 +66,15 @@ pub struct Subject {
 }
 
 impl Subject {
-    pub fn new(curve: &Centreline, tolerance: Real) -> Result<Self, RobotError> {
+    /// Of a curve and the numbers of its points that fix the directions of faces.
+    pub fn new(curve: &Centreline, at_faces: &[usize], tolerance: Real) -> Result<Self, RobotError> {
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance)?;
+        let faced = keeping(curve, at_faces, tolerance)?;
         let chains = [
-            Model::Capsule.chain(&points, &radii)?,
-            Model::Cylinder.chain(&points, &radii)?,
-            Model::Modified.chain(&points, &radii)?,
+            Chain::capsules(&points, &radii)?,
+            Chain::cylinders(&points, &radii)?,
+            Chain::from_centreline(&points, &radii)?,
+            Chain::from_centreline(&faced.points, &faced.radii)?,
         ];
         let links = chains[0].links();
         let capsule =
@@ -86,19 +88,29 @@ impl Subject {
             })
             .collect();
         let cylinders = timing::cylinders(&chains[1]);
-        Ok(Self { points, radii, chains, capsules, cylinders, spheres })
+        Ok(Self { chains, capsules, cylinders, spheres })
     }
 
-    pub fn links(&self) -> usize {
-        self.radii.len()
-    }
-
-    /// The chain that one of this crate's models makes.
+    /// The chain of one of this crate's models; of a peer's model, the one with the same links.
     pub fn chain(&self, model: Model) -> &Chain {
         match model {
+            Model::Capsule | Model::ParryCapsule | Model::Spheres => &self.chains[0],
             Model::Cylinder | Model::ParryCylinder => &self.chains[1],
             Model::Modified => &self.chains[2],
-            _ => &self.chains[0],
+            Model::Faced => &self.chains[3],
         }
     }
+}
+
+/// The fewest links within a tolerance that keep some of the points.
+fn keeping(curve: &Centreline, points: &[usize], tolerance: Real) -> Result<Centreline, RobotError> {
+    let mut kept = Centreline { points: vec![curve.points[0]], radii: Vec::new() };
+    let mut from = 0;
+    for to in points.iter().copied().chain([curve.points.len() - 1]) {
+        let (points, radii) = simplify(&curve.points[from..=to], &curve.radii[from..to], tolerance)?;
+        kept.points.extend(&points[1..]);
+        kept.radii.extend(radii);
+        from = to;
+    }
+    Ok(kept)
 }
