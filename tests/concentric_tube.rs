@@ -118,7 +118,8 @@ fn twisted_centrelines_match_the_oracle() {
         for (angle, expected) in found.base_angles.iter().zip(&case.psi_base) {
             turned = Real::max(turned, (angle - expected).abs());
         }
-        twisted += usize::from(case.psi_tip.iter().zip(&case.psi_base).any(|(tip, base)| (tip - base).abs() > 0.1));
+        twisted +=
+            usize::from(case.psi_tip.iter().zip(&case.psi_base).any(|(tip, base)| (tip - base).abs() > 0.1));
     }
     assert!(worst < 1e-7 && turned < 1e-8, "worst {worst:e} mm, {turned:e} rad");
     assert_eq!((points, oracle.cases.len()), (18 * 65, 18));

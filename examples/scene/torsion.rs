@@ -104,11 +104,7 @@ fn advance(tubes: &[Reach], s: Real, state: &State, step: Real) -> State {
     let third = derivative(tubes, s, &state.along(&second, 0.5 * step));
     let fourth = derivative(tubes, s, &state.along(&third, step));
     let sixth = step / 6.0;
-    state
-        .along(&first, sixth)
-        .along(&second, 2.0 * sixth)
-        .along(&third, 2.0 * sixth)
-        .along(&fourth, sixth)
+    state.along(&first, sixth).along(&second, 2.0 * sixth).along(&third, 2.0 * sixth).along(&fourth, sixth)
 }
 
 impl Robot {
@@ -155,6 +151,10 @@ impl Robot {
         // The integration began at the tip; the robot begins at its base.
         let base = state.pose().inverse();
         let points = poses.iter().rev().map(|pose| (base * *pose).translation).collect();
-        Twisted { points, tip: poses.first().map_or(Pose::IDENTITY, |tip| base * *tip), base_angles: state.angles }
+        Twisted {
+            points,
+            tip: poses.first().map_or(Pose::IDENTITY, |tip| base * *tip),
+            base_angles: state.angles,
+        }
     }
 }

@@ -49,7 +49,8 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
             let stations = Stations::even(robot, joints, INPUT_SPACING);
             (stations.curve(robot, joints), stations.at_faces)
         };
-        let curves: Vec<_> = shapes.iter().map(|joints| [curve(&step_before(joints)), curve(joints)]).collect();
+        let curves: Vec<_> =
+            shapes.iter().map(|joints| [curve(&step_before(joints)), curve(joints)]).collect();
         for tolerance in TOLERANCES {
             times.building.push(building(&curves, tolerance)?);
             let subject = |(curve, at_faces): &(Centreline, Vec<usize>)| {
@@ -66,11 +67,7 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
 }
 
 /// The times of every way to ask, and by how much this crate's differ from each other.
-fn queries(
-    subjects: &[[Subject; 2]],
-    mesh: &TriMesh,
-    base: &Pose,
-) -> Result<(Vec<Timed>, Real), String> {
+fn queries(subjects: &[[Subject; 2]], mesh: &TriMesh, base: &Pose) -> Result<(Vec<Timed>, Real), String> {
     let mut rows = Vec::new();
     let mut apart: Real = 0.0;
     let mut first: Vec<(Model, Vec<Real>)> = Vec::new();

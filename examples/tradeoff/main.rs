@@ -88,9 +88,11 @@ fn measure(options: &Options) -> Result<(), String> {
         .take(options.timed as usize)
         .collect();
     if timed.is_empty() {
-        return Err("every shape touches the wall; move the robot with --base and --axis, or bring the mesh to \
+        return Err(
+            "every shape touches the wall; move the robot with --base and --axis, or bring the mesh to \
                     millimetres with --scale"
-            .into());
+                .into(),
+        );
     }
     stage("the reference itself");
     let checked = reference::check(&robot, &timed, &mesh, &base)?;

@@ -111,8 +111,7 @@ fn outcome(
 /// parry's clearances of capsules and cylinders, all lengths in metres.
 fn in_metres(subject: &Subject, mesh: &TriMesh, base: &Pose) -> Result<[Real; 2], String> {
     let smaller = |pose: &Pose| Pose::from_parts(pose.translation * 1e-3, pose.rotation);
-    let capsule =
-        |c: &Capsule| Capsule::new(c.segment.a * 1e-3, c.segment.b * 1e-3, c.radius * 1e-3);
+    let capsule = |c: &Capsule| Capsule::new(c.segment.a * 1e-3, c.segment.b * 1e-3, c.radius * 1e-3);
     let cylinder = |c: &Cylinder| Cylinder::new(c.half_height * 1e-3, c.radius * 1e-3);
     let capsules: Vec<_> = subject.capsules.iter().map(|(at, link)| (smaller(at), capsule(link))).collect();
     let cylinders: Vec<_> =

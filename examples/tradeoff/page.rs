@@ -38,14 +38,14 @@ pub fn page(facts: &Facts) -> String {
          The *true* clearance is that of the swept tube with flat faces: a chain of flat links along the true curve, at \
          most {REFERENCE_SPACING} mm long and a hundredth of that at the faces, in f64. Stations twice as close change it \
          by at most {} mm, four times as close by {} mm. Chains by Algorithm 1 at the same stations differ from it by up \
-         to {} mm: a round cap that has just been admitted behind a face can stick out of it, by r - sqrt(r^2 - (r^2 kappa / \
+         to {} mm; a round cap that has just been admitted behind a face can stick out of it, by r - sqrt(r^2 - (r^2 kappa / \
          2)^2) or {} mm at most.\n\n\
          ## The trade\n\n\
          The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
          thread. Times are medians over the shapes, the chain already built. *Cold*: without the last answers. *Warm*: after \
          a query for the shape a small step earlier (0.1 mm of each extension, 0.01 rad of each angle). The search works \
          in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
-         that precision costs time, not accuracy: here the engines differ by at most {:.0e} mm. parry's programs ask link after link (or \
+         that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
          sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
          less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
@@ -67,7 +67,7 @@ pub fn page(facts: &Facts) -> String {
         length(checked.quartered),
         length(checked.algorithm_1),
         length(widest - (widest * widest - (0.5 * widest * widest * CURVATURE).powi(2)).sqrt()),
-        times.apart,
+        agreement(times.apart),
         table(times, errors),
         base_cap(outcomes),
         front_table(all),
@@ -111,8 +111,7 @@ fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
 
 /// The front, from the fastest to the most accurate.
 fn front_table(all: &[Combination]) -> String {
-    let mut page =
-        String::from("| time | worst error | model | within | way |\n|---|---|---|---|---|\n");
+    let mut page = String::from("| time | worst error | model | within | way |\n|---|---|---|---|---|\n");
     for one in front(all) {
         let _ = writeln!(
             page,
@@ -150,6 +149,14 @@ fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], wide
         );
     }
     page
+}
+
+fn agreement(apart: f64) -> String {
+    if apart == 0.0 {
+        "all engines agree to the last bit".into()
+    } else {
+        format!("two engines differ by at most {apart:.0e} mm")
+    }
 }
 
 /// What the base's cap does to capsules.

@@ -22,15 +22,20 @@ pub fn draw(all: &[Combination], path: &Path) -> Result<(), String> {
 fn draw_file(all: &[Combination], path: &Path) -> Drawn {
     let area = SVGBackend::new(path, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
-    marks(all, &area)?;
+    // A logarithmic axis has no place for an error of 0.
+    let all: Vec<_> = all.iter().filter(|one| one.error > 0.0).cloned().collect();
+    if !all.is_empty() {
+        marks(&all, &area)?;
+    }
     area.present()?;
     Ok(())
 }
 
 fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
     let range = |of: fn(&Combination) -> f64| {
-        let values = all.iter().map(of).filter(|value| *value > 0.0);
-        values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)))
+        all.iter()
+            .map(of)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)))
     };
     let ((fast, slow), (good, bad)) = (range(|one| one.time * 1e6), range(|one| one.error));
     let mut chart = ChartBuilder::on(area)

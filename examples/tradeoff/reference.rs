@@ -26,7 +26,8 @@ pub fn check(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> R
     for joints in shapes {
         let curve = Stations::graded(robot, joints, REFERENCE_SPACING).curve(robot, joints);
         let capped = Chain::from_centreline(&curve.points, &curve.radii).map_err(text)?;
-        let mut clearance = |chain: &Chain| Ok::<_, String>(search.minimum(chain, base).map_err(text)?.distance);
+        let mut clearance =
+            |chain: &Chain| Ok::<_, String>(search.minimum(chain, base).map_err(text)?.distance);
         let truth = clearance(&reference(robot, joints, REFERENCE_SPACING)?)?;
         let halved = clearance(&reference(robot, joints, REFERENCE_SPACING / 2.0)?)?;
         let quartered = clearance(&reference(robot, joints, REFERENCE_SPACING / 4.0)?)?;

@@ -96,6 +96,9 @@ impl Stations {
     /// The curve through the stations, of tubes that do not twist.
     pub fn curve(&self, robot: &Robot, joints: &Joints) -> Centreline {
         let frames = robot.frames(joints, &self.arc_lengths);
-        Centreline { points: frames.into_iter().map(|frame| frame.translation).collect(), radii: self.radii.clone() }
+        Centreline {
+            points: frames.into_iter().map(|frame| frame.translation).collect(),
+            radii: self.radii.clone(),
+        }
     }
 }

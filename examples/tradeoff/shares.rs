@@ -85,12 +85,22 @@ fn alone(outcomes: &[Outcome]) -> String {
         row("gaps: Z beside Z*", tolerance, &pair(Model::Cylinder, Model::Modified, tolerance));
     }
     for tolerance in SHOWN {
-        row("GJK: parry's Capsule beside K", tolerance, &pair(Model::ParryCapsule, Model::Capsule, tolerance));
-        row("GJK: parry's Cylinder beside Z", tolerance, &pair(Model::ParryCylinder, Model::Cylinder, tolerance));
+        row(
+            "GJK: parry's Capsule beside K",
+            tolerance,
+            &pair(Model::ParryCapsule, Model::Capsule, tolerance),
+        );
+        row(
+            "GJK: parry's Cylinder beside Z",
+            tolerance,
+            &pair(Model::ParryCylinder, Model::Cylinder, tolerance),
+        );
     }
     for (index, model) in [Model::Capsule, Model::Cylinder].into_iter().enumerate() {
         let name = format!("GJK: the same in metres, {}", if index == 0 { "Capsule" } else { "Cylinder" });
-        row(&name, METRES_AT, &|shape| (shape.metres[index], shape.each[METRES_AT].clearances[model.index()]));
+        row(&name, METRES_AT, &|shape| {
+            (shape.metres[index], shape.each[METRES_AT].clearances[model.index()])
+        });
     }
     page
 }

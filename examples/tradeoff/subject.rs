@@ -49,7 +49,6 @@ impl Model {
             Self::Spheres => "7 spheres a link",
         }
     }
-
 }
 
 /// The spheres that stand for a link in the way of the sphere chains: as many, evenly along the axis, ends included.

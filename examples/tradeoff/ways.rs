@@ -29,8 +29,14 @@ pub fn all(mesh: &TriMesh) -> Result<Vec<Way<'_>>, String> {
         let engines: [(_, Box<dyn Clearance>); 4] = [
             ("search, cold", Box::new(Cold { engine: search()?, model })),
             ("search, warm", Box::new(Engine { engine: search()?, model })),
-            ("exhaustive, f32", Box::new(Engine { engine: Exhaustive::<f32>::new(mesh).map_err(text)?, model })),
-            ("exhaustive, f64", Box::new(Engine { engine: Exhaustive::<f64>::new(mesh).map_err(text)?, model })),
+            (
+                "exhaustive, f32",
+                Box::new(Engine { engine: Exhaustive::<f32>::new(mesh).map_err(text)?, model }),
+            ),
+            (
+                "exhaustive, f64",
+                Box::new(Engine { engine: Exhaustive::<f64>::new(mesh).map_err(text)?, model }),
+            ),
         ];
         ways.extend(engines.into_iter().map(|(name, program)| Way { model, name, program }));
     }
