@@ -105,7 +105,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("trade");
     std::fs::create_dir_all(&directory).unwrap();
     let readme = directory.join("README.md");
-    std::fs::write(&readme, "before\n<!-- tradeoff -->\nold\n<!-- /tradeoff -->\nafter\n").unwrap();
+    std::fs::write(&readme, "before\n<!-- tradeoff -->\nstale\n<!-- /tradeoff -->\nafter\n").unwrap();
     let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
     let small = ["--shapes", "12", "--timed", "2", "--out", "trade/docs"];
     let (success, _, error) = program("tradeoff", &[place, small].concat());
@@ -138,7 +138,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
     assert_eq!(read(directory.join("docs/tradeoff.svg")).matches("<circle").count(), 2 * 4 * 7 + 2);
     let readme = read(readme);
     assert!(
-        readme.starts_with("before\n<!-- tradeoff -->\nMeasured by") && !readme.contains("old"),
+        readme.starts_with("before\n<!-- tradeoff -->\nMeasured by") && !readme.contains("stale"),
         "{readme}"
     );
     assert!(readme.ends_with("\n<!-- /tradeoff -->\nafter\n"), "{readme}");
