@@ -14,8 +14,9 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, simplify};
+use scene::anatomy::{Anatomy, no_goal, show};
 use scene::ctr::{Centreline, Joints, Robot, three_tubes};
-use scene::{command, figure, mesh_file, placement, steer, timing, ventricle};
+use scene::{command, figure, steer, timing, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -23,32 +24,8 @@ use std::time::Duration;
 /// Steer a concentric tube robot into a brain ventricle and measure its clearance, link by link.
 #[derive(Parser)]
 struct Options {
-    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
-    #[arg(long, value_name = "FILE")]
-    mesh: Option<PathBuf>,
-
-    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
-    #[arg(
-        long,
-        value_name = "FACTOR",
-        default_value_t = 1.0,
-        requires = "mesh",
-        allow_negative_numbers = true
-    )]
-    scale: Real,
-
-    /// Triangles of the generated ventricle, about
-    #[arg(long, value_name = "COUNT", default_value_t = ventricle::DEFAULT_TRIANGLES as u32, conflicts_with = "mesh",
-          value_parser = clap::value_parser!(u32).range(ventricle::DEFAULT_TRIANGLES as i64..=20_000_000))]
-    triangles: u32,
-
-    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
-    #[arg(long, value_name = "X,Y,Z", value_parser = placement::vector, allow_hyphen_values = true)]
-    base: Option<Vector>,
-
-    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
-    #[arg(long, value_name = "X,Y,Z", value_parser = placement::direction, allow_hyphen_values = true)]
-    axis: Option<Vector>,
+    #[command(flatten)]
+    anatomy: Anatomy,
 
     /// Links with two round caps, with two flat caps, or each cap as Algorithm 1 says
     #[arg(long, value_enum, default_value_t = Model::Modified)]
@@ -90,38 +67,26 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn steer(options: &Options) -> Result<(), String> {
-    let (points, triangles) = match &options.mesh {
-        Some(path) => mesh_file::load(path, options.scale)?,
-        None => ventricle::mesh(options.triangles as usize),
-    };
-    let mesh = TriMesh::new(points, triangles).map_err(text)?;
+    let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let mut exhaustive = Exhaustive::<Real>::new(&mesh).map_err(text)?;
     let out = command::picture_path(&options.out, "ventricle.png")?;
 
     let robot = three_tubes();
-    let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
-    let base = if planned {
-        ventricle::entry()
-    } else {
-        placement::pose(options.base, options.axis, &mesh, options.mesh.as_deref())?
-    };
+    let base = options.anatomy.pose(&mesh)?;
     if !steer::is_inside(&mesh, base.translation) {
-        eprintln!(
-            "note: {} is outside the mesh; --base x,y,z places the robot",
-            placement::show(base.translation)
-        );
+        eprintln!("note: {} is outside the mesh; --base x,y,z places the robot", show(base.translation));
     }
-    let goal = if planned {
+    let goal = if options.anatomy.is_planned() {
         ventricle::goal()
     } else {
-        steer::find_goal(&robot, &mut search, &base).map_err(|none| placement::no_goal(&none, &base))?
+        steer::find_goal(&robot, &mut search, &base).map_err(|none| no_goal(&none, &base))?
     };
     println!(
         "{:.1} mm of robot, from {} along {}",
         robot.length(&goal),
-        placement::show(base.translation),
-        placement::show(base.rotation * Vector::Z)
+        show(base.translation),
+        show(base.rotation * Vector::Z)
     );
 
     // The way in: both engines at every step.

@@ -1,7 +1,8 @@
 //! The concentric tube robot of the examples follows the published model.
 //!
 //! `data/ctr_oracle.json` holds centrelines of two robots, three and four tubes, solved by an integrator that shares
-//! nothing with `scene/ctr.rs` and printed to 1e-9 mm. Torsionally rigid cases only: the examples' model is rigid.
+//! nothing with `scene/ctr.rs` and `scene/torsion.rs` and printed to 1e-9 mm: each pair of joints with tubes that do not
+//! twist and with tubes that do.
 
 #[path = "../examples/scene/mod.rs"]
 mod scene;
@@ -36,6 +37,9 @@ struct Case {
     model: String,
     phi: Vec<Real>,
     psi_tip: Vec<Real>,
+    /// Where the tubes twist.
+    #[serde(default)]
+    psi_base: Vec<Real>,
     s: Vec<Real>,
     radius: Vec<Real>,
     centreline: Vec<[Real; 3]>,
@@ -43,9 +47,15 @@ struct Case {
     tip: [[Real; 3]; 3],
 }
 
-fn oracle() -> Oracle {
-    serde_json::from_str(include_str!("data/ctr_oracle.json")).unwrap()
+/// The robots, and their cases with tubes that twist or do not.
+fn oracle(model: &str) -> Oracle {
+    let mut oracle: Oracle = serde_json::from_str(include_str!("data/ctr_oracle.json")).unwrap();
+    oracle.cases.retain(|case| case.model == model);
+    oracle
 }
+
+const RIGID: &str = "torsionally_rigid";
+const COMPLIANT: &str = "torsion";
 
 fn robot(sections: &[OracleSection]) -> Robot {
     let tube = |t: &OracleTube| Tube { stiffness: t.rel_stiffness, curvature: t.kappa_per_mm };
@@ -65,10 +75,9 @@ const TURN: Real = 1e-11;
 
 #[test]
 fn centrelines_and_tips_match_the_oracle() {
-    let oracle = oracle();
+    let oracle = oracle(RIGID);
     let (mut worst, mut points, mut by_robot) = (0.0, 0, BTreeMap::new());
     for case in &oracle.cases {
-        assert_eq!(case.model, "torsionally_rigid");
         let robot = robot(&oracle.robots[&case.robot]);
         let joints = Joints { extensions: case.phi.clone(), angles: case.psi_tip.clone() };
         let frames = robot.frames(&joints, &case.s);
@@ -88,16 +97,45 @@ fn centrelines_and_tips_match_the_oracle() {
     assert_eq!(by_robot, BTreeMap::from([("ctr_sec3_tub3", 9), ("ctr_sec3_tub4", 9)]));
 }
 
+/// The oracle integrates too, to 6e-9 mm.
+#[test]
+fn twisted_centrelines_match_the_oracle() {
+    let oracle = oracle(COMPLIANT);
+    let (mut worst, mut turned, mut points, mut twisted) = (0.0, 0.0, 0, 0);
+    for case in &oracle.cases {
+        let robot = robot(&oracle.robots[&case.robot]);
+        let joints = Joints { extensions: case.phi.clone(), angles: case.psi_tip.clone() };
+        let found = robot.twisted(&joints, &case.s);
+        assert_eq!(found.points.len(), case.centreline.len());
+        for (point, &expected) in found.points.iter().zip(&case.centreline) {
+            worst = Real::max(worst, (*point - Vector::from(expected)).length());
+            points += 1;
+        }
+        for (column, unit) in [Vector::X, Vector::Y, Vector::Z].into_iter().enumerate() {
+            let expected = Vector::from(case.tip.map(|row| row[column]));
+            turned = Real::max(turned, (found.tip.rotation * unit - expected).length());
+        }
+        for (angle, expected) in found.base_angles.iter().zip(&case.psi_base) {
+            turned = Real::max(turned, (angle - expected).abs());
+        }
+        twisted +=
+            usize::from(case.psi_tip.iter().zip(&case.psi_base).any(|(tip, base)| (tip - base).abs() > 0.1));
+    }
+    assert!(worst < 1e-7 && turned < 1e-8, "worst {worst:e} mm, {turned:e} rad");
+    assert_eq!((points, oracle.cases.len()), (18 * 65, 18));
+    assert!(twisted > 8, "{twisted}");
+}
+
 #[test]
 fn the_three_tubes_of_the_examples_are_the_oracle_s() {
-    let expected = robot(&oracle().robots["ctr_sec3_tub3"]);
+    let expected = robot(&oracle(RIGID).robots["ctr_sec3_tub3"]);
     assert_eq!(format!("{:?}", three_tubes()), format!("{expected:?}"));
 }
 
 /// The chain's vertices lie on the oracle's curve, and its radius changes exactly where a tube ends.
 #[test]
 fn centreline_changes_radius_where_a_tube_ends() {
-    let oracle = oracle();
+    let oracle = oracle(RIGID);
     let mut compared = 0;
     for case in &oracle.cases {
         let robot = robot(&oracle.robots[&case.robot]);

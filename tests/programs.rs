@@ -26,6 +26,8 @@ fn program(name: &str, arguments: &[&str]) -> (bool, String, String) {
             "figure7",
             "--example",
             "rapier_ventricle",
+            "--example",
+            "tradeoff",
         ]);
         assert!(build.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
         // This test is target/debug/deps/scene-..; examples are in target/debug/examples.
@@ -105,4 +107,58 @@ fn programs_draw_their_pictures() {
         let colours: BTreeSet<_> = pixels.as_chunks::<3>().0.iter().collect();
         assert!(colours.len() > 1000, "{name} has {} colours", colours.len());
     }
+}
+
+#[test]
+fn the_trade_is_measured_drawn_and_quoted() {
+    let corners = (0..8).map(|k| format!("v {} {} {}\n", 60 * (k & 1), 30 * (k & 2), 15 * (k & 4)));
+    let sides = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    let hall = file("hall.obj", &(corners.collect::<String>() + sides));
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("trade");
+    std::fs::create_dir_all(&directory).unwrap();
+    let readme = directory.join("README.md");
+    std::fs::write(&readme, "before\n<!-- tradeoff -->\nstale\n<!-- /tradeoff -->\nafter\n").unwrap();
+    let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
+    let small = ["--shapes", "12", "--timed", "2", "--out", "trade/docs"];
+    let (success, _, error) = program("tradeoff", &[place, small].concat());
+    assert!(success, "{error}");
+
+    let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
+    let page = read(directory.join("docs/TRADEOFF.md"));
+    let trade = page.split("## The trade").nth(1).unwrap().split("![").next().unwrap();
+    for model in [
+        "K, capsules",
+        "Z, cylinders",
+        "Z*, modified",
+        "Z*, faces fixed",
+        "parry's Capsule",
+        "parry's Cylinder",
+        "7 spheres a link",
+    ] {
+        assert_eq!(trade.matches(&format!("\n| {model} | ")).count(), 7, "{model}: {trade}");
+    }
+    for text in [
+        "of the 12 shapes are free",
+        "95 % confidence (Wilson)",
+        "GJK alone",
+        "torsion, same angles at the base",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+    assert!(!page.contains("NaN") && !page.contains("inf "), "{page}");
+    // Discs and rings for the search of four models at seven tolerances, and in the legend.
+    assert_eq!(read(directory.join("docs/tradeoff.svg")).matches("<circle").count(), 2 * 4 * 7 + 2);
+    let readme = read(readme);
+    assert!(
+        readme.starts_with("before\n<!-- tradeoff -->\nMeasured by") && !readme.contains("stale"),
+        "{readme}"
+    );
+    assert!(readme.ends_with("\n<!-- /tradeoff -->\nafter\n"), "{readme}");
+
+    let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+    let arguments =
+        ["--mesh", &wall, "--base", "0,0,0", "--axis", "0,0,1", "--shapes", "10", "--out", "trade/none"];
+    let (success, _, error) = program("tradeoff", &arguments);
+    assert!(!success && error.contains("every shape touches the wall"), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
 }

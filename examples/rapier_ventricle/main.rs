@@ -24,9 +24,9 @@ use plan::Plan;
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, TriMeshFlags};
 use record::{Moment, Recorder};
 use rod::Rod;
+use scene::anatomy::{Anatomy, no_goal};
 use scene::ctr::three_tubes;
-use scene::surface::Mesh;
-use scene::{command, mesh_file, placement, steer, ventricle};
+use scene::{command, steer, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -34,27 +34,8 @@ use std::time::{Duration, Instant};
 /// Push an elastic concentric tube robot into a brain ventricle, in a rapier world.
 #[derive(Parser)]
 struct Options {
-    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
-    #[arg(long, value_name = "FILE")]
-    mesh: Option<PathBuf>,
-
-    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
-    #[arg(
-        long,
-        value_name = "FACTOR",
-        default_value_t = 1.0,
-        requires = "mesh",
-        allow_negative_numbers = true
-    )]
-    scale: Real,
-
-    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
-    #[arg(long, value_name = "X,Y,Z", value_parser = placement::vector, allow_hyphen_values = true)]
-    base: Option<Vector>,
-
-    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
-    #[arg(long, value_name = "X,Y,Z", value_parser = placement::direction, allow_hyphen_values = true)]
-    axis: Option<Vector>,
+    #[command(flatten)]
+    anatomy: Anatomy,
 
     /// How far the base is pushed beyond the plan, in millimetres
     #[arg(long, value_name = "MM", default_value_t = 3.5, value_parser = distance)]
@@ -89,11 +70,7 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn simulate(options: &Options) -> Result<(), String> {
-    let surface = match &options.mesh {
-        Some(path) => mesh_file::load(path, options.scale)?,
-        None => ventricle::mesh(ventricle::DEFAULT_TRIANGLES),
-    };
-    let mesh = TriMesh::new(surface.0.clone(), surface.1.clone()).map_err(text)?;
+    let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let plan = plan(options, &mesh, &mut search)?;
     let cannot =
@@ -107,7 +84,7 @@ fn simulate(options: &Options) -> Result<(), String> {
         [plan.entry, plan.base(end)].map(|base| plan.shape(end).points.iter().map(|p| base * p).collect());
     let studio = Studio::new(&mesh, &places.map(|places: Vec<_>| places).concat(), thick);
 
-    let mut world = world_around(surface, 2.0 * thick)?;
+    let mut world = world_around(&mesh, 2.0 * thick)?;
     let mut rod = Rod::new(&mut world, plan.entry);
     let steps = (plan.duration() / world.integration_parameters.dt).round() as usize;
     let picture_every = steps.div_ceil(options.frames.max(40) as usize);
@@ -139,21 +116,19 @@ fn simulate(options: &Options) -> Result<(), String> {
 /// Where the robot starts and where its tubes go.
 fn plan(options: &Options, mesh: &TriMesh, search: &mut BvhSearch) -> Result<Plan, String> {
     let robot = three_tubes();
-    let planned = options.mesh.is_none() && options.base.is_none() && options.axis.is_none();
-    let (entry, goal) = if planned {
-        (ventricle::entry(), ventricle::goal())
+    let entry = options.anatomy.pose(mesh)?;
+    let goal = if options.anatomy.is_planned() {
+        ventricle::goal()
     } else {
-        let entry = placement::pose(options.base, options.axis, mesh, options.mesh.as_deref())?;
-        let goal =
-            steer::find_goal(&robot, search, &entry).map_err(|none| placement::no_goal(&none, &entry))?;
-        (entry, goal)
+        steer::find_goal(&robot, search, &entry).map_err(|none| no_goal(&none, &entry))?
     };
     Ok(Plan::new(robot, goal, entry, options.push, options.links as usize))
 }
 
 /// The wall as a fixed body. The robot is inside it, so its inner edges are two-sided.
-fn world_around((vertices, triangles): Mesh, size: Real) -> Result<PhysicsWorld, String> {
+fn world_around(mesh: &TriMesh, size: Real) -> Result<PhysicsWorld, String> {
     let mut world = rod::world(size).map_err(text)?;
+    let (vertices, triangles) = (mesh.vertices().to_vec(), mesh.indices().to_vec());
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
     let wall = ColliderBuilder::trimesh_with_flags(vertices, triangles, flags).map_err(text)?;
     world.insert(RigidBodyBuilder::fixed(), wall.friction(0.0));

@@ -2,6 +2,7 @@
 //! picture of both. Included by path; nothing of it is in the library.
 #![allow(dead_code, reason = "each program that includes the scene uses its own part of it")]
 
+pub mod anatomy;
 pub mod canvas;
 pub mod cavity;
 pub mod colour_map;
@@ -13,10 +14,11 @@ pub mod lettering;
 pub mod levels;
 pub mod mesh_file;
 pub mod picture;
-pub mod placement;
+pub mod quote;
 pub mod remesh;
 pub mod steer;
 pub mod subdivide;
 pub mod surface;
 pub mod timing;
+pub mod torsion;
 pub mod ventricle;

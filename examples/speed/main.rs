@@ -19,9 +19,9 @@ mod search;
 
 use clap::Parser;
 use goals::Goals;
-use scene::command;
+use scene::{command, quote};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -62,16 +62,6 @@ fn measure(options: &Options) -> Result<(), String> {
         .and_then(|()| fs::write(&path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
     println!("{}", path.display());
-    quote_in_readme(&table, &options.out)
-}
-
-/// Puts the table between the README's marks, if the page went to the `docs` beside a README that has them.
-fn quote_in_readme(table: &str, out: &Path) -> Result<(), String> {
-    let path = out.join("../README.md");
-    let Ok(readme) = fs::read_to_string(&path) else { return Ok(()) };
-    let (begin, end) = ("<!-- speed -->\n", "<!-- /speed -->");
-    let Some((before, rest)) = readme.split_once(begin) else { return Ok(()) };
-    let Some((_, after)) = rest.split_once(end) else { return Ok(()) };
     let quote = format!(
         "Written by `cargo run --release --example speed` on {}: a robot of 30 links in a cavity of about 100 mm, at the \
          wall (2 mm away) and in the middle (19 mm). Times faster than parry's `distance(Cylinder, TriMesh)` for each \
@@ -79,6 +69,5 @@ fn quote_in_readme(table: &str, out: &Path) -> Result<(), String> {
          [docs/SPEED.md](docs/SPEED.md) has the rest.\n\n{table}",
         machine::description()
     );
-    fs::write(&path, format!("{before}{begin}{quote}{end}{after}"))
-        .map_err(|error| format!("cannot write {} ({error})", path.display()))
+    quote::in_readme(&quote, "speed", &options.out)
 }

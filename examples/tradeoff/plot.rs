@@ -1,0 +1,166 @@
+//! The picture: error against time, one mark for each combination, and the front.
+
+use crate::front::{Combination, front};
+use crate::subject::Model;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::path::Path;
+
+type Log = LogCoord<f64>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Log, Log>>;
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+const SIZE: (u32, u32) = (1000, 680);
+
+/// Draws the combinations into an SVG file.
+pub fn draw(all: &[Combination], path: &Path) -> Result<(), String> {
+    draw_file(all, path)
+        .map_err(|error| format!("cannot draw {} ({error}); choose another --out", path.display()))
+}
+
+fn draw_file(all: &[Combination], path: &Path) -> Drawn {
+    let area = SVGBackend::new(path, SIZE).into_drawing_area();
+    area.fill(&WHITE)?;
+    // A logarithmic axis has no place for an error of 0.
+    let all: Vec<_> = all.iter().filter(|one| one.error > 0.0).cloned().collect();
+    if !all.is_empty() {
+        marks(&all, &area)?;
+    }
+    area.present()?;
+    Ok(())
+}
+
+fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
+    let range = |of: fn(&Combination) -> f64| {
+        all.iter()
+            .map(of)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)))
+    };
+    let ((fast, slow), (good, bad)) = (range(|one| one.time * 1e6), range(|one| one.error));
+    let mut chart = ChartBuilder::on(area)
+        .margin(16)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        // Room for the front's labels on the left, and for the legend on the right.
+        .build_cartesian_2d((fast * 0.3..slow * 25.0).log_scale(), (good * 0.4..bad * 2.0).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("microseconds a query of the whole robot (median)")
+        .y_desc("worst error of the clearance, mm")
+        .x_label_formatter(&|x| number(*x))
+        .y_label_formatter(&|y| number(*y))
+        .light_line_style(WHITE)
+        .draw()?;
+
+    let line = front(all);
+    let mut corners: Vec<(f64, f64)> = Vec::new();
+    for one in &line {
+        if let Some(&(_, before)) = corners.last() {
+            corners.push((one.time * 1e6, before));
+        }
+        corners.push((one.time * 1e6, one.error));
+    }
+    chart
+        .draw_series(LineSeries::new(corners, BLACK.stroke_width(1)))?
+        .label("front: nothing is both faster and better")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 14, y)], BLACK.stroke_width(1)));
+    for one in all {
+        mark(&mut chart, (one.time * 1e6, one.error), one.way, colour(one.model))?;
+    }
+    for one in &line {
+        let style = ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
+        let (name, extra) = one.model.name().split_once(',').unwrap_or_default();
+        let name = if one.model == Model::Faced { format!("{name}{extra}") } else { name.into() };
+        let label = format!("{name}, {} mm", one.tolerance);
+        let at = EmptyElement::at((one.time * 1e6, one.error));
+        chart.draw_series([at + Text::new(label, (-7, 4), style)])?;
+    }
+    legend(all, &mut chart)?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.9))
+        .border_style(RGBColor(190, 190, 190))
+        .draw()?;
+    Ok(())
+}
+
+/// Every model by its colour, then every way by its mark.
+fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
+    let nothing = std::iter::empty::<Circle<(f64, f64), i32>>;
+    for model in Model::ALL {
+        let colour = colour(model);
+        chart
+            .draw_series(nothing())?
+            .label(model.name())
+            .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 14, y + 5)], colour.filled()));
+    }
+    let mut ways: Vec<_> = all.iter().map(|one| one.way).collect();
+    ways.dedup();
+    ways.sort_unstable();
+    ways.dedup();
+    for way in ways {
+        let series = chart.draw_series(nothing())?.label(way);
+        match shape(way) {
+            Shape::Disc => series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.filled())),
+            Shape::Ring => series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.stroke_width(1))),
+            Shape::Triangle => series.legend(|(x, y)| TriangleMarker::new((x + 7, y), 5, BLACK.filled())),
+            Shape::Cross => series.legend(|(x, y)| Cross::new((x + 7, y), 4, BLACK.stroke_width(1))),
+            Shape::Square => {
+                series.legend(|(x, y)| Rectangle::new([(x + 4, y - 3), (x + 10, y + 3)], BLACK.filled()))
+            }
+        };
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy)]
+enum Shape {
+    Disc,
+    Ring,
+    Triangle,
+    Cross,
+    Square,
+}
+
+fn shape(way: &str) -> Shape {
+    match way {
+        "search, warm" => Shape::Disc,
+        "search, cold" => Shape::Ring,
+        "exhaustive, f32" => Shape::Triangle,
+        "exhaustive, f64" => Shape::Cross,
+        _ => Shape::Square,
+    }
+}
+
+fn colour(model: Model) -> RGBColor {
+    match model {
+        Model::Capsule => RGBColor(230, 140, 0),
+        Model::Cylinder => RGBColor(60, 150, 230),
+        Model::Modified => RGBColor(120, 190, 60),
+        Model::Faced => RGBColor(0, 100, 60),
+        Model::ParryCapsule => RGBColor(200, 60, 60),
+        Model::ParryCylinder => RGBColor(150, 60, 170),
+        Model::Spheres => RGBColor(130, 130, 130),
+    }
+}
+
+fn mark(chart: &mut Chart, at: (f64, f64), way: &str, colour: RGBColor) -> Drawn {
+    match shape(way) {
+        Shape::Disc => chart.draw_series([Circle::new(at, 4, colour.filled())])?,
+        Shape::Ring => chart.draw_series([Circle::new(at, 4, colour.stroke_width(1))])?,
+        Shape::Triangle => chart.draw_series([TriangleMarker::new(at, 5, colour.filled())])?,
+        Shape::Cross => chart.draw_series([Cross::new(at, 4, colour.stroke_width(2))])?,
+        Shape::Square => {
+            let square = Rectangle::new([(-3, -3), (3, 3)], colour.filled());
+            chart.draw_series([EmptyElement::at(at) + square])?
+        }
+    };
+    Ok(())
+}
+
+/// A number without needless digits.
+fn number(x: f64) -> String {
+    if x >= 1.0 { format!("{x:.0}") } else { format!("{x}") }
+}
