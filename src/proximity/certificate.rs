@@ -141,8 +141,7 @@ impl Placed {
             return Err(ProximityError::PoseNotFinite);
         }
         let (start, end) = (pose * link.start(), pose * link.end());
-        // Written so that NaN is out of range too.
-        if !(largest([start, end]) <= COORDINATE_LIMIT) {
+        if !start.is_finite() || !end.is_finite() || largest([start, end]) > COORDINATE_LIMIT {
             return Err(ProximityError::OutOfRange { link: number, limit: COORDINATE_LIMIT });
         }
         let flat = link.caps().map(|cap| cap == Cap::Flat && has_direction(start, end, link.radius()));
