@@ -75,13 +75,14 @@ impl<E: Lane> CoarseLink<E> {
         unit: Real,
         frame: &CoarseFrame,
     ) -> Option<Self> {
+        // Before the ends are rounded: the direction of a short, thick link must not turn.
+        let along = (end - start) * frame.scale;
         let [start, end] = [start, end].map(|point| (point - frame.centre) * frame.scale);
         let radius = radius * frame.scale;
         let reach = start.abs().max(end.abs()).max_element().max(radius).max(1.0);
         if reach.is_nan() || reach > FARTHEST {
             return None;
         }
-        let along = end - start;
         let length = along.length();
         // A link too short for its flat caps in this precision is one for double precision alone.
         let squared = E::round(length) * E::round(length);
