@@ -51,8 +51,8 @@ const EXTREMES: &str = "<!-- /ours -->
 
 Seeded problems, each driven to an extreme: a triangle and a link, from which every pair takes its part. The expected
 distance is proven for each, by two points and a plane between the shapes, computed with twice the digits of f64. k goes
-from 1 to 12, to 16 for short links, or to the last digit of the precision. Among subnormal numbers half their spacing is the unit, as no
-answer can be nearer. `docs/accuracy.csv` has each pair in each category by itself.
+from 1 to 12, to 16 for short links, or to the last digit of the precision. Among subnormal numbers half their spacing is
+the unit, as no answer can be nearer. `docs/accuracy.csv` has each pair in each category by itself.
 
 <!-- extremes -->
 ";
@@ -111,7 +111,7 @@ fn write_all(docs: &Path) -> Result<(), String> {
         "{INTRODUCTION}{}{EXTREMES}{}{LEVELS}{}{ENGINES}{}{PEERS}{}{COMPARISON}{}",
         reference::tables(&cases),
         tables::tables(&double, &single, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
-        tables::by_level(&double, &single),
+        by_level(&double, &single),
         engines_table(&engines::measure(&problems, &levels)),
         peer.table(),
         comparison(&cases),
@@ -129,6 +129,25 @@ fn file(double: &Measurement, single: &Measurement, peer: &Peer) -> String {
     lines.extend(tables::lines(double, |extreme, kernels| peer.cells(extreme, kernels)));
     lines.extend(tables::lines(single, |_, _| "-,-".into()));
     lines.join("\n") + "\n"
+}
+
+/// A row for each instruction set, on the pairs that have packs.
+fn by_level(double: &Measurement, single: &Measurement) -> String {
+    let mut text = String::from(
+        "| numbers | f64 median | f64 worst | f32 median | f32 worst |\n|---|---|---|---|---|\n",
+    );
+    let columns = std::iter::once("scalar").chain(double.levels.iter().copied());
+    for (column, name) in columns.enumerate() {
+        write!(text, "| {name} |").ok();
+        for measurement in [double, single] {
+            let packed = measurement.found.iter().filter(|found| !found.levels.is_empty());
+            let errors =
+                packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
+            write!(text, " {} |", tables::cell(errors.collect()).replace(',', " | ")).ok();
+        }
+        text.push('\n');
+    }
+    text
 }
 
 fn engines_table(errors: &engines::Errors) -> String {

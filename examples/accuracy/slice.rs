@@ -71,7 +71,7 @@ pub fn draw() -> Canvas {
     let (left, top, between) = (150, 150, 60);
     let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 290, |_, _| PAPER);
     let title =
-        "How wrong is the clearance? A tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
+        "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
     canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
     for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);

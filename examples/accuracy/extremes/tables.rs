@@ -8,7 +8,8 @@ use std::fmt::Write;
 /// The instruction sets that have columns in the file.
 pub const LEVELS: [&str; 4] = ["AVX-512", "AVX2", "SSE4.2", "SSE2"];
 
-fn cell(errors: Vec<f64>) -> String {
+/// Median and worst of some errors.
+pub fn cell(errors: Vec<f64>) -> String {
     match median_and_worst(errors) {
         Some((median, worst)) => format!("{median:.2},{worst:.2}"),
         None => "-,-".into(),
@@ -46,7 +47,7 @@ pub fn head() -> String {
 /// The tables of scalar errors, which are the same on every machine.
 pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2]) -> String {
     let mut text = String::from(
-        "| category | what it is | f64 problems | median | worst | f32 problems | median | worst |\n\
+        "| category | what it is | f64 answers | median | worst | f32 answers | median | worst |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for (extreme, name, what) in Extreme::ALL {
@@ -54,7 +55,7 @@ pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2])
         writeln!(text, "| {name} | {what} | {} | {} |", of(double), of(single)).ok();
     }
     text += "\nThe same by pair:\n\n\
-             | pair | f64 problems | median | worst | f32 problems | median | worst |\n|---|---|---|---|---|---|---|\n";
+             | pair | f64 answers | median | worst | f32 answers | median | worst |\n|---|---|---|---|---|---|---|\n";
     for (name, kernels) in PAIRS {
         let of = |measurement| row(measurement, |found| kernels.contains(&found.kernel));
         writeln!(text, "| {name} | {} | {} |", of(double), of(single)).ok();
@@ -93,23 +94,4 @@ fn row(measurement: &Measurement, of: impl Fn(&Found) -> bool) -> String {
         Some((median, worst)) => format!("{count} | {median:.2} | {worst:.2}"),
         None => "0 | - | -".into(),
     }
-}
-
-/// A row for each instruction set, on the pairs that have packs.
-pub fn by_level(double: &Measurement, single: &Measurement) -> String {
-    let mut text = String::from(
-        "| numbers | f64 median | f64 worst | f32 median | f32 worst |\n|---|---|---|---|---|\n",
-    );
-    let columns = std::iter::once("scalar").chain(double.levels.iter().copied());
-    for (column, name) in columns.enumerate() {
-        write!(text, "| {name} |").ok();
-        for measurement in [double, single] {
-            let packed = measurement.found.iter().filter(|found| !found.levels.is_empty());
-            let errors =
-                packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
-            write!(text, " {} |", cell(errors.collect()).replace(',', " | ")).ok();
-        }
-        text.push('\n');
-    }
-    text
 }
