@@ -51,6 +51,8 @@
 pub use parry3d_f64 as parry;
 
 pub mod distance;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod host;
 pub mod proximity;
 mod robot;

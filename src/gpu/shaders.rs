@@ -44,4 +44,5 @@ pub const PAIRS: Kernel = kernel!("pairs": "vec3", "closest", "segment_segment",
     "point_modified_cylinder", "bounds", "triangle_modified_cylinder", "pairs");
 
 /// Every kernel.
+#[allow(dead_code, reason = "the tests go through all of them")]
 pub const KERNELS: &[&Kernel] = &[&PREPARE, &SAMPLE, &NEAREST, &REDUCE, &COLLECT, &SELF_TEST, &PAIRS];

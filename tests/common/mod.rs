@@ -3,6 +3,8 @@
 
 pub mod certificate;
 pub mod double_double;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod kernels;
 pub mod precision;
 pub mod problems;
