@@ -40,8 +40,15 @@ pub(super) struct Device {
 impl Device {
     /// The fastest GPU of this machine. The variables of `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
     pub(super) fn open(precision: Precision) -> Result<Self, GpuError> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
+        Self::open_of(wgpu::InstanceDescriptor::new_without_display_handle().with_env(), precision)
+    }
+
+    /// The fastest GPU of an instance.
+    pub(super) fn open_of(
+        instance: wgpu::InstanceDescriptor,
+        precision: Precision,
+    ) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(instance);
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()

@@ -136,6 +136,11 @@ impl GpuExhaustive {
         self.answered_on_cpu
     }
 
+    #[cfg(test)]
+    pub(super) fn mesh(&self) -> &DeviceMesh {
+        &self.mesh
+    }
+
     /// Makes ready for the links of new robots.
     fn clear(&mut self) {
         self.links.clear();
@@ -232,9 +237,11 @@ impl Proximity for GpuExhaustive {
         self.place(robot, pose, None)?;
         self.search()?;
         // The likeliest link first: its distance rules out most others.
-        let likeliest = (0..self.links.len()).min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b)));
+        let links = 0..self.links.len();
+        let likeliest =
+            links.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(0);
         let mut best = (0, self.first_triangle(&self.links[0].0));
-        for link in likeliest.into_iter().chain(0..self.links.len()) {
+        for link in std::iter::once(likeliest).chain(links.filter(|&link| link != likeliest)) {
             let bound = best.1.closest.distance;
             if self.at_least(link) < bound
                 && let Some(found) = self.nearest(link, bound)

@@ -23,6 +23,8 @@ mod precision;
 mod query;
 mod self_test;
 mod shaders;
+#[cfg(test)]
+mod tests;
 
 pub use crate::proximity::DeviceFailure;
 pub use device::Adapter;

@@ -17,10 +17,11 @@ pub(super) const CAPACITY: usize = 64;
 const CANDIDATE: u64 = 12;
 /// Bytes for the bounds of a block and a link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;
-/// Bytes for the bounds of all blocks that are worth keeping for more links in one round.
-const ROUND_BYTES: u64 = 64 << 20;
+/// Bytes for the bounds of all blocks that are worth keeping for more links in one round. (Few in unit tests, so that
+/// small queries take several rounds and submissions.)
+const ROUND_BYTES: u64 = if cfg!(test) { 1 << 10 } else { 64 << 20 };
 /// Bytes that come back from one submission.
-const ANSWER_BYTES: u64 = 64 << 20;
+const ANSWER_BYTES: u64 = if cfg!(test) { 100 << 10 } else { 64 << 20 };
 
 /// The shape of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

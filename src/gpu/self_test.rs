@@ -1,11 +1,11 @@
 //! Whether a device's double precision deserves the name. Vulkan asks of it no more than of single precision.
 
-use super::device::Device;
+use super::device::{Adapter, Device};
 use super::{GpuError, Precision, shaders};
 use wgpu::BufferUsages;
 
 /// Dividends and divisors whose quotients and roots need every digit.
-const OPERANDS: [[f64; 2]; 8] = [
+pub(super) const OPERANDS: [[f64; 2]; 8] = [
     [1.0, 3.0],
     [2.0, 7.0],
     [0.1, 1.1],
@@ -46,25 +46,26 @@ impl Device {
         encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, Some(size));
         let mut got = Vec::new();
         self.run_and_read(encoder.finish(), &readback, size, |bytes| got.extend(self.precision.read(bytes)))?;
-        self.compare(&got)
+        compare(&got, self.precision, &self.adapter)
     }
+}
 
-    fn compare(&self, got: &[f64]) -> Result<(), GpuError> {
-        let unit = match self.precision {
-            Precision::F32 => f32::EPSILON.into(),
-            Precision::F64 => f64::EPSILON,
-        };
-        let expected = OPERANDS.iter().flat_map(|&[x, y]| {
-            [(x / y, format!("{x:e} / {y:e}")), (x.sqrt(), format!("the square root of {x:e}"))]
-        });
-        for ((expected, operation), &got) in expected.zip(got) {
-            // Written so that NaN fails.
-            let right = (got - expected).abs() <= TOLERANCE * unit * expected;
-            if !right {
-                let adapter = self.adapter.to_string();
-                return Err(GpuError::WrongArithmetic { adapter, operation, got, expected });
-            }
+/// Compares quotients and roots with the CPU's.
+pub(super) fn compare(got: &[f64], precision: Precision, adapter: &Adapter) -> Result<(), GpuError> {
+    let unit = match precision {
+        Precision::F32 => f32::EPSILON.into(),
+        Precision::F64 => f64::EPSILON,
+    };
+    let expected = OPERANDS.iter().flat_map(|&[x, y]| {
+        [(x / y, format!("{x:e} / {y:e}")), (x.sqrt(), format!("the square root of {x:e}"))]
+    });
+    for ((expected, operation), &got) in expected.zip(got) {
+        // Written so that NaN fails.
+        let right = (got - expected).abs() <= TOLERANCE * unit * expected;
+        if !right {
+            let adapter = adapter.to_string();
+            return Err(GpuError::WrongArithmetic { adapter, operation, got, expected });
         }
-        Ok(())
     }
+    Ok(())
 }
