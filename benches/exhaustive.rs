@@ -9,6 +9,7 @@ use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Precision, Proximity};
+use scene::levels::levels;
 use scene::subdivide::{in_four, shuffled};
 use scene::{timing, ventricle};
 use std::hint::black_box;
@@ -62,6 +63,16 @@ fn exhaustive(criterion: &mut Criterion) {
             bench(format!("{name}, f32"), &mut single);
             bench(format!("{name}, f64"), &mut double);
         }
+    }
+    // No instruction set may fall back to a narrower one in silence.
+    for (name, level) in levels() {
+        let mut single: Exhaustive<f32> = engine(&mesh, false);
+        single.set_level(level);
+        let mut out = Vec::new();
+        let mut query = || single.per_link(&models[0].1, &base, &mut out).expect("a finite pose");
+        group.bench_function(format!("K, every pair, f32, {name}"), |bencher| {
+            pool.install(|| bencher.iter(&mut query));
+        });
     }
     group.finish();
 }

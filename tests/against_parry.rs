@@ -5,10 +5,10 @@ mod common;
 
 use common::Random;
 use common::certificate::{certify, directions, shapes};
-use common::double_double::DoubleDouble;
 use common::kernels::Input;
 use common::precision::extent;
 use common::problems::{Family, Problem};
+use parry_continuum::distance::DoubleDouble;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Capsule, Cylinder, Shape, Triangle};

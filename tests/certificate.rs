@@ -5,7 +5,6 @@ mod common;
 
 use common::Random;
 use common::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
-use common::double_double::DoubleDouble;
 use common::kernels::{Input, KERNELS};
 use common::precision::{Precision, extent, vector};
 use common::problems::Family;

@@ -167,6 +167,33 @@ fn nasty_meshes_at_any_size_and_place() {
     assert!(apart > 100 && touching > 20, "{apart} apart, {touching} touching");
 }
 
+/// A wall all of whose triangles point at the robot from the same distance but for a hundred-millionth: in single
+/// precision they are all as near.
+#[test]
+fn near_ties_are_decided_in_double_precision() {
+    let mut random = Random::new(9);
+    for offset in [Vector::ZERO, Vector::new(1e6, -1e6, 0.5e6)] {
+        let robot = Chain::capsules(&[offset, offset + Vector::Z * 40.0], &[1.0]).unwrap();
+        let (mut triangles, mut distances) = (Vec::new(), Vec::new());
+        for _ in 0..3000 {
+            let (angle, height) = (random.between(-3.1, 3.1), random.between(1.0, 39.0));
+            let outward = Vector::new(f64::cos(angle), f64::sin(angle), 0.0);
+            let aside = outward.cross(Vector::Z);
+            let tip = offset + outward * 10.0 * (1.0 + 1e-8 * random.between(0.0, 1.0)) + Vector::Z * height;
+            triangles.push([tip, tip + outward + aside, tip + outward - aside].map(|v| v.to_array()));
+            distances.push((tip - offset).truncate().length() - 1.0);
+        }
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let single = least as f32;
+        assert!(distances.iter().all(|&distance| (distance as f32 - single).abs() <= single * f32::EPSILON));
+        assert!(distances.iter().filter(|&&distance| distance - least > 1e-8).count() > 2000);
+        let mesh = mesh_of(&triangles);
+        let found = check_agreement(&mesh, &robot, &Pose::IDENTITY, offset.length());
+        let unit = UNIT * (extent(&mesh, &robot) + offset.length());
+        assert!((found[0] - least).abs() <= 16.0 * unit, "{} for {least}", found[0]);
+    }
+}
+
 #[test]
 fn moved_vertices_are_seen() {
     let mut random = Random::new(11);

@@ -7,7 +7,6 @@
 mod common;
 
 use common::Random;
-use common::double_double::DoubleDouble;
 use common::precision::{Precision, extent, vector};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;

@@ -10,6 +10,7 @@ pub mod ctr;
 pub mod field;
 pub mod figure;
 pub mod lettering;
+pub mod levels;
 pub mod mesh_file;
 pub mod picture;
 pub mod remesh;

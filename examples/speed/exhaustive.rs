@@ -1,9 +1,12 @@
 //! Exhaustive engines against parry, pair by pair and on one thread; and how they use two threads and memory.
 
+use crate::goals::{Goal, Goals};
 use crate::machine;
+use crate::scene::levels::levels;
 use crate::scene::subdivide::{in_four, shuffled};
 use crate::scene::timing::{self, medians};
 use crate::scene::{ctr, ventricle};
+use fearless_simd::Level;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;
@@ -35,7 +38,7 @@ pub fn on_one_thread<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, Strin
 }
 
 /// The chapter of the page.
-pub fn chapter() -> Result<String, String> {
+pub fn chapter(goals: &mut Goals) -> Result<String, String> {
     let mut page = String::from(
         "## Exhaustive\n\n\
          The ventricle of 6,000 triangles divided in four twice, 30 links, one thread. The peer is a loop of parry's \
@@ -52,20 +55,46 @@ pub fn chapter() -> Result<String, String> {
     let sorted = divided(2);
     for (order, (vertices, indices)) in [("shuffled", shuffled(sorted.clone(), 1)), ("sorted", sorted)] {
         let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
-        let (mesh, models) = (&mesh, &models);
+        let (mesh, models, goals) = (&mesh, &models, &mut *goals);
         let (rows, shares) = on_one_thread(move || -> Result<_, String> {
-            let single = rows::<f32>(order, "f32", mesh, models)?;
-            let double = rows::<f64>(order, "f64", mesh, models)?;
+            let single = rows::<f32>(order, "f32", mesh, models, goals)?;
+            let double = rows::<f64>(order, "f64", mesh, models, goals)?;
             Ok((single.0 + &double.0, single.1 + &double.1))
         })??;
         page.push_str(&rows);
         work.push_str(&shares);
     }
-    page.push_str(
-        "\nGoals: without culling 50 x (f32) and 25 x (f64), with culling 200 x and 80 x; with culling Z at most 1.2 K \
-         and Z* at most 1.05 K.\n",
+    Ok(page + &work + &instruction_sets(&models[0].1)?)
+}
+
+/// What each instruction set of the machine makes of the same kernels: none may fall back to narrower ones.
+fn instruction_sets(robot: &Chain) -> Result<String, String> {
+    let (vertices, indices) = divided(2);
+    let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
+    let mut page = String::from(
+        "\nNanoseconds a pair by instruction set, K without culling, one thread:\n\n\
+         | instruction set | f32 | f64 |\n|---|---|---|\n",
     );
-    Ok(page + &work)
+    for (name, level) in levels() {
+        let (mesh, robot) = (&mesh, robot);
+        let [single, double] = on_one_thread(move || -> Result<_, String> {
+            Ok([without_culling::<f32>(mesh, robot, level)?, without_culling::<f64>(mesh, robot, level)?])
+        })??;
+        let _ = writeln!(page, "| {name} | {:.1} | {:.1} |", single * 1e9, double * 1e9);
+    }
+    Ok(page)
+}
+
+/// Seconds a pair.
+fn without_culling<T: Precision>(mesh: &TriMesh, robot: &Chain, level: Level) -> Result<f64, String> {
+    let mut engine = Exhaustive::<T>::new(mesh).map_err(|error| error.to_string())?;
+    engine.set_culling(false);
+    engine.set_level(level);
+    let mut out = Vec::new();
+    let mut query =
+        || engine.per_link(robot, &ventricle::entry(), &mut out).map_err(|error| error.to_string());
+    let time = medians::<String>(&mut [&mut query], Duration::from_millis(500))?[0].as_secs_f64();
+    Ok(time / (mesh.num_triangles() * robot.links().len()) as f64)
 }
 
 fn rows<T: Precision + Send>(
@@ -73,6 +102,7 @@ fn rows<T: Precision + Send>(
     precision: &str,
     mesh: &TriMesh,
     models: &[(&str, Chain); 3],
+    goals: &mut Goals,
 ) -> Result<(String, String), String> {
     let base = ventricle::entry();
     let cylinders = timing::cylinders(&models[2].1);
@@ -118,7 +148,17 @@ fn rows<T: Precision + Send>(
             let _ = write!(page, " {:.2} ns, {:.0} x |", time * 1e9, peer / time);
         }
         let _ = writeln!(page, " {:.2} | {:.2} |", ours[1] / ours[0], ours[2] / ours[0]);
+        let least = match (precision, culling) {
+            ("f32", false) => 50.0,
+            ("f32", true) => 200.0,
+            (_, false) => 25.0,
+            (_, true) => 80.0,
+        };
+        let job = format!("exhaustive K, {precision}, {} culling", if culling { "with" } else { "without" });
+        goals.note(&job, Goal::AtLeast(least), peer / ours[0]);
         if culling {
+            goals.note("exhaustive Z* against K, with culling", Goal::AtMost(1.05), ours[1] / ours[0]);
+            goals.note("exhaustive Z against K, with culling", Goal::AtMost(1.2), ours[2] / ours[0]);
             for work in [k.work(), z_star.work(), z.work()] {
                 let share = |count: u64| 100.0 * count as f64 / work.pairs as f64;
                 let _ =

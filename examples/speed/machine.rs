@@ -1,5 +1,6 @@
 //! What the program runs on, and how much memory it holds.
 
+use crate::scene::levels::levels;
 use std::fs;
 
 /// The processor, its cores, and the instructions that the engines use there.
@@ -13,20 +14,8 @@ pub fn description() -> String {
     };
     let model = field("model name").map_or("an unnamed processor", str::trim);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{model}, {cores} cores, {}", instructions())
-}
-
-fn instructions() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx512f") {
-        "AVX-512"
-    } else if is_x86_feature_detected!("avx2") {
-        "AVX2"
-    } else {
-        "SSE"
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    std::env::consts::ARCH
+    let widest = levels().first().map_or("no SIMD", |level| level.0);
+    format!("{model}, {cores} cores, {widest}")
 }
 
 /// Bytes of memory held now, where the system tells.

@@ -1,9 +1,9 @@
 //! The narrow phase: exact distances between pairs of simple shapes (paper, section III).
 //!
 //! One public function per pair, in a file of its own with its derivation. All are branch-free and generic
-//! over [`Scalar`]; each scales its problem by an exact power of two, so finite input of any size gives a
-//! finite answer. Errors stay within a few units in the last place of the problem's extent, the largest
-//! difference between two of its coordinates or its radius.
+//! over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each scales its problem by an exact power
+//! of two, so finite input of any size gives a finite answer. Errors stay within a few units in the last place
+//! of the problem's extent, the largest difference between two of its coordinates or its radius.
 //!
 //! ```
 //! use parry_continuum::distance::{Vec3, triangle_modified_cylinder};
@@ -18,6 +18,7 @@
 
 mod bounds;
 mod disc_solver;
+mod double_double;
 mod face;
 mod frame;
 pub(crate) mod lanes;
@@ -42,6 +43,7 @@ pub(crate) use segment_disc::Line;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 pub use disc_solver::{Convex, DiscSolver};
+pub use double_double::DoubleDouble;
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;

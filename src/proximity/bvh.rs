@@ -50,8 +50,9 @@ impl BvhSearch {
             return Err(MeshError::Empty);
         }
         let reach = check_vertices(mesh.vertices())?;
-        let mesh = SearchMesh::new(mesh.vertices(), mesh.indices());
-        Ok(Self { level: Level::new(), reach, mesh, memory: Memory::default(), batch: Vec::new() })
+        let level = Level::new();
+        let mesh = SearchMesh::new(level, mesh.vertices(), mesh.indices());
+        Ok(Self { level, reach, mesh, memory: Memory::default(), batch: Vec::new() })
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
@@ -154,7 +155,7 @@ impl Proximity for BvhSearch {
             return Err(MeshError::VertexCount { expected, got: vertices.len() });
         }
         self.reach = check_vertices(vertices)?;
-        self.mesh.set_vertices(vertices);
+        self.mesh.set_vertices(self.level, vertices);
         Ok(())
     }
 }

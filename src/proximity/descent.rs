@@ -14,7 +14,7 @@ use super::soa::load_vertices;
 use super::tree::{Child, Leaf, Tree, WIDTH};
 use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd};
 use parry3d_f64::math::{Real, Vector};
 
 /// How much a search has computed since it was built.
@@ -37,14 +37,18 @@ pub(super) struct SearchMesh {
 }
 
 impl SearchMesh {
-    pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
-        Self { tree: Tree::new(vertices, indices), vertices: vertices.to_vec(), indices: indices.to_vec() }
+    pub(super) fn new(level: Level, vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
+        Self {
+            tree: Tree::new(level, vertices, indices),
+            vertices: vertices.to_vec(),
+            indices: indices.to_vec(),
+        }
     }
 
     /// Takes over moved vertices.
-    pub(super) fn set_vertices(&mut self, vertices: &[Vector]) {
+    pub(super) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.vertices.copy_from_slice(vertices);
-        self.tree.refit(vertices, &self.indices);
+        self.tree.refit(level, vertices, &self.indices);
     }
 
     /// The corners of a triangle.

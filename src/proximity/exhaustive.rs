@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
-/// mesh costs only a copy.
+/// mesh costs little more than a copy.
 ///
 /// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured again in
 /// `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles are taken 2 to 16 at a
@@ -101,6 +101,12 @@ impl<T: Precision> Exhaustive<T> {
     /// paper, for comparison with it.
     pub fn set_culling(&mut self, culling: bool) {
         self.culling = culling;
+    }
+
+    /// Uses another instruction set than the widest of this machine: for the comparison of instruction sets.
+    #[doc(hidden)]
+    pub fn set_level(&mut self, level: Level) {
+        self.level = level;
     }
 
     /// How much was computed since the engine was built.

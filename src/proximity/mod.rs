@@ -1,6 +1,7 @@
 //! Robot against mesh: the closest triangle of every link, by search or exhaustively.
 
 mod bvh;
+mod certificate;
 mod coarse;
 mod descent;
 mod engine;
@@ -12,6 +13,7 @@ mod probe;
 mod report;
 mod scan;
 mod search;
+mod share;
 mod soa;
 mod tree;
 mod walk;
@@ -24,6 +26,7 @@ pub(crate) use probe::{check_vertices, place};
 pub(crate) use search::{Found, Until, search};
 
 pub use bvh::BvhSearch;
+pub use certificate::Certificate;
 pub use descent::Visits;
 pub use engine::Proximity;
 pub use exhaustive::{Exhaustive, Precision};

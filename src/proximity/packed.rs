@@ -149,7 +149,7 @@ impl<L: Pack> PackedLink<L> {
 // without the instruction set.
 
 #[inline(always)]
-fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L> {
+pub(super) fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L> {
     Vec3::new(L::splat(token, point.x), L::splat(token, point.y), L::splat(token, point.z))
 }
 

@@ -1,8 +1,11 @@
 //! What a hierarchy's node knows of a patch of the mesh: a box and a disc around the same centre.
 
-use super::packed::BLOCK;
-use super::tree::{Leaf, Node};
-use crate::distance::Vec3;
+use super::packed::{BLOCK, splat};
+use super::soa::load_vertices;
+use super::tree::Node;
+use crate::distance::lanes::Pack;
+use crate::distance::{Scalar, Vec3};
+use std::ops::Add;
 
 /// How many numbers a patch has.
 pub(super) const PATCH_ROWS: usize = 11;
@@ -20,22 +23,34 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Around the triangles of a leaf.
-    pub(super) fn of_leaf(leaf: &Leaf) -> Self {
-        let corners = || (0..BLOCK).flat_map(|lane| (0..3).map(move |corner| leaf.corner(lane, corner)));
-        let area = |lane| {
-            let [a, b, c] = [0, 1, 2].map(|corner| leaf.corner(lane, corner));
-            (b - a).cross(c - a)
-        };
-        let normal = (0..BLOCK).map(area).reduce(|sum, area| sum + area);
-        let mut patch = Self::between(
-            corners().reduce(|a, b| each(a, b, f32::min)),
-            corners().reduce(|a, b| each(a, b, f32::max)),
-            normal,
-        );
-        for corner in corners() {
-            patch.reach(corner, 0.0, 0.0);
+    /// Around the triangles of a leaf, given by the rows of their coordinates.
+    #[inline(always)]
+    pub(super) fn of_leaf<L: Pack<Element = f32>>(token: L::Token, rows: &[f32; 9 * BLOCK]) -> Self {
+        let first = load_vertices::<L>(token, rows, 0);
+        let (mut low, mut high) = (first[0], first[0]);
+        let zero = first[0].x.zero();
+        let mut area = Vec3::new(zero, zero, zero);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let [a, b, c] = load_vertices::<L>(token, rows, lane);
+            low = lower(lower(low, a), lower(b, c));
+            high = upper(upper(high, a), upper(b, c));
+            area = area + (b - a).cross(c - a);
         }
+        let mut patch = Self::between(fold(low, f32::min), fold(high, f32::max), fold(area, Add::add));
+
+        let centre = splat(token, patch.centre);
+        let normal = splat(token, patch.normal);
+        let (mut height, mut radial) = (zero, zero);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            for corner in load_vertices::<L>(token, rows, lane) {
+                let relative = corner - centre;
+                let along = relative.dot(normal);
+                height = height.max(along.abs());
+                radial = radial.max(relative.along(normal, -along).norm_squared());
+            }
+        }
+        patch.thickness = fold_row(height, f32::max) + ROUNDING;
+        patch.radius = fold_row(radial, f32::max).sqrt() + ROUNDING;
         patch
     }
 
@@ -44,10 +59,11 @@ impl Patch {
         let patches = || node.patches_in_use();
         // A larger patch has more of the wall's area and so more say.
         let normal = patches().map(|patch| patch.normal * (patch.radius * patch.radius)).reduce(|a, b| a + b);
+        let zero = Vec3::new(0.0, 0.0, 0.0);
         let mut around = Self::between(
-            patches().map(|patch| patch.centre - patch.half).reduce(|a, b| each(a, b, f32::min)),
-            patches().map(|patch| patch.centre + patch.half).reduce(|a, b| each(a, b, f32::max)),
-            normal,
+            patches().map(|patch| patch.centre - patch.half).reduce(lower).unwrap_or(zero),
+            patches().map(|patch| patch.centre + patch.half).reduce(upper).unwrap_or(zero),
+            normal.unwrap_or(zero),
         );
         for patch in patches() {
             let cosine = around.normal.dot(patch.normal).abs().min(1.0);
@@ -60,13 +76,11 @@ impl Patch {
         around
     }
 
-    fn between(low: Option<Vec3<f32>>, high: Option<Vec3<f32>>, normal: Option<Vec3<f32>>) -> Self {
-        let zero = Vec3::new(0.0, 0.0, 0.0);
-        let (low, high) = (low.unwrap_or(zero), high.unwrap_or(zero));
+    fn between(low: Vec3<f32>, high: Vec3<f32>, normal: Vec3<f32>) -> Self {
         let centre = low * 0.5 + high * 0.5;
         let rounding = Vec3::new(ROUNDING, ROUNDING, ROUNDING);
-        let half = each(high - centre, centre - low, f32::max) + rounding;
-        Self { centre, half, normal: normal.unwrap_or(zero).normalised(), thickness: 0.0, radius: 0.0 }
+        let half = upper(high - centre, centre - low) + rounding;
+        Self { centre, half, normal: normal.normalised(), thickness: 0.0, radius: 0.0 }
     }
 
     /// Widens the disc to hold what reaches `along` and `across` the normal from `point`.
@@ -79,7 +93,28 @@ impl Patch {
     }
 }
 
-/// A function of each coordinate.
-fn each(a: Vec3<f32>, b: Vec3<f32>, f: impl Fn(f32, f32) -> f32) -> Vec3<f32> {
-    Vec3::new(f(a.x, b.x), f(a.y, b.y), f(a.z, b.z))
+/// The lesser of each coordinate.
+#[inline(always)]
+fn lower<T: Scalar>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
+    Vec3::new(a.x.min(b.x), a.y.min(b.y), a.z.min(b.z))
+}
+
+/// The greater of each coordinate.
+#[inline(always)]
+fn upper<T: Scalar>(a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
+    Vec3::new(a.x.max(b.x), a.y.max(b.y), a.z.max(b.z))
+}
+
+/// One number of all lanes.
+#[inline(always)]
+fn fold_row<L: Pack<Element = f32>>(row: L, both: fn(f32, f32) -> f32) -> f32 {
+    let mut lanes = [0.0; BLOCK];
+    row.store(&mut lanes);
+    lanes[1..L::LANES].iter().fold(lanes[0], |a, &b| both(a, b))
+}
+
+/// One point of all lanes.
+#[inline(always)]
+fn fold<L: Pack<Element = f32>>(rows: Vec3<L>, both: fn(f32, f32) -> f32) -> Vec3<f32> {
+    Vec3::new(fold_row(rows.x, both), fold_row(rows.y, both), fold_row(rows.z, both))
 }

@@ -177,19 +177,26 @@ fn reach_of(point: Vector) -> Real {
 
 /// The largest magnitude of the vertices' coordinates.
 pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<Real, MeshError> {
-    let mut reach: Real = 0.0;
-    for (vertex, point) in vertices.iter().enumerate() {
-        for value in point.to_array() {
-            if !value.is_finite() {
-                return Err(MeshError::NotFinite { vertex, value });
-            }
-            if value.abs() > COORDINATE_LIMIT {
-                return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
-            }
-            reach = reach.max(value.abs());
+    // Written so that NaN is out of range too.
+    if !vertices.iter().all(|point| point.abs().cmple(Vector::splat(COORDINATE_LIMIT)).all()) {
+        for (vertex, point) in vertices.iter().enumerate() {
+            check_vertex(vertex, *point)?;
         }
     }
-    Ok(reach)
+    Ok(vertices.iter().fold(Vector::ZERO, |reach, point| reach.max(point.abs())).max_element())
+}
+
+/// Whether a vertex can be used; `vertex` is its place in the mesh.
+pub(crate) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError> {
+    for value in point.to_array() {
+        if !value.is_finite() {
+            return Err(MeshError::NotFinite { vertex, value });
+        }
+        if value.abs() > COORDINATE_LIMIT {
+            return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
+        }
+    }
+    Ok(())
 }
 
 fn to_vec3(vector: Vector) -> Vec3<f64> {

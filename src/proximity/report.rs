@@ -79,6 +79,29 @@ pub enum ProximityError {
         /// The offending margin.
         margin: Real,
     },
+    /// An answer names a link that the robot does not have.
+    #[error(
+        "the answer is about link {link}, but the robot has {links} links; give the robot that was asked about"
+    )]
+    NoSuchLink {
+        /// The answer's link.
+        link: usize,
+        /// How many links the robot has.
+        links: usize,
+    },
+    /// An answer names a triangle that the mesh does not have.
+    #[error(
+        "the answer is about triangle {triangle}, but the mesh has {triangles}; give the mesh that was asked about"
+    )]
+    NoSuchTriangle {
+        /// The answer's triangle.
+        triangle: usize,
+        /// How many triangles the mesh has.
+        triangles: usize,
+    },
+    /// A vertex of the mesh cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The GPU that was asked failed.
     #[cfg(feature = "gpu")]
     #[error(transparent)]

@@ -2,6 +2,7 @@
 
 use super::coarse::CoarseFrame;
 use super::packed::BLOCK;
+use super::share::each;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
 use fearless_simd::{Level, dispatch};
@@ -11,6 +12,8 @@ use parry3d_f64::math::Vector;
 const SPHERE_ROWS: usize = 4;
 /// Rows of a block that hold its triangles: three vertices and the dual basis.
 const FACE_ROWS: usize = 15;
+/// How many blocks one thread takes over at a time.
+const SHARE: usize = 64;
 
 /// The triangles of a mesh, near one, with what is computed once for each.
 pub(super) struct SoaMesh<E> {
@@ -32,47 +35,13 @@ impl<E: Lane> SoaMesh<E> {
         let blocks = indices.len().div_ceil(BLOCK);
         self.spheres.resize(blocks * BLOCK * SPHERE_ROWS, E::default());
         self.faces.resize(blocks * BLOCK * FACE_ROWS, E::default());
-        for (block, rows) in self.faces.chunks_exact_mut(BLOCK * FACE_ROWS).enumerate() {
-            for lane in 0..BLOCK {
-                // The last block is filled up with its last triangle.
-                let triangle = indices[(block * BLOCK + lane).min(indices.len() - 1)];
-                for (corner, index) in triangle.into_iter().enumerate() {
-                    let point: [E; 3] = self.frame.point(vertices[index as usize]).into();
-                    for (axis, value) in point.into_iter().enumerate() {
-                        rows[(3 * corner + axis) * BLOCK + lane] = value;
-                    }
-                }
-            }
-        }
-        dispatch!(level, simd => self.prepare::<E::Pack<_>>(simd));
-    }
-
-    /// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
-    #[inline(always)]
-    fn prepare<L: Pack<Element = E>>(&mut self, token: L::Token) {
-        let faces = self.faces.chunks_exact_mut(BLOCK * FACE_ROWS);
-        for (face, sphere) in faces.zip(self.spheres.chunks_exact_mut(BLOCK * SPHERE_ROWS)) {
-            for lane in (0..BLOCK).step_by(L::LANES) {
-                let made = Face::new(load_vertices::<L>(token, face, lane));
-                let [a, b, c] = made.vertices;
-                for (row, vector) in [a, b, c, made.dual[0], made.dual[1]].into_iter().enumerate() {
-                    store(vector, face, 3 * row, lane);
-                }
-                // Around the middle of the longest edge, which holds the apex of an obtuse triangle too.
-                let centre = (b + c) * a.x.lit(0.5);
-                let apex = (a - centre).norm_squared();
-                let half = (b - centre).norm_squared();
-                // An acute triangle's apex may lie outside: then around the centroid, if that is smaller.
-                let middle = (a + b + c) * a.x.lit(1.0 / 3.0);
-                let around = (a - middle).norm_squared().max((b - middle).norm_squared());
-                let around = around.max((c - middle).norm_squared());
-                let take_edge = apex.max(half).le(around);
-                let centre = Vec3::select(take_edge, centre, middle);
-                let radius = take_edge.select(apex.max(half), around).sqrt();
-                store(centre, sphere, 0, lane);
-                (radius * radius.lit(1.0 + 8.0 * E::UNIT_ROUNDOFF)).store(&mut sphere[3 * BLOCK + lane..]);
-            }
-        }
+        let frame = &self.frame;
+        let faces = self.faces.chunks_mut(SHARE * BLOCK * FACE_ROWS);
+        let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE * BLOCK * SPHERE_ROWS)).collect();
+        each(&mut shares, |share, (faces, spheres)| {
+            fill(frame, vertices, indices, share * SHARE, faces);
+            dispatch!(level, simd => prepare::<E::Pack<_>>(simd, faces, spheres));
+        });
     }
 
     /// How many blocks there are.
@@ -98,6 +67,56 @@ impl<E: Lane> SoaMesh<E> {
         let rows = &self.faces[block * BLOCK * FACE_ROWS..][..BLOCK * FACE_ROWS];
         let dual = [load(token, rows, 9, lane), load(token, rows, 12, lane)];
         Face { vertices: load_vertices(token, rows, lane), dual }
+    }
+}
+
+/// Writes the corners of the triangles into blocks, the first of which has the number `first`.
+fn fill<E: Lane>(
+    frame: &CoarseFrame,
+    vertices: &[Vector],
+    indices: &[[u32; 3]],
+    first: usize,
+    faces: &mut [E],
+) {
+    for (block, rows) in faces.chunks_exact_mut(BLOCK * FACE_ROWS).enumerate() {
+        for lane in 0..BLOCK {
+            // The last block is filled up with its last triangle.
+            let triangle = indices[((first + block) * BLOCK + lane).min(indices.len() - 1)];
+            for (corner, index) in triangle.into_iter().enumerate() {
+                let point: [E; 3] = frame.point(vertices[index as usize]).into();
+                for (axis, value) in point.into_iter().enumerate() {
+                    rows[(3 * corner + axis) * BLOCK + lane] = value;
+                }
+            }
+        }
+    }
+}
+
+/// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
+#[inline(always)]
+fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], spheres: &mut [L::Element]) {
+    let faces = faces.chunks_exact_mut(BLOCK * FACE_ROWS);
+    for (face, sphere) in faces.zip(spheres.chunks_exact_mut(BLOCK * SPHERE_ROWS)) {
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let made = Face::new(load_vertices::<L>(token, face, lane));
+            let [a, b, c] = made.vertices;
+            for (row, vector) in [a, b, c, made.dual[0], made.dual[1]].into_iter().enumerate() {
+                store(vector, face, 3 * row, lane);
+            }
+            // Around the middle of the longest edge, which holds the apex of an obtuse triangle too.
+            let centre = (b + c) * a.x.lit(0.5);
+            let apex = (a - centre).norm_squared();
+            let half = (b - centre).norm_squared();
+            // An acute triangle's apex may lie outside: then around the centroid, if that is smaller.
+            let middle = (a + b + c) * a.x.lit(1.0 / 3.0);
+            let around = (a - middle).norm_squared().max((b - middle).norm_squared());
+            let around = around.max((c - middle).norm_squared());
+            let take_edge = apex.max(half).le(around);
+            let centre = Vec3::select(take_edge, centre, middle);
+            let radius = take_edge.select(apex.max(half), around).sqrt();
+            store(centre, sphere, 0, lane);
+            (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF)).store(&mut sphere[3 * BLOCK + lane..]);
+        }
     }
 }
 

@@ -7,13 +7,18 @@
 use super::coarse::CoarseFrame;
 use super::packed::{BLOCK, Patches};
 use super::patch::{PATCH_ROWS, Patch};
+use super::share::each;
 use super::soa::load;
 use crate::distance::Vec3;
-use crate::distance::lanes::Pack;
+use crate::distance::lanes::{Lane, Pack};
+use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::Vector;
 
 /// How many children a node has.
 pub(super) const WIDTH: usize = 16;
+
+/// How many leaves one thread takes over at a time.
+const SHARE: usize = 64;
 
 /// A child's number, and what it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,7 +70,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// The hierarchy of a mesh with at least one triangle.
-    pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
+    pub(super) fn new(level: Level, vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         let mut tree = Self {
             frame: CoarseFrame::new(vertices),
             nodes: Vec::new(),
@@ -80,7 +85,7 @@ impl Tree {
         let mut items: Vec<_> = (0..).zip(indices).map(|(t, corners)| (t, centroid(corners))).collect();
         tree.nodes.push(Node::empty());
         tree.split(0, &mut items);
-        tree.refit(vertices, indices);
+        tree.refit(level, vertices, indices);
         tree
     }
 
@@ -117,25 +122,35 @@ impl Tree {
     }
 
     /// Takes over the positions of the vertices; the division stays.
-    pub(super) fn refit(&mut self, vertices: &[Vector], indices: &[[u32; 3]]) {
+    pub(super) fn refit(&mut self, level: Level, vertices: &[Vector], indices: &[[u32; 3]]) {
         self.frame = CoarseFrame::new(vertices);
-        for leaf in &mut self.leaves {
-            for lane in 0..BLOCK {
-                for (corner, index) in indices[leaf.triangles[lane] as usize].into_iter().enumerate() {
-                    let point: [f32; 3] = self.frame.point(vertices[index as usize]).into();
-                    for (axis, value) in point.into_iter().enumerate() {
-                        leaf.rows[(3 * corner + axis) * BLOCK + lane] = value;
-                    }
+        let frame = &self.frame;
+        each(&mut self.leaves.chunks_mut(SHARE).collect::<Vec<_>>(), |_, leaves| {
+            leaves.iter_mut().for_each(|leaf| leaf.fill(frame, vertices, indices));
+        });
+        // Nearly all patches are those of leaves, and these do not wait for one another.
+        let leaves = &self.leaves;
+        each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
+            dispatch!(level, simd => enclose_leaves::<<f32 as Lane>::Pack<_>>(simd, leaves, nodes));
+        });
+        for node in (0..self.nodes.len()).rev() {
+            for child in 0..self.nodes[node].count {
+                if let Child::Node(below) = Child::unpack(self.nodes[node].children[child]) {
+                    let patch = Patch::of_node(&self.nodes[below as usize]);
+                    self.nodes[node].set(child, &patch);
                 }
             }
         }
-        for node in (0..self.nodes.len()).rev() {
-            for child in 0..self.nodes[node].count {
-                let patch = match Child::unpack(self.nodes[node].children[child]) {
-                    Child::Leaf(leaf) => Patch::of_leaf(&self.leaves[leaf as usize]),
-                    Child::Node(below) => Patch::of_node(&self.nodes[below as usize]),
-                };
-                self.nodes[node].set(child, &patch);
+    }
+}
+
+/// Sets the patches of those children that are leaves.
+#[inline(always)]
+fn enclose_leaves<L: Pack<Element = f32>>(token: L::Token, leaves: &[Leaf], nodes: &mut [Node]) {
+    for node in nodes {
+        for child in 0..node.count {
+            if let Child::Leaf(leaf) = Child::unpack(node.children[child]) {
+                node.set(child, &Patch::of_leaf::<L>(token, &leaves[leaf as usize].rows));
             }
         }
     }
@@ -177,9 +192,15 @@ impl Leaf {
         Self { rows: [0.0; 9 * BLOCK], triangles }
     }
 
-    pub(super) fn corner(&self, lane: usize, corner: usize) -> Vec3<f32> {
-        let at = |axis: usize| self.rows[(3 * corner + axis) * BLOCK + lane];
-        Vec3::new(at(0), at(1), at(2))
+    fn fill(&mut self, frame: &CoarseFrame, vertices: &[Vector], indices: &[[u32; 3]]) {
+        for lane in 0..BLOCK {
+            for (corner, index) in indices[self.triangles[lane] as usize].into_iter().enumerate() {
+                let point: [f32; 3] = frame.point(vertices[index as usize]).into();
+                for (axis, value) in point.into_iter().enumerate() {
+                    self.rows[(3 * corner + axis) * BLOCK + lane] = value;
+                }
+            }
+        }
     }
 }
 

@@ -2,7 +2,6 @@
 //! it from above, a direction along which the shapes are apart bounds it from below. A proof needs no trust in
 //! whoever found the points and the direction.
 
-use super::double_double::DoubleDouble;
 use super::kernels::{Input, KERNELS};
 use parry_continuum::distance::*;
 

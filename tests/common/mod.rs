@@ -2,7 +2,6 @@
 #![allow(dead_code)] // each test uses its part
 
 pub mod certificate;
-pub mod double_double;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod kernels;
