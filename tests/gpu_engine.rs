@@ -119,7 +119,10 @@ fn the_adapter_is_named() {
         let adapter = gpu.adapter();
         assert!(!adapter.name.is_empty());
         assert_eq!(adapter.to_string().contains("in software"), adapter.is_software);
-        assert_eq!(adapter.is_software, adapter.name.contains("llvmpipe") || adapter.name.contains("SwiftShader"));
+        assert_eq!(
+            adapter.is_software,
+            adapter.name.contains("llvmpipe") || adapter.name.contains("SwiftShader")
+        );
         let mut engine = GpuExhaustive::on(gpu, &cave()).unwrap();
         let (robot, pose) = &robots(1)[0];
         engine.minimum(robot, pose).unwrap();

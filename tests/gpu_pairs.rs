@@ -75,7 +75,10 @@ fn worst(gpu: &Gpu, pair: Pair, problems: &[PairProblem]) -> (f64, usize) {
         let gap = (vector(answer.point1) - vector(answer.point2)).length();
         let magnitude = vector(answer.point1).length() + vector(answer.point2).length();
         let slack = 16.0 * unit + 8.0 * f64::EPSILON * magnitude;
-        assert!((gap - answer.distance).abs() <= slack, "{pair:?}: witnesses at {gap}, {answer:?}, {problem:?}");
+        assert!(
+            (gap - answer.distance).abs() <= slack,
+            "{pair:?}: witnesses at {gap}, {answer:?}, {problem:?}"
+        );
         worst = worst.max(if error > 0.0 { error / unit } else { 0.0 });
         touching += usize::from(answer.distance == 0.0);
     }

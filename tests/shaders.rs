@@ -54,13 +54,9 @@ fn every_kernel_translates() {
             assert_eq!((entry.name.as_str(), module.entry_points.len()), (kernel.name, 1));
             assert_eq!(entry.stage, ShaderStage::Compute);
             for constants in choices(&module) {
-                let (module, info) = process_overrides(
-                    &module,
-                    &info,
-                    Some((ShaderStage::Compute, kernel.name)),
-                    &constants,
-                )
-                .unwrap_or_else(|error| panic!("{} {precision}: {error}", kernel.name));
+                let (module, info) =
+                    process_overrides(&module, &info, Some((ShaderStage::Compute, kernel.name)), &constants)
+                        .unwrap_or_else(|error| panic!("{} {precision}: {error}", kernel.name));
                 validate(kernel.name, &module, double);
                 let words = spv::write_vec(&module, &info, &spv::Options::default(), None)
                     .unwrap_or_else(|error| panic!("{} {precision}: {error}", kernel.name));
@@ -169,7 +165,10 @@ fn literals_have_a_type_and_are_no_tolerances() {
     let mut checked = 0;
     for kernel in KERNELS {
         for (before, literal) in literals(&code(kernel.text)) {
-            let typed = before.ends_with("real(") || before.ends_with("real(-") || before.ends_with("real(1.0 /") || literal.ends_with('f');
+            let typed = before.ends_with("real(")
+                || before.ends_with("real(-")
+                || before.ends_with("real(1.0 /")
+                || literal.ends_with('f');
             assert!(typed, "{}: {literal} after {}", kernel.name, &before[before.len().saturating_sub(40)..]);
             if !literal.ends_with('f') {
                 let value: f64 = literal.parse().expect("a number");

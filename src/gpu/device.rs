@@ -78,9 +78,8 @@ impl Device {
             required_limits: adapter.limits(),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
-            GpuError::NotOpened { adapter: named.to_string(), reason: error.to_string() }
-        })?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| GpuError::NotOpened { adapter: named.to_string(), reason: error.to_string() })?;
         let failures = Failures::default();
         failures.listen_to(&device);
         let keeps_time = features.contains(wgpu::Features::TIMESTAMP_QUERY);

@@ -8,7 +8,8 @@ use super::query::{Candidate, Query};
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_vertices, place,
+    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_vertices, each,
+    place,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -184,7 +185,7 @@ impl GpuExhaustive {
     fn nearest(&mut self, link: usize, bound: Real) -> Option<Found> {
         let probe = &self.links[link].0;
         let Some((placed, candidates)) = self.candidates(link) else {
-            let found = nearest_of(probe, 0..self.indices.len() as u32, bound, &self.vertices, &self.indices);
+            let found = nearest_of_all(probe, bound, &self.vertices, &self.indices);
             self.answered_on_cpu += 1;
             return found;
         };
@@ -209,8 +210,7 @@ impl GpuExhaustive {
 
     /// A lower bound on a link's distance, in the probe's units, by what the device computed.
     fn at_least(&self, link: usize) -> Real {
-        self.candidates(link)
-            .map_or(0.0, |(placed, candidates)| placed.at_least(least_distance(candidates)))
+        self.candidates(link).map_or(0.0, |(placed, candidates)| placed.at_least(least_distance(candidates)))
     }
 }
 
@@ -322,4 +322,17 @@ fn nearest_of(
         }
     }
     nearest
+}
+
+/// Triangles that a core of the CPU takes at a time.
+const SHARE: usize = 4096;
+
+/// The nearest of all triangles.
+fn nearest_of_all(probe: &Probe, bound: Real, vertices: &[Vector], indices: &[[u32; 3]]) -> Option<Found> {
+    let mut shares: Vec<Option<Found>> = vec![None; indices.len().div_ceil(SHARE)];
+    each(&mut shares, |share, nearest| {
+        let triangles = share * SHARE..indices.len().min((share + 1) * SHARE);
+        *nearest = nearest_of(probe, triangles.map(|triangle| triangle as u32), bound, vertices, indices);
+    });
+    shares.into_iter().flatten().min_by(|a, b| a.closest.distance.total_cmp(&b.closest.distance))
 }

@@ -6,7 +6,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum GpuError {
     /// No driver offers a GPU.
-    #[error("no GPU was found ({reason}); install a driver for Vulkan, Metal or Direct3D 12, or use an engine on the CPU")]
+    #[error(
+        "no GPU was found ({reason}); install a driver for Vulkan, Metal or Direct3D 12, or use an engine on the CPU"
+    )]
     NoAdapter {
         /// What was looked for.
         reason: String,
@@ -41,7 +43,9 @@ pub enum GpuError {
         expected: f64,
     },
     /// The driver does not compile a kernel.
-    #[error("{adapter} does not compile the kernel `{kernel}` ({message}); update its driver, or use an engine on the CPU")]
+    #[error(
+        "{adapter} does not compile the kernel `{kernel}` ({message}); update its driver, or use an engine on the CPU"
+    )]
     Shader {
         /// The GPU.
         adapter: String,
@@ -51,7 +55,9 @@ pub enum GpuError {
         message: String,
     },
     /// The GPU's memory does not hold the mesh.
-    #[error("{triangles} triangles do not fit into the memory of {adapter}; take a coarser mesh, or an engine on the CPU")]
+    #[error(
+        "{triangles} triangles do not fit into the memory of {adapter}; take a coarser mesh, or an engine on the CPU"
+    )]
     MeshTooLarge {
         /// The GPU.
         adapter: String,

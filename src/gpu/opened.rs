@@ -67,8 +67,7 @@ impl Opened {
 
     /// The kernel that computes every pair in full, compiled when it is first asked for.
     pub(super) fn every_pair(&self) -> Result<&ComputePipeline, GpuError> {
-        let compile =
-            || self.device.compile(shaders::NEAREST, &self.query_layout, &[("CULLING", 0.0)]);
+        let compile = || self.device.compile(shaders::NEAREST, &self.query_layout, &[("CULLING", 0.0)]);
         self.every_pair.get_or_init(compile).as_ref().map_err(Clone::clone)
     }
 }

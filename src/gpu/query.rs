@@ -257,10 +257,8 @@ impl Buffers {
             .buffer(rounds * parts * alignment.max(ROUND), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let link_buffer = device.buffer(links * LINK * size, up);
         let limits = device.buffer(links * 4, up);
-        let block_bounds = device.buffer(
-            u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS,
-            BufferUsages::STORAGE,
-        );
+        let block_bounds =
+            device.buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
         let found_buffer = device.buffer(found, down | BufferUsages::COPY_DST);
         let distance_buffer = device.buffer(distances, down);
         let readback =

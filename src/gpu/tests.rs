@@ -126,10 +126,7 @@ fn a_lost_device_is_an_error() {
     gpu.0.device.device.destroy();
     for _ in 0..2 {
         assert_eq!(engine.minimum(&robot, &pose), Err(ProximityError::Device(DeviceFailure::Lost)));
-        assert_eq!(
-            engine.set_vertices(mesh.vertices()),
-            Err(MeshError::Device(DeviceFailure::Lost))
-        );
+        assert_eq!(engine.set_vertices(mesh.vertices()), Err(MeshError::Device(DeviceFailure::Lost)));
     }
     let error = GpuExhaustive::on(&gpu, &mesh).err().expect("an error");
     assert_eq!(error, GpuError::Device(DeviceFailure::Lost));

@@ -24,6 +24,8 @@ pub(crate) use probe::Probe;
 #[cfg(feature = "gpu")]
 pub(crate) use probe::{check_vertices, place};
 pub(crate) use search::{Found, Until, search};
+#[cfg(feature = "gpu")]
+pub(crate) use share::each;
 
 pub use bvh::BvhSearch;
 pub use certificate::Certificate;
