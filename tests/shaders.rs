@@ -7,13 +7,13 @@ mod shaders;
 use naga::back::{PipelineConstants, hlsl, msl, pipeline_constants::process_overrides, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Expression, MathFunction, Module, ShaderStage};
-use shaders::{KERNELS, Kernel, REAL_F32, REAL_F64};
+use shaders::{KERNELS, Kernel, QUARTIC, REAL_F32, REAL_F64};
 
 const PRECISIONS: [(&str, &str, bool); 2] = [("f32", REAL_F32, false), ("f64", REAL_F64, true)];
 
 /// The kernel's module in a precision.
 fn module(kernel: &Kernel, real: &str, double: bool) -> (Module, ModuleInfo) {
-    let text = format!("{real}{}", kernel.text);
+    let text = kernel.source(real, QUARTIC);
     let module = naga::front::wgsl::parse_str(&text)
         .unwrap_or_else(|error| panic!("{}: {}", kernel.name, error.emit_to_string(&text)));
     let info = validate(kernel.name, &module, double);
@@ -33,7 +33,8 @@ fn choices(module: &Module) -> Vec<PipelineConstants> {
     for (_, constant) in module.overrides.iter() {
         let name = constant.name.clone().expect("a named override");
         let largest = match name.as_str() {
-            "CULLING" => 1,
+            "CULLING" | "COMPANION" => 1,
+            "FINDER" | "FORM" => 3,
             "PAIR" => 9,
             other => panic!("how far does {other} go?"),
         };

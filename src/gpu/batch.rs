@@ -39,12 +39,13 @@ impl Batch {
     pub(super) fn new(
         gpu: &Gpu,
         kernel: Kernel,
+        coefficients: u32,
         constants: &[(&str, f64)],
         problem: u64,
         answer: u64,
     ) -> Result<Self, GpuError> {
         let layout = gpu.0.device.layout(&[Some(false), Some(true)]);
-        let kernel = gpu.0.device.compile(kernel, &layout, constants)?;
+        let kernel = gpu.0.device.compile(kernel, coefficients, &layout, constants)?;
         let gpu = gpu.clone();
         Ok(Self { gpu, layout, kernel, problem, answer, buffers: None, bytes: Vec::new(), device_time: None })
     }

@@ -87,10 +87,11 @@ impl Device {
         Ok(Self { adapter: named, precision, limits: device.limits(), device, queue, tick, failures })
     }
 
-    /// Compiles a kernel in this device's precision.
+    /// Compiles a kernel in this device's precision, for polynomials of so many coefficients if it is about any.
     pub(super) fn compile(
         &self,
         kernel: Kernel,
+        coefficients: u32,
         layout: &wgpu::BindGroupLayout,
         constants: &[(&str, f64)],
     ) -> Result<wgpu::ComputePipeline, GpuError> {
@@ -102,7 +103,7 @@ impl Device {
             .map(|filter| self.device.push_error_scope(filter));
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.name),
-            source: wgpu::ShaderSource::Wgsl(format!("{real}{}", kernel.text).into()),
+            source: wgpu::ShaderSource::Wgsl(kernel.source(real, coefficients).into()),
         });
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(kernel.name),

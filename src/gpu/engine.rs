@@ -3,7 +3,7 @@
 use super::device::Adapter;
 use super::link::PlacedLink;
 use super::mesh::DeviceMesh;
-use super::opened::Gpu;
+use super::opened::{Discs, Gpu};
 use super::query::{Candidate, Query};
 use super::{GpuError, Precision};
 use crate::Chain;
@@ -42,7 +42,8 @@ pub struct GpuExhaustive {
     indices: Vec<[u32; 3]>,
     /// The largest coordinate of the mesh.
     reach: Real,
-    culling: bool,
+    /// What every pair costs; None with culling.
+    every_pair: Option<Discs>,
     answered_on_cpu: u64,
     query: Query,
     /// The robot that is being placed.
@@ -96,7 +97,7 @@ impl GpuExhaustive {
             vertices: mesh.vertices().to_vec(),
             indices: mesh.indices().to_vec(),
             reach,
-            culling: true,
+            every_pair: None,
             answered_on_cpu: 0,
             query: Query::default(),
             probes: Vec::new(),
@@ -118,10 +119,20 @@ impl GpuExhaustive {
     /// # Errors
     /// The driver does not compile the kernel for that.
     pub fn set_culling(&mut self, culling: bool) -> Result<(), GpuError> {
-        if !culling {
-            self.gpu.0.every_pair()?;
+        if culling {
+            self.every_pair = None;
+            return Ok(());
         }
-        self.culling = culling;
+        self.compute_every_pair(Discs::Convex)
+    }
+
+    /// As `set_culling(false)`, with the discs by the paper's routes or by ours. The answers are the same.
+    ///
+    /// # Errors
+    /// The driver does not compile the kernel for that.
+    pub fn compute_every_pair(&mut self, discs: Discs) -> Result<(), GpuError> {
+        self.gpu.0.every_pair(discs)?;
+        self.every_pair = Some(discs);
         Ok(())
     }
 
@@ -163,11 +174,9 @@ impl GpuExhaustive {
     /// Has the device find the candidates of all links.
     fn search(&mut self) -> Result<(), DeviceFailure> {
         let gpu = &*self.gpu.0;
-        let nearest = match gpu.every_pair() {
-            // Compiled when culling was switched off.
-            Ok(every_pair) if !self.culling => every_pair,
-            _ => &gpu.nearest,
-        };
+        // Compiled when culling was switched off.
+        let every_pair = self.every_pair.and_then(|discs| gpu.every_pair(discs).ok());
+        let nearest = every_pair.unwrap_or(&gpu.nearest);
         self.query.run(gpu, &self.mesh, &self.placed, nearest)
     }
 

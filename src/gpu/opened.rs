@@ -1,5 +1,5 @@
 use super::device::{Adapter, Device};
-use super::shaders::{self, Kernel};
+use super::shaders::{self, Kernel, QUARTIC};
 use super::{GpuError, Precision};
 use std::sync::{Arc, OnceLock};
 use wgpu::{BindGroupLayout, ComputePipeline};
@@ -33,6 +33,18 @@ impl Gpu {
     }
 }
 
+/// The route to the disc of a flat cap where nothing is culled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Discs {
+    /// This crate's, without roots of a polynomial.
+    #[default]
+    Convex,
+    /// The paper's quartic in closed form.
+    ClosedForm,
+    /// The paper's quartic by the companion matrix.
+    Companion,
+}
+
 /// A device with the kernels of a query.
 pub(super) struct Opened {
     pub device: Device,
@@ -43,7 +55,8 @@ pub(super) struct Opened {
     pub nearest: ComputePipeline,
     pub reduce: ComputePipeline,
     pub collect: ComputePipeline,
-    every_pair: OnceLock<Result<ComputePipeline, GpuError>>,
+    /// By [`Discs`].
+    every_pair: [OnceLock<Result<ComputePipeline, GpuError>>; 3],
 }
 
 impl Opened {
@@ -51,14 +64,14 @@ impl Opened {
         let (read, write) = (Some(false), Some(true));
         let prepare_layout = device.layout(&[read, read, write, write]);
         let query_layout = device.layout(&[None, read, write, read, read, write, write, write]);
-        let query = |kernel: Kernel| device.compile(kernel, &query_layout, &[]);
+        let query = |kernel: Kernel| device.compile(kernel, QUARTIC, &query_layout, &[]);
         Ok(Self {
-            prepare: device.compile(shaders::PREPARE, &prepare_layout, &[])?,
+            prepare: device.compile(shaders::PREPARE, QUARTIC, &prepare_layout, &[])?,
             sample: query(shaders::SAMPLE)?,
             nearest: query(shaders::NEAREST)?,
             reduce: query(shaders::REDUCE)?,
             collect: query(shaders::COLLECT)?,
-            every_pair: OnceLock::new(),
+            every_pair: Default::default(),
             prepare_layout,
             query_layout,
             device,
@@ -66,8 +79,16 @@ impl Opened {
     }
 
     /// The kernel that computes every pair in full, compiled when it is first asked for.
-    pub(super) fn every_pair(&self) -> Result<&ComputePipeline, GpuError> {
-        let compile = || self.device.compile(shaders::NEAREST, &self.query_layout, &[("CULLING", 0.0)]);
-        self.every_pair.get_or_init(compile).as_ref().map_err(Clone::clone)
+    pub(super) fn every_pair(&self, discs: Discs) -> Result<&ComputePipeline, GpuError> {
+        let kernel = match discs {
+            Discs::Convex => shaders::NEAREST,
+            Discs::ClosedForm | Discs::Companion => shaders::NEAREST_BY_QUARTIC,
+        };
+        let mut constants = vec![("CULLING", 0.0)];
+        if discs == Discs::Companion {
+            constants.push(("COMPANION", 1.0));
+        }
+        let compile = || self.device.compile(kernel, QUARTIC, &self.query_layout, &constants);
+        self.every_pair[discs as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
     }
 }

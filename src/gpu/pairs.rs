@@ -116,7 +116,7 @@ impl GpuPairs {
     /// The driver does not compile the kernel.
     pub fn new(gpu: &Gpu, pair: Pair) -> Result<Self, GpuError> {
         let constants = [("PAIR", f64::from(pair as u32))];
-        Ok(Self { pair, batch: Batch::new(gpu, shaders::PAIRS, &constants, 24, 7)? })
+        Ok(Self { pair, batch: Batch::new(gpu, shaders::PAIRS, shaders::QUARTIC, &constants, 24, 7)? })
     }
 
     /// The closest points of every problem, in their order, computed in the GPU's precision. `out` is cleared first.

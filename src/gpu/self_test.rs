@@ -35,7 +35,7 @@ impl Device {
         self.queue.write_buffer(&operands, 0, &bytes);
 
         let layout = self.layout(&[Some(false), Some(true)]);
-        let pipeline = self.compile(shaders::SELF_TEST, &layout, &[])?;
+        let pipeline = self.compile(shaders::SELF_TEST, shaders::QUARTIC, &layout, &[])?;
         let group = self.group(&layout, &[operands.as_entire_binding(), results.as_entire_binding()]);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());

@@ -13,11 +13,21 @@ pub const REAL_F32: &str = text!("real_f32");
 /// What `real` is.
 pub const REAL_F64: &str = text!("real_f64");
 
-/// A kernel: its entry point's name, and its text but for what `real` is.
+/// A kernel: its entry point's name, and its text but for what `real` is and how many coefficients a polynomial has.
 #[derive(Clone, Copy, Debug)]
 pub struct Kernel {
     pub name: &'static str,
     pub text: &'static str,
+}
+
+/// The coefficients of the quartic of segment-disc.
+pub const QUARTIC: u32 = 5;
+
+impl Kernel {
+    /// The whole text.
+    pub fn source(&self, real: &str, coefficients: u32) -> String {
+        format!("{real}const COEFFICIENTS = {coefficients}u;\n{}", self.text)
+    }
 }
 
 macro_rules! kernel {
@@ -26,9 +36,10 @@ macro_rules! kernel {
 
 /// The narrow phase from link to triangle, which every kernel of a query needs, with the kernel's own files.
 macro_rules! query_kernel {
-    ($name:literal) => {
+    ($name:literal) => { query_kernel!($name, "segment_disc") };
+    ($name:literal, $($segment_disc:literal),*) => {
         kernel!($name: "vec3", "closest", "segment_segment", "face", "segment_triangle", "point_disc", "line_disc",
-            "segment_disc", "plane_disc", "triangle_disc", "point_modified_cylinder", "bounds",
+            $($segment_disc,)* "plane_disc", "triangle_disc", "point_modified_cylinder", "bounds",
             "triangle_modified_cylinder", "query", $name)
     };
 }
@@ -36,13 +47,30 @@ macro_rules! query_kernel {
 pub const PREPARE: Kernel = kernel!("prepare": "vec3", "face", "prepare");
 pub const SAMPLE: Kernel = query_kernel!("sample");
 pub const NEAREST: Kernel = query_kernel!("nearest");
+/// As [`NEAREST`], with the discs by the paper's quartic.
+pub const NEAREST_BY_QUARTIC: Kernel =
+    query_kernel!("nearest", "roots", "closed_form", "companion", "segment_disc_quartic");
 pub const REDUCE: Kernel = query_kernel!("reduce");
 pub const COLLECT: Kernel = query_kernel!("collect");
 pub const SELF_TEST: Kernel = kernel!("self_test": "self_test");
 pub const PAIRS: Kernel = kernel!("pairs": "vec3", "closest", "segment_segment", "face", "point_triangle",
     "segment_triangle", "point_disc", "line_disc", "segment_disc", "plane_disc", "triangle_disc",
     "point_modified_cylinder", "bounds", "triangle_modified_cylinder", "pairs");
+pub const FORMS: Kernel = kernel!("forms": "vec3", "forms");
+pub const FIND_ROOTS: Kernel = kernel!("find_roots": "vec3", "roots", "division", "direction", "closed_form",
+    "bairstow", "companion", "jenkins_traub", "find_roots");
 
 /// Every kernel.
 #[allow(dead_code, reason = "the tests go through all of them")]
-pub const KERNELS: &[&Kernel] = &[&PREPARE, &SAMPLE, &NEAREST, &REDUCE, &COLLECT, &SELF_TEST, &PAIRS];
+pub const KERNELS: &[&Kernel] = &[
+    &PREPARE,
+    &SAMPLE,
+    &NEAREST,
+    &NEAREST_BY_QUARTIC,
+    &REDUCE,
+    &COLLECT,
+    &SELF_TEST,
+    &PAIRS,
+    &FORMS,
+    &FIND_ROOTS,
+];

@@ -150,7 +150,7 @@ fn a_shader_that_does_not_compile_is_an_error() {
     let device = &gpu.0.device;
     let layout = device.layout(&[Some(false), Some(true)]);
     let kernel = Kernel { name: "nonsense", text: "@compute fn nonsense() { return 1; }" };
-    match device.compile(kernel, &layout, &[]) {
+    match device.compile(kernel, 5, &layout, &[]) {
         Err(GpuError::Shader { kernel: "nonsense", .. }) => {}
         other => panic!("{other:?}"),
     }

@@ -26,15 +26,13 @@ fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
         for (var i = 0u; i < count; i++) {
             let number = round.first_link + first + i;
             let placed = load_link(number);
-            var bounds: Bounds;
-            if (CULLING) {
-                if (!meets_sphere(placed, sphere, real(load_limit(number)))) {
-                    continue;
-                }
-                bounds = near_bounds(placed, load_face(triangle));
-            } else {
-                let distance = full_distance(placed, load_face(triangle));
-                bounds = Bounds(distance, distance);
+            if (CULLING && !meets_sphere(placed, sphere, real(load_limit(number)))) {
+                continue;
+            }
+            let face = load_face(triangle);
+            var bounds = near_bounds(placed, face);
+            if (!CULLING) {
+                bounds.upper = full_distance(placed, face);
             }
             let lower = bitcast<u32>(from_below(bounds.lower));
             let upper = bitcast<u32>(from_above(bounds.upper));

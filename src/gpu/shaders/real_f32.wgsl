@@ -9,6 +9,9 @@ const SMALLEST_NORMAL: real = 0x1p-126f;
 // How often a foot on a triangle's plane is refined, and how many Halley steps segment-disc takes.
 const FACE_PASSES = 2u;
 const HALLEY_STEPS = 2u;
+// Powers of what is larger may be infinite; and the steps of the iterations that start in single precision.
+const LARGEST: real = 0x1p126f;
+const ROOT_STEPS = 2u;
 
 // The cube root of the magnitude within 5 %: a start value, never an answer.
 fn cbrt_estimate(x: real) -> real {

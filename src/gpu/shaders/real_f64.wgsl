@@ -9,6 +9,9 @@ const SMALLEST_NORMAL: real = 0x1p-1022lf;
 // How often a foot on a triangle's plane is refined, and how many Halley steps segment-disc takes.
 const FACE_PASSES = 3u;
 const HALLEY_STEPS = 3u;
+// Powers of what is larger may be infinite; and the steps of the iterations that start in single precision.
+const LARGEST: real = 0x1p1022lf;
+const ROOT_STEPS = 3u;
 
 // The cube root of the magnitude within 5 %: a start value, never an answer. There are no bits of an f64 here, so
 // it is taken in single precision; numbers beyond that range do not occur near one.
