@@ -5,7 +5,7 @@ mod common;
 
 use common::{Random, gpu};
 use parry_continuum::Chain;
-use parry_continuum::gpu::GpuExhaustive;
+use parry_continuum::gpu::{Discs, GpuExhaustive};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{Exhaustive, LinkProximity, Proximity};
@@ -93,6 +93,53 @@ fn answers_are_the_same_every_time() {
             engine.per_link_batch(&robots, &mut again).unwrap();
             assert_eq!(first, again, "{name}");
         }
+    }
+}
+
+/// More blocks than a workgroup has threads, and more triangles than the first limits are sampled from.
+#[test]
+fn a_large_mesh() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(260, 130);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    assert!(mesh.num_triangles() > 256 * 256);
+    let mut random = Random::new(23);
+    let robots: Vec<_> = (0..4)
+        .map(|_| {
+            let robot = Chain::cylinders(&[random.point() * 4.0, random.point() * 4.0], &[0.5]);
+            (robot.unwrap(), random.pose(1.0))
+        })
+        .collect();
+    let (mut expected, mut answers) = (Vec::new(), Vec::new());
+    Exhaustive::<f64>::new(&mesh).unwrap().per_link_batch(&robots, &mut expected).unwrap();
+    for (name, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        let mut engine = GpuExhaustive::on(gpu, &mesh).unwrap();
+        engine.per_link_batch(&robots, &mut answers).unwrap();
+        for (answers, expected) in answers.iter().zip(&expected) {
+            assert_eq!(distances(answers), distances(expected), "{name}");
+        }
+        assert_eq!(engine.answered_on_cpu(), 0, "{name}");
+    }
+}
+
+/// The paper's routes to the discs, in place of ours, are bounds that lead to the same answers.
+#[test]
+fn every_route_to_the_discs_gives_the_same_answers() {
+    let (mesh, robots) = (cave(), robots(3));
+    let mut expected = Vec::new();
+    Exhaustive::<f64>::new(&mesh).unwrap().per_link_batch(&robots, &mut expected).unwrap();
+    for (name, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        let mut engine = GpuExhaustive::on(gpu, &mesh).unwrap();
+        for discs in [Discs::Convex, Discs::ClosedForm, Discs::Companion] {
+            engine.compute_every_pair(discs).unwrap();
+            let mut answers = Vec::new();
+            engine.per_link_batch(&robots, &mut answers).unwrap();
+            for (answers, expected) in answers.iter().zip(&expected) {
+                assert_eq!(distances(answers), distances(expected), "{name} {discs:?}");
+            }
+        }
+        assert_eq!(engine.answered_on_cpu(), 0, "{name}");
     }
 }
 

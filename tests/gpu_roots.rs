@@ -9,7 +9,7 @@ use parry_continuum::distance::{Vec3, point_triangle, segment_segment};
 use parry_continuum::gpu::{Finder, Form, GpuForms, GpuRoots, Precision};
 use parry_continuum::roots::Complex;
 
-const DEGREES: [usize; 7] = [2, 3, 4, 6, 8, 10, 15];
+const DEGREES: [usize; 5] = [2, 3, 4, 6, 15];
 
 /// |p(z)| in units of what rounding the coefficients to the precision does to it.
 fn residual(coefficients: &[f64], root: Complex<f64>, unit: f64) -> f64 {
@@ -32,7 +32,7 @@ fn polynomials(degree: usize, count: usize, precision: Precision) -> Vec<f64> {
 /// by some hundred units: that is what is asked of most, and of all that they are no garbage.
 #[test]
 fn what_is_found_are_roots() {
-    const COUNT: usize = 500;
+    const COUNT: usize = 400;
     for (name, precision) in gpu::PRECISIONS {
         let Some(gpu) = gpu::open(precision) else { continue };
         let unit = if precision == Precision::F32 { 2.0_f64.powi(-24) } else { 2.0_f64.powi(-53) };
@@ -56,7 +56,9 @@ fn what_is_found_are_roots() {
                 let found = residuals.len() as f64 / roots.len() as f64;
                 let exact = residuals.iter().filter(|residual| **residual <= 100.0).count() as f64;
                 let (exact, worst) = (exact / residuals.len() as f64, residuals[residuals.len() - 1]);
-                println!("{name} {finder:?} {degree}: {found:.4} found, {exact:.4} to rounding, worst {worst:.0}");
+                println!(
+                    "{name} {finder:?} {degree}: {found:.4} found, {exact:.4} to rounding, worst {worst:.0}"
+                );
                 assert!(found > 0.99, "{name} {finder:?} {degree}: {found} found");
                 assert!(exact > 0.97, "{name} {finder:?} {degree}: {exact} to rounding");
             }
@@ -89,7 +91,11 @@ fn known_roots_and_lower_degrees() {
                 assert_eq!(known.iter().filter(near).count(), 1, "{name} {finder:?}: {re} {im} in {known:?}");
             }
             let (lower, constant) = rest.split_at(6);
-            assert_eq!(lower.iter().filter(|root| root.re.is_nan()).count(), 1, "{name} {finder:?} {lower:?}");
+            assert_eq!(
+                lower.iter().filter(|root| root.re.is_nan()).count(),
+                1,
+                "{name} {finder:?} {lower:?}"
+            );
             for root in lower.iter().filter(|root| !root.re.is_nan()) {
                 assert!((root.re.hypot(root.im) - 1.0).abs() < tolerance, "{name} {finder:?}: {root:?}");
             }

@@ -132,10 +132,7 @@ fn page(pages: &Pages) -> String {
     )
 }
 
-fn answers(
-    engine: &mut dyn Proximity,
-    models: &[(&str, Chain); 3],
-) -> Result<Vec<LinkProximity>, String> {
+fn answers(engine: &mut dyn Proximity, models: &[(&str, Chain); 3]) -> Result<Vec<LinkProximity>, String> {
     let (mut all, mut out) = (Vec::new(), Vec::new());
     for (_, robot) in models {
         engine.per_link(robot, &ventricle::entry(), &mut out).map_err(text)?;
@@ -164,11 +161,9 @@ fn all_models(
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     let [k, z_star, z] = &mut out;
     medians(
-        &mut [
-            &mut || query(&models[0].1, k),
-            &mut || query(&models[1].1, z_star),
-            &mut || query(&models[2].1, z),
-        ],
+        &mut [&mut || query(&models[0].1, k), &mut || query(&models[1].1, z_star), &mut || {
+            query(&models[2].1, z)
+        }],
         enough,
     )
 }
@@ -176,14 +171,13 @@ fn all_models(
 fn row(name: &str, triangles: u32, tflops: Option<f64>, timed: &[Timed]) -> Result<String, String> {
     let mut row = format!("| {name} |");
     for time in timed {
-        let index = tflops.zip(time.device).map_or("-".into(), |(tflops, device)| {
-            format!("{:.1}", 1.0 / (device.as_secs_f64() * tflops))
-        });
+        let index = tflops
+            .zip(time.device)
+            .map_or("-".into(), |(tflops, device)| format!("{:.1}", 1.0 / (device.as_secs_f64() * tflops)));
         write!(row, " {} | {} | {index} |", milliseconds(time.device), milliseconds(Some(time.whole)))
             .map_err(text)?;
     }
-    let seconds: Vec<_> =
-        timed.iter().map(|time| time.device.unwrap_or(time.whole).as_secs_f64()).collect();
+    let seconds: Vec<_> = timed.iter().map(|time| time.device.unwrap_or(time.whole).as_secs_f64()).collect();
     let pairs = f64::from(triangles) * LINKS as f64 / seconds[0];
     writeln!(row, " {:.2} | {:.2} | {pairs:.1e} |", seconds[1] / seconds[0], seconds[2] / seconds[0])
         .map_err(text)?;
@@ -199,7 +193,8 @@ fn moving(
 ) -> Result<String, String> {
     let rest = mesh.vertices();
     let centre = rest.iter().sum::<Vector>() / rest.len() as f64;
-    let beats = [1.0, 1.01].map(|beat| rest.iter().map(|&v| centre + (v - centre) * beat).collect::<Vec<_>>());
+    let beats =
+        [1.0, 1.01].map(|beat| rest.iter().map(|&v| centre + (v - centre) * beat).collect::<Vec<_>>());
     let engine = std::cell::RefCell::new(engine);
     let base = ventricle::entry();
     let query = |out: &mut Vec<LinkProximity>| {

@@ -74,7 +74,9 @@ fn measure(options: &Options) -> Result<(), String> {
     let begin = Instant::now();
     let mut opened = Vec::new();
     let mut missing = None;
-    for (place, (name, precision)) in [("f32", Precision::F32), ("f64", Precision::F64)].into_iter().enumerate() {
+    for (place, (name, precision)) in
+        [("f32", Precision::F32), ("f64", Precision::F64)].into_iter().enumerate()
+    {
         match Gpu::open(precision) {
             Ok(gpu) => opened.push(Opened { name, gpu, tflops: options.tflops.map(|peaks| peaks[place]) }),
             // Single precision alone is worth measuring.

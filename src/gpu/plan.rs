@@ -9,16 +9,16 @@ const THREADS: u64 = 256;
 const MOST_LINKS: u64 = 32;
 /// Triangles of a thread, unless a dispatch cannot hold as many workgroups as that takes.
 const MOST_TRIANGLES: u64 = 8;
-/// As many threads keep the largest GPUs busy.
-const ENOUGH_THREADS: u64 = 1 << 19;
+/// As many threads keep the largest GPUs busy. (Few in unit tests, so that a thread takes several pairs.)
+const ENOUGH_THREADS: u64 = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 /// Candidates of a link and part that come back; `CAPACITY` in query.wgsl.
 pub(super) const CAPACITY: usize = 64;
 /// Bytes for each candidate: a triangle's number, and a distance of at most 8.
 const CANDIDATE: u64 = 12;
 /// Bytes for the bounds of a block and a link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;
-/// Bytes for the bounds of all blocks that are worth keeping for more links in one round. (Few in unit tests, so that
-/// small queries take several rounds and submissions.)
+/// Bytes for the bounds of all blocks that are worth keeping for more links in one round. (Few in unit tests,
+/// so that small queries take several rounds and submissions.)
 const ROUND_BYTES: u64 = if cfg!(test) { 1 << 10 } else { 64 << 20 };
 /// Bytes that come back from one submission.
 const ANSWER_BYTES: u64 = if cfg!(test) { 100 << 10 } else { 64 << 20 };

@@ -42,9 +42,10 @@ impl GpuRoots {
     /// # Errors
     /// The driver does not compile the kernel.
     pub fn new(gpu: &Gpu, finder: Finder, degree: usize) -> Result<Self, GpuError> {
-        let (degree, constants) = (degree.max(1), [("FINDER", f64::from(finder as u32))]);
+        let degree = degree.max(1);
         let (problem, answer) = (degree as u64 + 1, 2 * degree as u64 + 1);
-        let batch = Batch::new(gpu, shaders::FIND_ROOTS, degree as u32 + 1, &constants, problem, answer)?;
+        let kernel = shaders::FIND_ROOTS[finder as usize];
+        let batch = Batch::new(gpu, kernel, degree as u32 + 1, &[], problem, answer)?;
         Ok(Self { degree, batch })
     }
 

@@ -57,8 +57,30 @@ pub const PAIRS: Kernel = kernel!("pairs": "vec3", "closest", "segment_segment",
     "segment_triangle", "point_disc", "line_disc", "segment_disc", "plane_disc", "triangle_disc",
     "point_modified_cylinder", "bounds", "triangle_modified_cylinder", "pairs");
 pub const FORMS: Kernel = kernel!("forms": "vec3", "forms");
-pub const FIND_ROOTS: Kernel = kernel!("find_roots": "vec3", "roots", "division", "direction", "closed_form",
-    "bairstow", "companion", "jenkins_traub", "find_roots");
+
+/// A kernel that finds roots by the method of this name, with the method's own files.
+macro_rules! roots_kernel {
+    ($method:literal: $($file:literal),*) => {
+        Kernel {
+            name: "find_roots",
+            text: concat!(
+                text!("vec3", "roots", $($file,)* $method),
+                "fn approximate(monic: ptr<function, Coefficients>, degree: u32) {\n    ",
+                $method,
+                "(monic, degree);\n}\n",
+                text!("find_roots")
+            ),
+        }
+    };
+}
+
+/// In the order of `Finder`.
+pub const FIND_ROOTS: [Kernel; 4] = [
+    roots_kernel!("closed_form":),
+    roots_kernel!("bairstow": "division", "direction"),
+    roots_kernel!("companion":),
+    roots_kernel!("jenkins_traub": "division", "direction"),
+];
 
 /// Every kernel.
 #[allow(dead_code, reason = "the tests go through all of them")]
@@ -72,5 +94,8 @@ pub const KERNELS: &[&Kernel] = &[
     &SELF_TEST,
     &PAIRS,
     &FORMS,
-    &FIND_ROOTS,
+    &FIND_ROOTS[0],
+    &FIND_ROOTS[1],
+    &FIND_ROOTS[2],
+    &FIND_ROOTS[3],
 ];

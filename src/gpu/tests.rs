@@ -81,6 +81,7 @@ fn a_batch_takes_many_rounds_and_submissions() {
     let plan = super::plan::Plan::new(&gpu.0, engine.mesh(), 7 * robots.len());
     assert!(plan.links_per_submission < 7 * robots.len(), "{plan:?}");
     assert!((plan.links_per_round as usize) < plan.links_per_submission, "{plan:?}");
+    assert!(plan.links_at_once > 1 && plan.triangles_at_once > 1, "{plan:?}");
     let (mut one, mut other) = (Vec::new(), Vec::new());
     engine.per_link_batch(&robots, &mut one).unwrap();
     Exhaustive::<f64>::new(&mesh).unwrap().per_link_batch(&robots, &mut other).unwrap();

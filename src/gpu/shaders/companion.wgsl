@@ -2,7 +2,7 @@
 
 const COMPANION_SWEEPS = 80u;
 
-var<private> matrix: array<Coefficients, COEFFICIENTS>;
+var<private> matrix: array<Coefficients, ROOM>;
 
 fn companion(monic: ptr<function, Coefficients>, degree: u32) {
     for (var i = 0u; i < degree; i++) {

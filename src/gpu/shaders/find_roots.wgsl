@@ -1,7 +1,5 @@
-// The roots of many polynomials, a thread each, by one of four methods: the twin of `approximations` in roots/mod.rs.
-
-// Which method; the order is that of Finder in roots.rs.
-override FINDER: u32 = 0u;
+// The roots of many polynomials, a thread each: the twin of `approximations` in roots/mod.rs. `approximate` is that of
+// one method, declared before this text.
 
 @group(0) @binding(0) var<storage, read> polynomials: array<real>;
 // How many roots were found, then their real and imaginary parts.
@@ -22,7 +20,7 @@ fn find_roots(
         coefficients[k] = polynomials[COEFFICIENTS * polynomial + k];
     }
     root_count = 0u;
-    approximate(&coefficients);
+    approximations(&coefficients);
     let record = 2u * COEFFICIENTS - 1u;
     let place = record * polynomial;
     answers[place] = real(root_count);
@@ -32,7 +30,7 @@ fn find_roots(
     }
 }
 
-fn approximate(coefficients: ptr<function, Coefficients>) {
+fn approximations(coefficients: ptr<function, Coefficients>) {
     var high = COEFFICIENTS - 1u;
     while (0u < high && (*coefficients)[high] == real(0.0)) {
         high--;
@@ -52,18 +50,5 @@ fn approximate(coefficients: ptr<function, Coefficients>) {
         monic[k] = (*coefficients)[low + k] / leading;
     }
     monic[degree] = real(1.0);
-    switch (FINDER) {
-        case 0u: {
-            closed_form(&monic, degree);
-        }
-        case 1u: {
-            bairstow(&monic, degree);
-        }
-        case 2u: {
-            companion(&monic, degree);
-        }
-        default: {
-            jenkins_traub(&monic, degree);
-        }
-    }
+    approximate(&monic, degree);
 }

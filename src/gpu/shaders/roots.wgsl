@@ -4,14 +4,16 @@
 // COEFFICIENTS, one more than the degree, is declared before this text. Coefficients come lowest power first and are
 // of comparable size: polynomials are not cut into pieces here.
 
-alias Coefficients = array<real, COEFFICIENTS>;
+// There is always room for a quartic.
+const ROOM = max(COEFFICIENTS, 5u);
+alias Coefficients = array<real, ROOM>;
 
 var<private> root_re: Coefficients;
 var<private> root_im: Coefficients;
 var<private> root_count: u32;
 
 fn push_root(re: real, im: real) {
-    if (root_count < COEFFICIENTS) {
+    if (root_count < ROOM) {
         root_re[root_count] = re;
         root_im[root_count] = im;
         root_count++;

@@ -30,7 +30,12 @@ fn segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<rea
 
 // Finds the roots of a quartic, whose leading coefficients may be 0.
 fn quartic_roots(a0: real, a1: real, a2: real, a3: real, a4: real) {
-    var coefficients = Coefficients(a0, a1, a2, a3, a4);
+    var coefficients = Coefficients();
+    coefficients[0] = a0;
+    coefficients[1] = a1;
+    coefficients[2] = a2;
+    coefficients[3] = a3;
+    coefficients[4] = a4;
     var high = 4u;
     while (0u < high && abs(coefficients[high]) < SMALLEST_NORMAL) {
         high--;
