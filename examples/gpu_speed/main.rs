@@ -88,6 +88,14 @@ fn measure(options: &Options) -> Result<(), String> {
             Err(error) => return Err(error.to_string()),
         }
     }
+    let path = options.out.join("GPU_SPEED.md");
+    if opened[0].gpu.adapter().is_software && path.exists() {
+        return Err(format!(
+            "{} is a GPU in software; {} keeps what a real one did. For a rehearsal choose another --out",
+            opened[0].gpu.adapter(),
+            path.display()
+        ));
+    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let adapter = opened[0].gpu.adapter();
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
@@ -113,7 +121,6 @@ fn measure(options: &Options) -> Result<(), String> {
     add("chains", chains::chapter(&opened, options.largest, options.every_pair, enough)?);
     add("forms", forms::chapter(&opened, options.problems as usize)?);
     add("roots", roots::chapter(&opened, options.problems as usize)?);
-    let path = options.out.join("GPU_SPEED.md");
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;

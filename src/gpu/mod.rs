@@ -5,6 +5,9 @@
 //! ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in one go); a single query waits for
 //! the GPU and back, some hundred microseconds.
 //!
+//! [`GpuPairs`] and [`GpuRoots`] take many problems of the narrow phase and many polynomials at once, a thread each;
+//! [`GpuForms`] is for comparison with the paper.
+//!
 //! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
 //! for both precisions.
 
