@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
 //! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
-//! there are a table, the time per query, and a picture. `--mesh` takes real anatomy instead (in millimetres, or with
+//! there are a table, the time per query, and a picture. With `--features gpu` and `--engine gpu` the second engine is
+//! the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
 //! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
 #[path = "scene/mod.rs"]
@@ -35,6 +36,10 @@ struct Options {
     #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true)]
     tolerance: Option<Real>,
 
+    /// The engine that looks at every triangle, beside the search: on the CPU, or on the GPU (cargo feature `gpu`)
+    #[arg(long, value_enum, default_value_t = Engine::Exhaustive)]
+    engine: Engine,
+
     /// Steps on the way in
     #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
@@ -49,6 +54,35 @@ enum Model {
     Capsule,
     Cylinder,
     Modified,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Engine {
+    Exhaustive,
+    Gpu,
+}
+
+impl Engine {
+    /// The engine for a mesh, and its name in the table of times.
+    fn build(self, mesh: &TriMesh) -> Result<(Box<dyn Proximity>, String), String> {
+        match self {
+            Self::Exhaustive => {
+                let engine = Exhaustive::<Real>::new(mesh).map_err(text)?;
+                Ok((Box::new(engine), "exhaustive, every triangle".into()))
+            }
+            #[cfg(feature = "gpu")]
+            Self::Gpu => {
+                use parry_continuum::gpu::{GpuExhaustive, Precision};
+                let engine = GpuExhaustive::new(mesh, Precision::F32).map_err(text)?;
+                println!("on the GPU: {}", engine.adapter());
+                Ok((Box::new(engine), "exhaustive on the GPU".into()))
+            }
+            #[cfg(not(feature = "gpu"))]
+            Self::Gpu => Err("this program was built without the GPU; run \
+                              `cargo run --release --features gpu --example ventricle -- --engine gpu`"
+                .into()),
+        }
+    }
 }
 
 fn length(text: &str) -> Result<Real, String> {
@@ -69,7 +103,7 @@ fn text(error: impl std::fmt::Display) -> String {
 fn steer(options: &Options) -> Result<(), String> {
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
-    let mut exhaustive = Exhaustive::<Real>::new(&mesh).map_err(text)?;
+    let (mut exhaustive, exhaustive_name) = options.engine.build(&mesh)?;
     let out = command::picture_path(&options.out, "ventricle.png")?;
 
     let robot = three_tubes();
@@ -122,7 +156,7 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
-    let times = print_times(&mesh, &chains, &base, &mut search, &mut exhaustive)?;
+    let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
     let caption = caption(options, &mesh, chain, &found, times);
     let picture = figure::draw(&mesh, chain, &base, &found, &caption);
@@ -188,7 +222,7 @@ fn print_times(
     chains: &[Chain],
     base: &Pose,
     search: &mut BvhSearch,
-    exhaustive: &mut Exhaustive<Real>,
+    (exhaustive_name, exhaustive): (&str, &mut dyn Proximity),
 ) -> Result<[Duration; 3], String> {
     let chain = &chains[chains.len() - 1];
     let before = &chains[chains.len().saturating_sub(2)];
@@ -219,7 +253,7 @@ fn print_times(
     row("parry distance(Cylinder, TriMesh), link by link", parry);
     row("search, cold", cold);
     row("search, warm from the step before", warm);
-    row("exhaustive, every triangle", all);
+    row(exhaustive_name, all);
     Ok([cold, all, parry])
 }
 

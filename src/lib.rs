@@ -30,7 +30,8 @@
 //!   [`Cap::Round`]. [`Chain::from_centreline`] decides which; [`Chain::capsules`] and [`Chain::cylinders`] are the
 //!   simpler models. [`simplify`] finds the fewest links within a tolerance.
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
-//!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers.
+//!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
+//!   `gpu` adds `gpu::GpuExhaustive`.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand a
 //!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
 //!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.
@@ -55,6 +56,8 @@ pub use parry3d_f64 as parry;
 
 pub mod book;
 pub mod distance;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod host;
 pub mod proximity;
 mod robot;

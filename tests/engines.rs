@@ -15,11 +15,19 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 
 /// Every engine for a mesh, with a name.
 fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
-    vec![
+    #[allow(unused_mut)]
+    let mut engines: Vec<(&'static str, Box<dyn Proximity>)> = vec![
         ("exhaustive f64", Box::new(Exhaustive::<f64>::new(mesh).unwrap())),
         ("exhaustive f32", Box::new(Exhaustive::<f32>::new(mesh).unwrap())),
         ("search", Box::new(BvhSearch::new(mesh).unwrap())),
-    ]
+    ];
+    #[cfg(feature = "gpu")]
+    for (name, precision) in common::gpu::PRECISIONS {
+        if let Some(gpu) = common::gpu::open(precision) {
+            engines.push((name, Box::new(parry_continuum::gpu::GpuExhaustive::on(gpu, mesh).unwrap())));
+        }
+    }
+    engines
 }
 
 fn extent(mesh: &TriMesh, robot: &Chain) -> f64 {

@@ -36,7 +36,12 @@ fn expressions_are_understood() {
 }
 
 /// The optional features, and whether this test was built with them.
-const FEATURES: [(&str, bool); 1] = [("parallel", cfg!(feature = "parallel"))];
+const FEATURES: [(&str, bool); 4] = [
+    ("parallel", cfg!(feature = "parallel")),
+    ("gpu", cfg!(feature = "gpu")),
+    ("rapier", cfg!(feature = "rapier")),
+    ("serde-serialize", cfg!(feature = "serde-serialize")),
+];
 
 fn cargo(arguments: &[&str]) -> String {
     let mut cargo = Command::new(env!("CARGO"));

@@ -63,6 +63,7 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--base", "1,2,inf"], "three numbers"),
         (&["--axis", "0,0,0"], "a direction needs a length"),
         (&["--model", "cone"], "capsule, cylinder, modified"),
+        (&["--engine", "gpu"], "--features gpu"),
         (&["--tolerance", "-0.1"], "at least 0"),
         (&["--steps", "0"], "1..=100000"),
         (&["--scale", "2"], "--mesh"),

@@ -17,7 +17,7 @@ mod scene;
 use clap::Parser;
 use film::Studio;
 use parry_continuum::Chain;
-use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use plan::Plan;

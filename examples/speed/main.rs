@@ -44,7 +44,7 @@ fn measure(options: &Options) -> Result<(), String> {
     let head = format!(
         "# Speed\n\n\
          Written by `cargo run --release --example speed` on {}. \
-         Times are medians; jobs that are compared take turns in one run.\n",
+         Times are medians; jobs that are compared take turns in one run. [GPU_SPEED.md](GPU_SPEED.md) is about the GPU.\n",
         machine::description()
     );
     page.push_str(&head);

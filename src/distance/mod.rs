@@ -36,6 +36,8 @@ mod triangle_modified_cylinder;
 mod vec3;
 
 pub(crate) use face::Face;
+#[cfg(feature = "gpu")]
+pub(crate) use frame::Frame;
 pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::Link;
 pub(crate) use segment_disc::Line;

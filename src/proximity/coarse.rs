@@ -17,7 +17,7 @@ const FARTHEST: Real = 1.0e6;
 
 /// The way from the mesh's frame to coordinates near one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CoarseFrame {
+pub(crate) struct CoarseFrame {
     centre: Vector,
     scale: Real,
     /// How far the mesh's own coordinates reach, which bounds the rounding of the move.
@@ -26,7 +26,7 @@ pub(super) struct CoarseFrame {
 
 impl CoarseFrame {
     /// The frame of a mesh with these (finite) vertices.
-    pub(super) fn new(vertices: &[Vector]) -> Self {
+    pub(crate) fn new(vertices: &[Vector]) -> Self {
         let low = vertices.iter().copied().reduce(Vector::min).unwrap_or_default();
         let high = vertices.iter().copied().reduce(Vector::max).unwrap_or_default();
         let scale = (high - low).max_element().power_of_two_to_unity();
@@ -37,14 +37,14 @@ impl CoarseFrame {
         }
     }
 
-    pub(super) fn point<E: Lane>(&self, point: Vector) -> Vec3<E> {
+    pub(crate) fn point<E: Lane>(&self, point: Vector) -> Vec3<E> {
         round((point - self.centre) * self.scale)
     }
 }
 
 /// A link in the precision of the search.
 #[derive(Clone, Copy)]
-pub(super) struct CoarseLink<E> {
+pub(crate) struct CoarseLink<E> {
     pub start: Vec3<E>,
     /// From start to end.
     pub along: Vec3<E>,
@@ -60,14 +60,14 @@ pub(super) struct CoarseLink<E> {
 
 impl<E: Lane> CoarseLink<E> {
     /// The link of a probe. None where it lies too far out for the precision.
-    pub(super) fn new(probe: &Probe, frame: &CoarseFrame) -> Option<Self> {
+    pub(crate) fn new(probe: &Probe, frame: &CoarseFrame) -> Option<Self> {
         let [start, end] = probe.ends();
         let unit = probe.scaled(1.0);
         Self::between(start, end, probe.link().radius / unit, probe.link().flat, unit, frame)
     }
 
     /// A link between two points of the mesh's frame, whose bounds are given in units of 1 / `unit`.
-    pub(super) fn between(
+    pub(crate) fn between(
         start: Vector,
         end: Vector,
         radius: Real,
@@ -106,15 +106,23 @@ impl<E: Lane> CoarseLink<E> {
 
     /// What every triangle at most `limit` from the axis is nearer than, in the probe's units: the converse of
     /// [`CoarseLink::axis_limit`].
-    pub(super) fn bound_within(&self, limit: E) -> Real {
+    pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
         ((limit - radius).max(0.0) + 2.0 * error) / self.factor
     }
 
+    /// What a triangle is at least from the link, in the probe's units, if its axis distance (beyond a flat cap: its
+    /// distance and the radius) was computed as `axis_distance`.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn at_least(&self, axis_distance: Real) -> Real {
+        let (radius, error): (Real, Real) = (self.radius.into(), self.error.into());
+        (axis_distance - radius - error).max(0.0) / self.factor
+    }
+
     /// What a triangle's axis distance must stay below for the link to be possibly nearer to it than `bound`,
     /// which is in the probe's units.
-    pub(super) fn axis_limit(&self, bound: Real) -> E {
+    pub(crate) fn axis_limit(&self, bound: Real) -> E {
         E::round(bound * self.factor) + self.radius + self.error
     }
 }

@@ -20,13 +20,21 @@ mod soa;
 mod tree;
 mod walk;
 
+#[cfg(feature = "gpu")]
+pub(crate) use coarse::{CoarseFrame, CoarseLink};
 pub(crate) use probe::Probe;
+#[cfg(feature = "gpu")]
+pub(crate) use probe::{check_vertices, place};
 pub(crate) use search::{Found, Until, search};
+#[cfg(feature = "gpu")]
+pub(crate) use share::each;
 
 pub use bvh::BvhSearch;
 pub use certificate::Certificate;
 pub use descent::Visits;
 pub use engine::Proximity;
 pub use exhaustive::{Exhaustive, Precision};
+#[cfg(feature = "gpu")]
+pub use report::DeviceFailure;
 pub use report::{LinkProximity, MeshError, ProximityError};
 pub use scan::Work;

@@ -57,6 +57,10 @@ pub enum MeshError {
     /// The mesh has no triangle, so nothing is closest.
     #[error("the mesh has no triangles")]
     Empty,
+    /// The GPU that holds the mesh failed.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Device(#[from] DeviceFailure),
 }
 
 /// Why a query has no answer.
@@ -103,4 +107,24 @@ pub enum ProximityError {
     /// A vertex of the mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The GPU that was asked failed.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Device(#[from] DeviceFailure),
+}
+
+/// How a GPU failed.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum DeviceFailure {
+    /// It was reset or removed. It answers nothing more.
+    #[error("the GPU was lost (reset, removed, or out of time); build a new engine, or use one on the CPU")]
+    Lost,
+    /// Its memory does not hold what the query needs. A smaller one may succeed.
+    #[error("the GPU is out of memory; ask for fewer robots at once, or use an engine on the CPU")]
+    OutOfMemory,
+    /// Its driver refused a command.
+    #[error("the GPU's driver refused a command; update the driver, or use an engine on the CPU")]
+    Refused,
 }

@@ -2,6 +2,8 @@
 #![allow(dead_code)] // each test uses its part
 
 pub mod certificate;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod kernels;
 pub mod precision;
 pub mod problems;

@@ -1,0 +1,59 @@
+//! Branches against clamps on the GPU, for comparison with the paper's Tables II and III.
+
+use super::batch::Batch;
+use super::opened::Gpu;
+use super::{GpuError, shaders};
+use crate::distance::Vec3;
+use crate::proximity::DeviceFailure;
+use parry3d_f64::math::Real;
+use std::time::Duration;
+
+/// A distance in one of two forms. Both use the same products; neither is as exact as
+/// [`distance`](crate::distance).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// Two segments, (7) and (8) by clamping.
+    ClampedSegments,
+    /// Two segments by a decision tree.
+    TreeSegments,
+    /// Point and triangle, the face and three edges by clamping.
+    ClampedTriangle,
+    /// Point and triangle by a decision tree over the seven regions of its plane.
+    TreeTriangle,
+}
+
+impl Form {
+    /// Every form.
+    pub const ALL: [Self; 4] =
+        [Self::ClampedSegments, Self::TreeSegments, Self::ClampedTriangle, Self::TreeTriangle];
+}
+
+/// One form for many problems at once, a GPU thread each.
+pub struct GpuForms(Batch);
+
+impl GpuForms {
+    /// Makes ready for this form.
+    ///
+    /// # Errors
+    /// The driver does not compile the kernel.
+    pub fn new(gpu: &Gpu, form: Form) -> Result<Self, GpuError> {
+        let constants = [("FORM", f64::from(form as u32))];
+        Ok(Self(Batch::new(gpu, shaders::FORMS, shaders::QUARTIC, &constants, 12, 1)?))
+    }
+
+    /// The squared distances between the segments of the first and the last two points, or between the first point and
+    /// the triangle of the others. Coordinates are near one. `out` is cleared first.
+    ///
+    /// # Errors
+    /// The GPU has failed.
+    pub fn solve(&mut self, points: &[[Vec3<Real>; 4]], out: &mut Vec<Real>) -> Result<(), DeviceFailure> {
+        out.clear();
+        let numbers = points.iter().flatten().flat_map(|&point| <[Real; 3]>::from(point));
+        self.0.run(numbers, &mut |answers| out.extend(answers))
+    }
+
+    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
+    pub fn device_time(&self) -> Option<Duration> {
+        self.0.device_time
+    }
+}

@@ -1,0 +1,126 @@
+//! A mesh in a device's memory, in as many parts as its largest buffer calls for.
+
+use super::opened::Opened;
+use crate::distance::Vec3;
+use crate::proximity::{CoarseFrame, DeviceFailure};
+use parry3d_f64::math::{Real, Vector};
+use wgpu::{BindGroup, Buffer, BufferUsages};
+
+/// Threads of a workgroup.
+const THREADS: u32 = 256;
+/// Numbers of a sphere, and of a triangle with its dual basis and one to spare.
+const SPHERE: u64 = 4;
+const FACE: u64 = 16;
+
+/// The mesh, moved to its centre and near one.
+pub(super) struct DeviceMesh {
+    pub frame: CoarseFrame,
+    pub parts: Vec<Part>,
+}
+
+/// Consecutive triangles.
+pub(super) struct Part {
+    /// The place of the first in the mesh, and how many there are.
+    pub first: u32,
+    pub triangles: u32,
+    pub spheres: Buffer,
+    pub faces: Buffer,
+    /// The mesh's vertices that they have.
+    vertices: Vec<u32>,
+    vertex_buffer: Buffer,
+    group: BindGroup,
+}
+
+impl DeviceMesh {
+    /// Uploads a mesh in parts of at most `most` triangles, or as many as a buffer takes.
+    ///
+    /// # Errors
+    /// The device has failed, or has no room.
+    pub(super) fn new(
+        gpu: &Opened,
+        vertices: &[Vector],
+        indices: &[[u32; 3]],
+        most: usize,
+    ) -> Result<Self, DeviceFailure> {
+        let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision.size())) as usize;
+        let mut places = vec![u32::MAX; vertices.len()];
+        let mut parts = Vec::new();
+        let mut first = 0;
+        for part in indices.chunks(most.min(fit).max(1)) {
+            parts.push(Part::new(gpu, first, part, &mut places));
+            first += part.len() as u32;
+        }
+        let mut mesh = Self { frame: CoarseFrame::new(vertices), parts };
+        gpu.device.failures.check()?;
+        mesh.update(gpu, vertices)?;
+        Ok(mesh)
+    }
+
+    /// Takes over moved vertices: only they travel, the rest is computed on the device.
+    ///
+    /// # Errors
+    /// The device has failed.
+    pub(super) fn update(&mut self, gpu: &Opened, vertices: &[Vector]) -> Result<(), DeviceFailure> {
+        self.frame = CoarseFrame::new(vertices);
+        let precision = gpu.device.precision;
+        let mut encoder = gpu.device.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&gpu.prepare);
+        let mut bytes = Vec::new();
+        for part in &self.parts {
+            bytes.clear();
+            for &vertex in &part.vertices {
+                let Vec3 { x, y, z } = self.frame.point::<Real>(vertices[vertex as usize]);
+                for coordinate in [x, y, z] {
+                    precision.write(coordinate, &mut bytes);
+                }
+            }
+            gpu.device.queue.write_buffer(&part.vertex_buffer, 0, &bytes);
+            pass.set_bind_group(0, &part.group, &[]);
+            let workgroups = part.triangles.div_ceil(THREADS);
+            let wide = workgroups.min(gpu.device.limits.max_compute_workgroups_per_dimension);
+            pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
+        }
+        drop(pass);
+        gpu.device.queue.submit([encoder.finish()]);
+        gpu.device.failures.check()
+    }
+
+    /// How many triangles there are.
+    pub(super) fn triangles(&self) -> u64 {
+        self.parts.iter().map(|part| u64::from(part.triangles)).sum()
+    }
+}
+
+impl Part {
+    /// `places` says for each vertex of the mesh where it is in the part; none is set before or after.
+    fn new(gpu: &Opened, first: u32, indices: &[[u32; 3]], places: &mut [u32]) -> Self {
+        let mut vertices = Vec::new();
+        let mut bytes = Vec::with_capacity(indices.len() * 12);
+        for &index in indices.iter().flatten() {
+            let place = &mut places[index as usize];
+            if *place == u32::MAX {
+                *place = vertices.len() as u32;
+                vertices.push(index);
+            }
+            bytes.extend(place.to_ne_bytes());
+        }
+        for &vertex in &vertices {
+            places[vertex as usize] = u32::MAX;
+        }
+
+        let (device, count) = (&gpu.device, indices.len() as u64);
+        let size = device.precision.size();
+        let uploaded = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let vertex_buffer = device.buffer(vertices.len() as u64 * 3 * size, uploaded);
+        let index_buffer = device.buffer(bytes.len() as u64, uploaded);
+        let spheres = device.buffer(count * SPHERE * size, BufferUsages::STORAGE);
+        let faces = device.buffer(count * FACE * size, BufferUsages::STORAGE);
+        device.queue.write_buffer(&index_buffer, 0, &bytes);
+        let group = device.group(
+            &gpu.prepare_layout,
+            &[&vertex_buffer, &index_buffer, &spheres, &faces].map(Buffer::as_entire_binding),
+        );
+        Self { first, triangles: indices.len() as u32, spheres, faces, vertices, vertex_buffer, group }
+    }
+}

@@ -1,0 +1,42 @@
+//! Exhaustive queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
+//!
+//! [`GpuExhaustive`] is an engine like those of [`proximity`](crate::proximity), with the same trait and the same
+//! distances. It pays where the mesh is large or moves, or where many robots are asked for at once
+//! ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in one go); a single query waits for
+//! the GPU and back, some hundred microseconds.
+//!
+//! [`GpuPairs`] and [`GpuRoots`] take many problems of the narrow phase and many polynomials at once, a thread each;
+//! [`GpuForms`] is for comparison with the paper.
+//!
+//! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
+//! for both precisions.
+
+mod batch;
+mod clock;
+mod device;
+mod engine;
+mod error;
+mod failures;
+mod forms;
+mod link;
+mod mesh;
+mod opened;
+mod pairs;
+mod plan;
+mod precision;
+mod query;
+mod roots;
+mod self_test;
+mod shaders;
+#[cfg(test)]
+mod tests;
+
+pub use crate::proximity::DeviceFailure;
+pub use device::Adapter;
+pub use engine::GpuExhaustive;
+pub use error::GpuError;
+pub use forms::{Form, GpuForms};
+pub use opened::{Discs, Gpu};
+pub use pairs::{GpuPairs, Pair, PairProblem};
+pub use precision::Precision;
+pub use roots::{Finder, GpuRoots};

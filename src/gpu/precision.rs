@@ -1,0 +1,39 @@
+use crate::distance::lanes::Lane;
+use parry3d_f64::math::Real;
+
+/// The numbers with which a GPU searches. The distances it returns are those of double precision either way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// Single precision: fast on every GPU.
+    F32,
+    /// Double precision: needs Vulkan and a GPU that has it, and is fast on few.
+    F64,
+}
+
+impl Precision {
+    /// Bytes of a number.
+    pub(super) fn size(self) -> u64 {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The number in this precision, as a GPU reads it.
+    pub(super) fn write(self, value: Real, to: &mut Vec<u8>) {
+        match self {
+            Self::F32 => to.extend(<f32 as Lane>::round(value).to_ne_bytes()),
+            Self::F64 => to.extend(value.to_ne_bytes()),
+        }
+    }
+
+    /// Numbers that a GPU has written.
+    pub(super) fn read(self, from: &[u8]) -> impl Iterator<Item = Real> + '_ {
+        let size = self.size() as usize;
+        from.chunks_exact(size).map(move |bytes| match *bytes {
+            [a, b, c, d] => f32::from_ne_bytes([a, b, c, d]).into(),
+            [a, b, c, d, e, f, g, h] => f64::from_ne_bytes([a, b, c, d, e, f, g, h]),
+            _ => 0.0, // chunks are of 4 or 8 bytes
+        })
+    }
+}

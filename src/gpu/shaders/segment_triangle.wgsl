@@ -1,0 +1,59 @@
+// Segment against triangle: the twin of distance/segment_triangle.rs, which has the cases.
+
+// The axis of a link against a triangle.
+struct AxisTriangle {
+    squared: real,
+    s: real,
+    on_triangle: vec3<real>,
+}
+
+fn axis_triangle_nearer_where(condition: bool, other: AxisTriangle, nearest: AxisTriangle) -> AxisTriangle {
+    let take = condition && other.squared < nearest.squared;
+    return AxisTriangle(
+        select(nearest.squared, other.squared, take),
+        select(nearest.s, other.s, take),
+        select(nearest.on_triangle, other.on_triangle, take),
+    );
+}
+
+// For the segment from the origin to `end` and numbers near one.
+fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
+    // Case 3.
+    var nearest = segment_triangle_edge(end, face.a, face.b);
+    nearest = axis_triangle_nearer_where(true, segment_triangle_edge(end, face.b, face.c), nearest);
+    nearest = axis_triangle_nearer_where(true, segment_triangle_edge(end, face.c, face.a), nearest);
+    // Case 2.
+    let low = face_project(face, zero());
+    let high = face_project(face, end);
+    nearest = axis_triangle_nearer_where(low.inside, segment_triangle_above(face, real(0.0), low), nearest);
+    nearest = axis_triangle_nearer_where(high.inside, segment_triangle_above(face, real(1.0), high), nearest);
+    // Case 1.
+    let normal = face_across(face);
+    let start_side = -dot(normal, face.a);
+    let end_side = dot(normal, end - face.a);
+    let opposite = (start_side < real(0.0) && real(0.0) < end_side)
+        || (end_side < real(0.0) && real(0.0) < start_side);
+    let s = over(abs(start_side), abs(start_side) + abs(end_side));
+    let pierced = AxisTriangle(real(0.0), s, end * s);
+    return axis_triangle_nearer_where(opposite && face_holds_point(face, end * s), pierced, nearest);
+}
+
+// Case 3, for the edge between two vertices.
+fn segment_triangle_edge(end: vec3<real>, edge_start: vec3<real>, edge_end: vec3<real>) -> AxisTriangle {
+    let found = segment_segment_parameters(-edge_start, end, edge_end - edge_start);
+    return AxisTriangle(
+        norm_squared(found.gap),
+        found.s,
+        along(edge_start, edge_end - edge_start, found.t),
+    );
+}
+
+// Case 2, for the end at `s`.
+fn segment_triangle_above(face: Face, s: real, foot: Projection) -> AxisTriangle {
+    return AxisTriangle(norm_squared(foot.residual), s, face_at(face, foot.alpha, foot.beta));
+}
+
+fn segment_triangle(start: vec3<real>, end: vec3<real>, a: vec3<real>, b: vec3<real>, c: vec3<real>) -> Closest {
+    let found = segment_triangle_from_start(end - start, face_new(a - start, b - start, c - start));
+    return Closest(sqrt(found.squared), along(start, end - start, found.s), start + found.on_triangle);
+}

@@ -1,0 +1,100 @@
+// Triangle against modified cylinder: the twin of distance/triangle_modified_cylinder.rs, which has the cases.
+
+// What the axis alone tells of a link and a triangle, in coordinates from the link's start.
+struct Axial {
+    // The squared distance between axis and triangle.
+    axis_squared: real,
+    // The triangle's point.
+    on_triangle: vec3<real>,
+    // Whether the disc at the start, or at the end, decides (case 2).
+    at_flat_start: bool,
+    at_flat_end: bool,
+}
+
+struct LinkCap {
+    centre: vec3<real>,
+    outward: vec3<real>,
+}
+
+fn axial_new(link: Link, face: Face) -> Axial {
+    let axis = segment_triangle_from_start(link.end, face);
+    let has_axis = real(0.0) < norm_squared(link.axis);
+    return Axial(
+        axis.squared,
+        axis.on_triangle,
+        link.flat_start && has_axis && axis.s <= real(0.0),
+        link.flat_end && has_axis && real(1.0) <= axis.s,
+    );
+}
+
+fn axial_beyond_flat_cap(axial: Axial) -> bool {
+    return axial.at_flat_start || axial.at_flat_end;
+}
+
+// Between the triangle's point and the link: an upper bound, and the answer in case 1.
+fn axial_without_caps(axial: Axial, link: Link) -> Closest {
+    let found = link_closest_to(link, axial.on_triangle);
+    let meets = axial.axis_squared <= real(0.0);
+    return Closest(
+        select(found.distance, real(0.0), meets),
+        axial.on_triangle,
+        select(found.on_link, axial.on_triangle, meets),
+    );
+}
+
+// A lower and an upper bound on the answer in case 2.
+fn axial_cap_bounds(axial: Axial, link: Link, face: Face) -> Bounds {
+    let cap = axial_cap(axial, link);
+    return bounds_separating_plane(
+        face.a - cap.centre,
+        face.b - cap.centre,
+        face.c - cap.centre,
+        axial.on_triangle - cap.centre,
+        cap.outward,
+        link.radius,
+    );
+}
+
+// The answer, discs included.
+fn axial_with_caps(axial: Axial, link: Link, face: Face) -> Closest {
+    let upper = axial_without_caps(axial, link);
+    let cap = axial_cap(axial, link);
+    let disc = triangle_disc_from_centre(face_seen_from(face, cap.centre), cap.outward, link.radius);
+    let moved = Closest(disc.distance, disc.point1 + cap.centre, disc.point2 + cap.centre);
+    return closest_select(axial_beyond_flat_cap(axial) && disc.distance < upper.distance, moved, upper);
+}
+
+// The centre and the outward normal of the cap that the triangle's point is beyond; the start's if neither.
+fn axial_cap(axial: Axial, link: Link) -> LinkCap {
+    return LinkCap(
+        select(zero(), link.end, axial.at_flat_end),
+        select(-link.axis, link.axis, axial.at_flat_end),
+    );
+}
+
+fn triangle_modified_cylinder(
+    a: vec3<real>,
+    b: vec3<real>,
+    c: vec3<real>,
+    start: vec3<real>,
+    end: vec3<real>,
+    radius: real,
+    flat_start: bool,
+    flat_end: bool,
+) -> Closest {
+    let face = face_new(a - start, b - start, c - start);
+    let link = Link(end - start, normalised(end - start), radius, flat_start, flat_end);
+    let found = axial_with_caps(axial_new(link, face), link, face);
+    return Closest(found.distance, start + found.point1, start + found.point2);
+}
+
+fn triangle_capsule(
+    a: vec3<real>,
+    b: vec3<real>,
+    c: vec3<real>,
+    start: vec3<real>,
+    end: vec3<real>,
+    radius: real,
+) -> Closest {
+    return triangle_modified_cylinder(a, b, c, start, end, radius, false, false);
+}
