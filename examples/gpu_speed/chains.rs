@@ -230,6 +230,8 @@ fn samples(robot: &Chain) -> Vec<(Chain, Pose)> {
         .collect()
 }
 
+type Boxed<'a> = Box<dyn FnMut() -> Result<Option<Duration>, String> + 'a>;
+
 /// All engines on one mesh, in turns.
 fn engines(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
     let base = ventricle::entry();
@@ -252,7 +254,7 @@ fn engines(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -
     let mut outs = vec![Vec::new(); 1 + gpus.len()];
     let [out1, out2, out3, out_gpu @ ..] = &mut out[..] else { return Err("an answer is missing".into()) };
     let [outs1, outs_gpu @ ..] = &mut outs[..] else { return Err("an answer is missing".into()) };
-    let mut jobs: Vec<Box<dyn FnMut() -> Result<Option<Duration>, String>>> = vec![
+    let mut jobs: Vec<Boxed> = vec![
         Box::new(|| per_link(&mut exhaustive, out1)),
         Box::new(|| {
             search.forget();

@@ -5,18 +5,21 @@
 
 override CULLING: bool = true;
 
+// The limits of the workgroup's links, and their least bounds.
+var<workgroup> own_limits: array<f32, MOST_LINKS>;
 var<workgroup> least_lower: array<atomic<u32>, MOST_LINKS>;
 var<workgroup> least_upper: array<atomic<u32>, MOST_LINKS>;
 
 @compute @workgroup_size(256)
 fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if (lane < MOST_LINKS) {
+    let first = workgroup.y * round.links_at_once;
+    let count = min(round.links_at_once, round.links - first);
+    if (lane < count) {
+        own_limits[lane] = load_limit(round.first_link + first + lane);
         atomicStore(&least_lower[lane], bitcast<u32>(FAR));
         atomicStore(&least_upper[lane], bitcast<u32>(FAR));
     }
     workgroupBarrier();
-    let first = workgroup.y * round.links_at_once;
-    let count = min(round.links_at_once, round.links - first);
     for (var k = 0u; k < round.triangles_at_once; k++) {
         let triangle = (workgroup.x * round.triangles_at_once + k) * 256u + lane;
         if (round.triangles <= triangle) {
@@ -24,9 +27,8 @@ fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
         }
         let sphere = spheres[triangle];
         for (var i = 0u; i < count; i++) {
-            let number = round.first_link + first + i;
-            let placed = load_link(number);
-            if (CULLING && !meets_sphere(placed, sphere, real(load_limit(number)))) {
+            let placed = load_link(round.first_link + first + i);
+            if (CULLING && !meets_sphere(placed, sphere, real(own_limits[i]))) {
                 continue;
             }
             let face = load_face(triangle);
