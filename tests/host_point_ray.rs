@@ -464,7 +464,7 @@ fn nothing_finite_gives_a_nan_and_nothing_panics() {
     let mut links = vec![];
     for caps in CAPS {
         for (reach, radius) in
-            [(1e150, 1e150), (1e150, 1e-300), (1e-300, 1e150), (1e-300, 0.0), (5e-324, 5e-324)]
+            [(1e150, 1e150), (1e150, 1e-300), (1e30, 1e150), (1e-300, 0.0), (5e-324, 5e-324)]
         {
             links.extend(ModifiedCylinder::new(-reach * Vector::X, reach * Vector::ONE, radius, caps));
         }
