@@ -6,6 +6,9 @@ pub mod shape {}
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 
+#[doc = include_str!("../docs/book/trade.md")]
+pub mod trade {}
+
 #[doc = include_str!("../docs/book/certificates.md")]
 pub mod certificates {}
 

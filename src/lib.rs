@@ -37,7 +37,7 @@
 //!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
 //!
-//! - **The book.** [`book`] explains the shape, the queries, certificates and limits, a chapter each.
+//! - **The book.** [`book`] explains the shape, the queries, the trade of accuracy for time, certificates and limits.
 //!
 //! # What an answer means
 //! Distances are to the mesh's surface and unsigned: 0 where a link touches or crosses it. A robot that starts inside a

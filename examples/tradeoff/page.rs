@@ -58,7 +58,7 @@ pub fn page(facts: &Facts) -> String {
          flat face: its clearance falls short by up to r, at any tolerance.\n\n\
          *Faces fixed*: two more links, that end 0.3 and 0.01 mm before each face. The last one is so short that the \
          face has the curve's direction, and the one before ends so near that its tilted end stays behind the face. What \
-         is left is the tolerance.\n\n{}\n\
+         is left is the tolerance and a few micrometres.\n\n{}\n\
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),

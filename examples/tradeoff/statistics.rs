@@ -68,7 +68,7 @@ impl std::fmt::Display for Share {
 /// Per cent with as many digits as a share needs.
 fn percent(share: f64) -> String {
     let value = 100.0 * share;
-    if value < 0.005 || value >= 10.0 { format!("{value:.1}") } else { format!("{value:.2}") }
+    if (0.005..10.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.1}") }
 }
 
 /// A length in mm with two digits, and none where it is no more than rounding.

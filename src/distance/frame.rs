@@ -52,10 +52,12 @@ impl<T: Scalar> Frame<T> {
         let one = self.fit.one();
         // Two exact factors: their product may be beyond the range where each is not.
         let (grow, unfit) = (one / self.shrink, one / self.fit);
+        // The way from the origin may be longer than the largest number; a quarter of it is not.
+        let origin = self.origin * self.shrink;
         Closest {
             distance: local.distance * unfit * grow,
-            point1: self.origin + local.point1 * unfit * grow,
-            point2: self.origin + local.point2 * unfit * grow,
+            point1: (origin + local.point1 * unfit) * grow,
+            point2: (origin + local.point2 * unfit) * grow,
         }
         .met()
     }

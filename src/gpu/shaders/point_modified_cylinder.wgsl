@@ -3,7 +3,7 @@
 // A link that starts at the origin.
 struct Link {
     end: vec3<real>,
-    // The unit direction of the axis, zero for a ball.
+    // The unit direction of the axis; zero for a ball, whose caps count as round.
     axis: vec3<real>,
     radius: real,
     // Which caps are flat.
@@ -14,6 +14,13 @@ struct Link {
 struct PointLink {
     distance: real,
     on_link: vec3<real>,
+}
+
+fn link_new(end: vec3<real>, radius: real, flat_start: bool, flat_end: bool) -> Link {
+    // Where the squared length is below the normal numbers, nothing can tell the ends apart.
+    let squared = norm_squared(end);
+    let has_direction = real(0.0) < squared * (real(2.0) * UNIT_ROUNDOFF);
+    return Link(end, select(zero(), normalised(end), has_direction), radius, flat_start, flat_end);
 }
 
 // The distance of a point from the solid link, and the link's nearest point (the point itself inside).
@@ -49,7 +56,7 @@ fn point_modified_cylinder(
     flat_start: bool,
     flat_end: bool,
 ) -> Closest {
-    let link = Link(end - start, normalised(end - start), radius, flat_start, flat_end);
+    let link = link_new(end - start, radius, flat_start, flat_end);
     let found = link_closest_to(link, point - start);
     return Closest(found.distance, point, start + found.on_link);
 }

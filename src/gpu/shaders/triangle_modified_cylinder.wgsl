@@ -19,11 +19,16 @@ struct LinkCap {
 fn axial_new(link: Link, face: Face) -> Axial {
     let axis = segment_triangle_from_start(link.end, face);
     let has_axis = real(0.0) < norm_squared(link.axis);
+    // Both ends of a short link may be as near as rounding can tell; then the end that the point is beyond decides.
+    let before_start = dot(axis.on_triangle, link.axis) < real(0.0);
+    let beyond_end = real(0.0) < dot(axis.on_triangle - link.end, link.axis);
+    let at_start = before_start || (axis.s <= real(0.0) && !beyond_end);
+    let at_end = beyond_end || (real(1.0) <= axis.s && !before_start);
     return Axial(
         axis.squared,
         axis.on_triangle,
-        link.flat_start && has_axis && axis.s <= real(0.0),
-        link.flat_end && has_axis && real(1.0) <= axis.s,
+        link.flat_start && has_axis && at_start,
+        link.flat_end && has_axis && at_end,
     );
 }
 
@@ -83,7 +88,7 @@ fn triangle_modified_cylinder(
     flat_end: bool,
 ) -> Closest {
     let face = face_new(a - start, b - start, c - start);
-    let link = Link(end - start, normalised(end - start), radius, flat_start, flat_end);
+    let link = link_new(end - start, radius, flat_start, flat_end);
     let found = axial_with_caps(axial_new(link, face), link, face);
     return Closest(found.distance, start + found.point1, start + found.point2);
 }
