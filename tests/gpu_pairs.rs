@@ -8,7 +8,7 @@ use common::kernels::Input;
 use common::problems::{Family, Problem};
 use common::{Case, Random, distance_cases, gpu};
 use parry_continuum::distance::*;
-use parry_continuum::gpu::{Gpu, GpuPairs, Pair, PairProblem, Precision};
+use parry_continuum::gpu::{Discs, Gpu, GpuPairs, Pair, PairProblem, Precision};
 use parry_continuum::parry::math::Vector;
 
 fn unit(precision: Precision) -> f64 {
@@ -153,6 +153,39 @@ fn random_and_nasty_problems() {
             let (worst, touching) = worst(gpu, pair, &problems);
             println!("{name} {pair:?}: worst {worst:.2} of {all}, {touching} touching");
             assert!(touching > 2 && touching < all / 2, "{name} {pair:?}: {touching}");
+        }
+    }
+}
+
+/// The paper's quartic finds the distance of most discs, and never less than it is: its candidates are points of the
+/// segment. (The closed form loses digits on nearly double roots.)
+#[test]
+fn discs_by_the_quartic() {
+    for (name, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        let mut random = Random::new(41);
+        let mut problems = Vec::new();
+        for family in [Family::Generic, Family::Lattice, Family::EdgeTangentToRim, Family::Touching] {
+            problems.extend(random_problems(&mut random, family, precision));
+        }
+        for pair in [Pair::SegmentDisc, Pair::TriangleDisc, Pair::TriangleModifiedCylinder] {
+            for (discs, share) in [(Discs::ClosedForm, 0.9), (Discs::Companion, 0.99)] {
+                let mut answers = Vec::new();
+                let mut pairs = GpuPairs::with_discs(gpu, pair, discs).unwrap();
+                pairs.solve(&problems, &mut answers).unwrap();
+                assert_eq!(answers.len(), problems.len());
+                let mut exact = 0;
+                for (problem, answer) in problems.iter().zip(&answers) {
+                    let expected = twin(pair, problem).distance;
+                    let unit = unit(precision) * extent(pair, problem);
+                    let beyond = answer.distance - expected;
+                    assert!(beyond >= -16.0 * unit, "{name} {pair:?} {discs:?}: {answer:?} for {expected}");
+                    exact += usize::from(beyond <= 16.0 * unit);
+                }
+                let exact = exact as f64 / problems.len() as f64;
+                println!("{name} {pair:?} {discs:?}: {exact:.4} to rounding");
+                assert!(exact > share, "{name} {pair:?} {discs:?}: {exact}");
+            }
         }
     }
 }

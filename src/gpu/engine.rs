@@ -2,14 +2,14 @@
 
 use super::device::Adapter;
 use super::link::PlacedLink;
+use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
 use super::opened::{Discs, Gpu};
 use super::query::{Candidate, Query};
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_vertices, each,
-    place,
+    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_vertices, place,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -304,44 +304,4 @@ impl Proximity for GpuExhaustive {
         self.vertices.copy_from_slice(vertices);
         Ok(self.mesh.update(&self.gpu.0, vertices)?)
     }
-}
-
-fn least_distance(candidates: &[Candidate]) -> Real {
-    candidates.iter().map(|candidate| candidate.distance).fold(Real::INFINITY, Real::min)
-}
-
-/// The nearest of some triangles, of those strictly nearer than `bound`; the first if several are. A distance of 0
-/// ends the search.
-fn nearest_of(
-    probe: &Probe,
-    triangles: impl Iterator<Item = u32>,
-    bound: Real,
-    vertices: &[Vector],
-    indices: &[[u32; 3]],
-) -> Option<Found> {
-    let (mut bound, mut nearest) = (bound, None);
-    for triangle in triangles {
-        let corners = indices[triangle as usize].map(|index| vertices[index as usize]);
-        if let Some(closest) = probe.nearer_than(bound, corners) {
-            bound = closest.distance;
-            nearest = Some(Found { triangle, closest });
-            if bound <= 0.0 {
-                break;
-            }
-        }
-    }
-    nearest
-}
-
-/// Triangles that a core of the CPU takes at a time.
-const SHARE: usize = 4096;
-
-/// The nearest of all triangles.
-fn nearest_of_all(probe: &Probe, bound: Real, vertices: &[Vector], indices: &[[u32; 3]]) -> Option<Found> {
-    let mut shares: Vec<Option<Found>> = vec![None; indices.len().div_ceil(SHARE)];
-    each(&mut shares, |share, nearest| {
-        let triangles = share * SHARE..indices.len().min((share + 1) * SHARE);
-        *nearest = nearest_of(probe, triangles.map(|triangle| triangle as u32), bound, vertices, indices);
-    });
-    shares.into_iter().flatten().min_by(|a, b| a.closest.distance.total_cmp(&b.closest.distance))
 }

@@ -12,6 +12,7 @@
 //! for both precisions.
 
 mod batch;
+mod buffers;
 mod clock;
 mod device;
 mod engine;
@@ -19,6 +20,7 @@ mod error;
 mod failures;
 mod forms;
 mod link;
+mod measure;
 mod mesh;
 mod opened;
 mod pairs;

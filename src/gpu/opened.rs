@@ -33,7 +33,7 @@ impl Gpu {
     }
 }
 
-/// The route to the disc of a flat cap where nothing is culled.
+/// A route to the disc of a flat cap: the paper's are there for comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Discs {
     /// This crate's, without roots of a polynomial.
@@ -43,6 +43,13 @@ pub enum Discs {
     ClosedForm,
     /// The paper's quartic by the companion matrix.
     Companion,
+}
+
+impl Discs {
+    /// What tells the kernels by the quartic apart.
+    pub(super) fn constant(self) -> Option<(&'static str, f64)> {
+        (self == Self::Companion).then_some(("COMPANION", 1.0))
+    }
 }
 
 /// A device with the kernels of a query.
@@ -80,14 +87,9 @@ impl Opened {
 
     /// The kernel that computes every pair in full, compiled when it is first asked for.
     pub(super) fn every_pair(&self, discs: Discs) -> Result<&ComputePipeline, GpuError> {
-        let kernel = match discs {
-            Discs::Convex => shaders::NEAREST,
-            Discs::ClosedForm | Discs::Companion => shaders::NEAREST_BY_QUARTIC,
-        };
+        let kernel = if discs == Discs::Convex { shaders::NEAREST } else { shaders::NEAREST_BY_QUARTIC };
         let mut constants = vec![("CULLING", 0.0)];
-        if discs == Discs::Companion {
-            constants.push(("COMPANION", 1.0));
-        }
+        constants.extend(discs.constant());
         let compile = || self.device.compile(kernel, QUARTIC, &self.query_layout, &constants);
         self.every_pair[discs as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
     }

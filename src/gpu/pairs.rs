@@ -1,7 +1,7 @@
 //! Single pairs of the narrow phase on the GPU.
 
 use super::batch::Batch;
-use super::opened::Gpu;
+use super::opened::{Discs, Gpu};
 use super::{GpuError, shaders};
 use crate::distance::{Closest, Frame, Vec3};
 use crate::proximity::DeviceFailure;
@@ -115,8 +115,18 @@ impl GpuPairs {
     /// # Errors
     /// The driver does not compile the kernel.
     pub fn new(gpu: &Gpu, pair: Pair) -> Result<Self, GpuError> {
-        let constants = [("PAIR", f64::from(pair as u32))];
-        Ok(Self { pair, batch: Batch::new(gpu, shaders::PAIRS, shaders::QUARTIC, &constants, 24, 7)? })
+        Self::with_discs(gpu, pair, Discs::Convex)
+    }
+
+    /// As [`GpuPairs::new`], with segment-disc by one of the paper's routes or by ours.
+    ///
+    /// # Errors
+    /// The driver does not compile the kernel.
+    pub fn with_discs(gpu: &Gpu, pair: Pair, discs: Discs) -> Result<Self, GpuError> {
+        let kernel = if discs == Discs::Convex { shaders::PAIRS } else { shaders::PAIRS_BY_QUARTIC };
+        let mut constants = vec![("PAIR", f64::from(pair as u32))];
+        constants.extend(discs.constant());
+        Ok(Self { pair, batch: Batch::new(gpu, kernel, shaders::QUARTIC, &constants, 24, 7)? })
     }
 
     /// The closest points of every problem, in their order, computed in the GPU's precision. `out` is cleared first.

@@ -6,16 +6,17 @@
 //! 3. `reduce`: the least of all blocks is the link's limit.
 //! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near comes back.
 
+use super::buffers::Buffers;
 use super::clock::{Clock, READINGS};
 use super::link::PlacedLink;
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
-use super::plan::{BLOCK_BOUNDS, CAPACITY, Plan};
+use super::plan::{CAPACITY, Plan};
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 use std::time::Duration;
-use wgpu::{BindGroup, Buffer, BufferUsages, ComputePipeline};
+use wgpu::{Buffer, ComputePipeline};
 
 /// A triangle that may be the nearest, and its distance from the axis as the device computed it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,25 +43,6 @@ pub(super) struct Query {
     /// How long the kernels of the last query took, if the device keeps time.
     pub device_time: Option<Duration>,
 }
-
-/// Buffers that serve any query with this plan, of at most these sizes.
-struct Buffers {
-    plan: Plan,
-    rounds: Buffer,
-    links: Buffer,
-    limits: Buffer,
-    found: Buffer,
-    distances: Buffer,
-    readback: Buffer,
-    clock: Option<Clock>,
-    /// One for each part of the mesh.
-    groups: Vec<BindGroup>,
-}
-
-/// Numbers of a link.
-const LINK: u64 = 16;
-/// Bytes of a round's description.
-const ROUND: u64 = 32;
 
 impl Query {
     /// The candidates of a link of the last query.
@@ -237,66 +219,6 @@ impl Query {
             // They come in any order.
             self.candidates[begin..].sort_by_key(|candidate| candidate.triangle);
             self.links.push(Candidates { range: begin..self.candidates.len(), too_many });
-        }
-    }
-}
-
-impl Buffers {
-    fn new(gpu: &Opened, mesh: &DeviceMesh, plan: Plan) -> Self {
-        let device = &gpu.device;
-        let (links, parts) = (plan.links_per_submission as u64, mesh.parts.len() as u64);
-        let (size, slots) = (device.precision.size(), links * parts);
-        let rounds = links.div_ceil(u64::from(plan.links_per_round));
-        let alignment = u64::from(device.limits.min_uniform_buffer_offset_alignment);
-        let blocks: u64 = mesh.parts.iter().map(|part| u64::from(plan.blocks(part.triangles))).sum();
-        let (found, distances) = (slots * (CAPACITY as u64 + 1) * 4, slots * CAPACITY as u64 * size);
-
-        let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let rounds = device
-            .buffer(rounds * parts * alignment.max(ROUND), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let link_buffer = device.buffer(links * LINK * size, up);
-        let limits = device.buffer(links * 4, up);
-        let block_bounds =
-            device.buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
-        let found_buffer = device.buffer(found, down | BufferUsages::COPY_DST);
-        let distance_buffer = device.buffer(distances, down);
-        let readback =
-            device.buffer(READINGS + found + distances, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        let groups = mesh
-            .parts
-            .iter()
-            .map(|part| {
-                let round = wgpu::BufferBinding {
-                    buffer: &rounds,
-                    offset: 0,
-                    size: std::num::NonZeroU64::new(ROUND),
-                };
-                device.group(
-                    &gpu.query_layout,
-                    &[
-                        wgpu::BindingResource::Buffer(round),
-                        link_buffer.as_entire_binding(),
-                        limits.as_entire_binding(),
-                        part.spheres.as_entire_binding(),
-                        part.faces.as_entire_binding(),
-                        block_bounds.as_entire_binding(),
-                        found_buffer.as_entire_binding(),
-                        distance_buffer.as_entire_binding(),
-                    ],
-                )
-            })
-            .collect();
-        Self {
-            plan,
-            rounds,
-            links: link_buffer,
-            limits,
-            found: found_buffer,
-            distances: distance_buffer,
-            readback,
-            clock: Clock::new(device),
-            groups,
         }
     }
 }

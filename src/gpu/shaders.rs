@@ -44,6 +44,14 @@ macro_rules! query_kernel {
     };
 }
 
+macro_rules! pairs_kernel {
+    ($($segment_disc:literal),*) => {
+        kernel!("pairs": "vec3", "closest", "segment_segment", "face", "point_triangle", "segment_triangle",
+            "point_disc", "line_disc", $($segment_disc,)* "plane_disc", "triangle_disc", "point_modified_cylinder",
+            "bounds", "triangle_modified_cylinder", "pairs")
+    };
+}
+
 pub const PREPARE: Kernel = kernel!("prepare": "vec3", "face", "prepare");
 pub const SAMPLE: Kernel = query_kernel!("sample");
 pub const NEAREST: Kernel = query_kernel!("nearest");
@@ -53,9 +61,10 @@ pub const NEAREST_BY_QUARTIC: Kernel =
 pub const REDUCE: Kernel = query_kernel!("reduce");
 pub const COLLECT: Kernel = query_kernel!("collect");
 pub const SELF_TEST: Kernel = kernel!("self_test": "self_test");
-pub const PAIRS: Kernel = kernel!("pairs": "vec3", "closest", "segment_segment", "face", "point_triangle",
-    "segment_triangle", "point_disc", "line_disc", "segment_disc", "plane_disc", "triangle_disc",
-    "point_modified_cylinder", "bounds", "triangle_modified_cylinder", "pairs");
+pub const PAIRS: Kernel = pairs_kernel!("segment_disc", "segment_disc_pair");
+/// As [`PAIRS`], with the discs by the paper's quartic.
+pub const PAIRS_BY_QUARTIC: Kernel =
+    pairs_kernel!("roots", "closed_form", "companion", "segment_disc_quartic", "segment_disc_pair");
 pub const FORMS: Kernel = kernel!("forms": "vec3", "forms");
 
 /// A kernel that finds roots by the method of this name, with the method's own files.
@@ -93,6 +102,7 @@ pub const KERNELS: &[&Kernel] = &[
     &COLLECT,
     &SELF_TEST,
     &PAIRS,
+    &PAIRS_BY_QUARTIC,
     &FORMS,
     &FIND_ROOTS[0],
     &FIND_ROOTS[1],

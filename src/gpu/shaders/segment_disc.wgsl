@@ -4,8 +4,3 @@
 fn segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius: real) -> Closest {
     return segment_disc_convex(start, end, normal, radius);
 }
-
-fn segment_disc(start: vec3<real>, end: vec3<real>, centre: vec3<real>, normal: vec3<real>, radius: real) -> Closest {
-    let found = segment_disc_from_centre(start - centre, end - centre, normalised(normal), radius);
-    return Closest(found.distance, centre + found.point1, centre + found.point2);
-}
