@@ -5,6 +5,7 @@
 //! reference cases in a module `common`.
 
 use crate::common::Case;
+use crate::common::precision::Precision;
 use parry_continuum::distance::*;
 use std::fmt::Write;
 
@@ -21,33 +22,12 @@ pub const KINDS: [(&str, &str); 9] = [
     ("triangle_modified_cylinder", "triangle and modified cylinder"),
 ];
 
-/// A precision that the narrow phase is measured in.
-pub trait Precision: Scalar<Mask = bool> + Into<f64> {
-    /// u, half the distance from 1 to the next number.
-    const UNIT: f64;
-    fn of(value: f64) -> Self;
-}
-
-impl Precision for f64 {
-    const UNIT: f64 = f64::EPSILON / 2.0;
-    fn of(value: f64) -> Self {
-        value
-    }
-}
-
-impl Precision for f32 {
-    const UNIT: f64 = f32::EPSILON as f64 / 2.0;
-    fn of(value: f64) -> Self {
-        value as f32
-    }
-}
-
 /// The distance of a case by this crate, all its lengths multiplied by `factor`.
 pub fn distance<T: Precision>(case: &Case, factor: f64) -> f64 {
-    let length = |x: f64| T::of(x * factor);
+    let length = |x: f64| T::from_f64(x * factor);
     let point = |p: [f64; 3]| Vec3::from(p.map(length));
     let (triangle, radius) = (case.tri.map(point), length(case.r));
-    let normal = Vec3::from(case.n.map(T::of));
+    let normal = Vec3::from(case.n.map(T::from_f64));
     let segment = || [point(case.s0), point(case.s1)];
     let [start, end] = [point(case.p0), point(case.p1)];
     let closest = match case.kind.as_str() {

@@ -7,6 +7,8 @@ mod chain_mesh;
 mod constructors;
 mod link_triangle;
 mod mesh_file;
+#[path = "../../tests/common/precision.rs"]
+mod precision;
 mod root_finders;
 mod source;
 
