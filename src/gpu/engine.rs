@@ -9,7 +9,8 @@ use super::query::{Candidate, Query};
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_vertices, place,
+    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_margin,
+    check_moved, check_vertices, place,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -262,9 +263,7 @@ impl Proximity for GpuExhaustive {
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        if margin.is_nan() || margin < 0.0 {
-            return Err(ProximityError::BadMargin { margin });
-        }
+        check_margin(margin)?;
         self.clear();
         self.place(robot, pose, Some(margin))?;
         self.search()?;
@@ -296,11 +295,7 @@ impl Proximity for GpuExhaustive {
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.vertices.len();
-        if vertices.len() != expected {
-            return Err(MeshError::VertexCount { expected, got: vertices.len() });
-        }
-        self.reach = check_vertices(vertices)?;
+        self.reach = check_moved(vertices, self.vertices.len())?;
         self.vertices.copy_from_slice(vertices);
         Ok(self.mesh.update(&self.gpu.0, vertices)?)
     }

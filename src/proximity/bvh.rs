@@ -2,7 +2,7 @@
 
 use super::descent::{Descent, Scratch, SearchMesh, Visits};
 use super::placed::Placed;
-use super::probe::{Probe, check_vertices};
+use super::probe::{Probe, check_margin, check_moved, check_vertices};
 use super::search::Found;
 use super::walk::Walk;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
@@ -110,9 +110,7 @@ impl Proximity for BvhSearch {
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        if margin.is_nan() || margin < 0.0 {
-            return Err(ProximityError::BadMargin { margin });
-        }
+        check_margin(margin)?;
         let placed = Placed::new(robot, pose, self.reach)?;
         let descent = Descent { mesh: &self.mesh, scratch: &mut self.memory.scratch };
         let mut walk = Walk { descent, placed: &placed };
@@ -150,11 +148,7 @@ impl Proximity for BvhSearch {
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.mesh.vertices.len();
-        if vertices.len() != expected {
-            return Err(MeshError::VertexCount { expected, got: vertices.len() });
-        }
-        self.reach = check_vertices(vertices)?;
+        self.reach = check_moved(vertices, self.mesh.vertices.len())?;
         self.mesh.set_vertices(self.level, vertices);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Proximity by looking at every triangle, as the paper does on parallel hardware.
 
 use super::coarse::CoarseLink;
-use super::probe::{Probe, check_vertices, place};
+use super::probe::{Probe, check_margin, check_moved, check_vertices, place};
 use super::scan::{Findings, Job, SharedBound, Work};
 use super::search::Found;
 use super::soa::SoaMesh;
@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
-/// mesh costs little more than a copy.
+/// mesh leaves nothing to be built anew.
 ///
 /// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured again in
 /// `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles are taken 2 to 16 at a
@@ -239,9 +239,7 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Proximity for Exhaustive<
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        if margin.is_nan() || margin < 0.0 {
-            return Err(ProximityError::BadMargin { margin });
-        }
+        check_margin(margin)?;
         self.scratch.links.clear();
         self.place(robot, pose)?;
         // The next number, because the scan wants triangles strictly nearer than its bound.
@@ -276,11 +274,7 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Proximity for Exhaustive<
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        let expected = self.vertices.len();
-        if vertices.len() != expected {
-            return Err(MeshError::VertexCount { expected, got: vertices.len() });
-        }
-        self.reach = check_vertices(vertices)?;
+        self.reach = check_moved(vertices, self.vertices.len())?;
         self.vertices.copy_from_slice(vertices);
         self.mesh.update(self.level, vertices, &self.indices);
         Ok(())

@@ -24,7 +24,7 @@ mod walk;
 pub(crate) use coarse::{CoarseFrame, CoarseLink};
 pub(crate) use probe::Probe;
 #[cfg(feature = "gpu")]
-pub(crate) use probe::{check_vertices, place};
+pub(crate) use probe::{check_margin, check_moved, check_vertices, place};
 pub(crate) use search::{Found, Until, search};
 #[cfg(feature = "gpu")]
 pub(crate) use share::each;

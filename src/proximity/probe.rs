@@ -201,6 +201,19 @@ pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<Real, MeshError> {
     Ok(vertices.iter().fold(Vector::ZERO, |reach, point| reach.max(point.abs())).max_element())
 }
 
+/// As [`check_vertices`], for the vertices of a mesh of `expected` that has moved.
+pub(crate) fn check_moved(vertices: &[Vector], expected: usize) -> Result<Real, MeshError> {
+    if vertices.len() != expected {
+        return Err(MeshError::VertexCount { expected, got: vertices.len() });
+    }
+    check_vertices(vertices)
+}
+
+/// Whether a margin can be kept.
+pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
+    if margin.is_nan() || margin < 0.0 { Err(ProximityError::BadMargin { margin }) } else { Ok(()) }
+}
+
 /// Whether a vertex can be used; `vertex` is its place in the mesh.
 pub(crate) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError> {
     for value in point.to_array() {
