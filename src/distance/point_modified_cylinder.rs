@@ -40,10 +40,8 @@ pub(crate) struct Link<T: Scalar> {
 impl<T: Scalar> Link<T> {
     #[inline(always)]
     pub(crate) fn new(end: Vec3<T>, radius: T, flat: [T::Mask; 2]) -> Self {
-        // Where the squared length is below the normal numbers, nothing can tell the ends apart.
-        let squared = end.norm_squared();
-        let has_direction = squared.zero().lt(squared * squared.lit(2.0 * T::UNIT_ROUNDOFF));
-        Self { end, axis: Vec3::select(has_direction, end.normalised(), Vec3::zero(radius)), radius, flat }
+        let axis = Vec3::select(gives_direction(end.norm_squared()), end.normalised(), Vec3::zero(radius));
+        Self { end, axis, radius, flat }
     }
 
     /// The distance of a point from the solid link, and the link's nearest point (the point itself inside).
@@ -70,4 +68,10 @@ impl<T: Scalar> Link<T> {
         let (to_disc, on_disc) = point_disc::from_centre(relative, self.axis, self.radius);
         (flat.select(to_disc, barrel), Vec3::select(flat, centre + on_disc, pulled))
     }
+}
+
+/// Whether a segment's squared length is large enough to tell its ends apart: not below the normal numbers.
+#[inline(always)]
+pub(crate) fn gives_direction<T: Scalar>(squared: T) -> T::Mask {
+    squared.zero().lt(squared * squared.lit(2.0 * T::UNIT_ROUNDOFF))
 }

@@ -9,7 +9,7 @@
 
 use super::probe::Probe;
 use crate::distance::lanes::Lane;
-use crate::distance::{Scalar, Vec3};
+use crate::distance::{Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
 /// A link farther out than this many times the mesh's size could overflow single precision.
@@ -85,8 +85,7 @@ impl<E: Lane> CoarseLink<E> {
         }
         let length = along.length();
         // A link too short for its flat caps in this precision is one for double precision alone.
-        let squared = E::round(length) * E::round(length);
-        if flat.contains(&true) && !squared.zero().lt(squared * squared.lit(2.0 * E::UNIT_ROUNDOFF)) {
+        if flat.contains(&true) && !gives_direction(E::round(length) * E::round(length)) {
             return None;
         }
         // The mesh's own rounding, where it lies far from the origin, is that of double precision.
