@@ -82,12 +82,23 @@ fn fill<E: Lane>(
         for lane in 0..BLOCK {
             // The last block is filled up with its last triangle.
             let triangle = indices[((first + block) * BLOCK + lane).min(indices.len() - 1)];
-            for (corner, index) in triangle.into_iter().enumerate() {
-                let point: [E; 3] = frame.point(vertices[index as usize]).into();
-                for (axis, value) in point.into_iter().enumerate() {
-                    rows[(3 * corner + axis) * BLOCK + lane] = value;
-                }
-            }
+            place_triangle(frame, vertices, triangle, rows, lane);
+        }
+    }
+}
+
+/// Writes the corners of a triangle into its lane of a block.
+pub(super) fn place_triangle<E: Lane>(
+    frame: &CoarseFrame,
+    vertices: &[Vector],
+    triangle: [u32; 3],
+    rows: &mut [E],
+    lane: usize,
+) {
+    for (corner, index) in triangle.into_iter().enumerate() {
+        let point: [E; 3] = frame.point(vertices[index as usize]).into();
+        for (axis, value) in point.into_iter().enumerate() {
+            rows[(3 * corner + axis) * BLOCK + lane] = value;
         }
     }
 }

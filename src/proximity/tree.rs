@@ -8,7 +8,7 @@ use super::coarse::CoarseFrame;
 use super::packed::{BLOCK, Patches};
 use super::patch::{PATCH_ROWS, Patch};
 use super::share::each;
-use super::soa::load;
+use super::soa::{load, place_triangle};
 use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
 use fearless_simd::{Level, dispatch};
@@ -194,12 +194,8 @@ impl Leaf {
 
     fn fill(&mut self, frame: &CoarseFrame, vertices: &[Vector], indices: &[[u32; 3]]) {
         for lane in 0..BLOCK {
-            for (corner, index) in indices[self.triangles[lane] as usize].into_iter().enumerate() {
-                let point: [f32; 3] = frame.point(vertices[index as usize]).into();
-                for (axis, value) in point.into_iter().enumerate() {
-                    self.rows[(3 * corner + axis) * BLOCK + lane] = value;
-                }
-            }
+            let triangle = indices[self.triangles[lane] as usize];
+            place_triangle(frame, vertices, triangle, &mut self.rows, lane);
         }
     }
 }
