@@ -4,7 +4,8 @@
 //! from below: for a direction n of unit length, the least <n, x> over the link minus the largest over the triangle.
 //! Neither needs any trust in how the points and the plane were found; a bad choice makes the bounds wide, not wrong.
 //! Found they are by the narrow phase at twice the precision, so the rounding of n, which would spoil the lower bound
-//! of links that nearly touch, is far below what `f64` can tell.
+//! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
+//! normals of the features (faces, edges, axis) are tried as well.
 
 use super::probe::check_vertex;
 use super::{LinkProximity, MeshError, ProximityError};
@@ -47,8 +48,7 @@ impl LinkProximity {
     /// Bounds on the distance between this answer's link and triangle, which hold rigorously, rounding included.
     ///
     /// They lie within a few units in the last place of each other, or of the problem's extent where link and triangle
-    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query. It takes
-    /// some ten microseconds.
+    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query.
     ///
     /// # Errors
     /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, or a vertex
@@ -148,10 +148,15 @@ impl Placed {
         Ok(Self { start, end, radius: link.radius(), flat })
     }
 
+    /// The power of two that brings link and triangle near one.
+    fn unit(&self, [a, b, c]: [Vector; 3]) -> Real {
+        largest([self.start, self.end, a, b, c]).max(self.radius).power_of_two_to_unity()
+    }
+
     /// A lower bound by a sphere around the triangle, in plain f64.
     fn at_least(&self, triangle: [Vector; 3]) -> Real {
         let [a, b, c] = triangle;
-        let unit = largest([self.start, self.end, a, b, c]).max(self.radius).power_of_two_to_unity();
+        let unit = self.unit(triangle);
         let [start, end, a, b, c] = [self.start, self.end, a, b, c].map(|point| point * unit);
         // Any centre serves.
         let centre = a * 0.5 + (b * 0.25 + c * 0.25);
@@ -164,7 +169,7 @@ impl Placed {
     fn bounds(&self, triangle: [Vector; 3]) -> Certificate {
         // From the link's start every coordinate is an exact double-double, and the largest is brought near one.
         let [a, b, c] = triangle;
-        let coarse = largest([self.start, self.end, a, b, c]).max(self.radius).power_of_two_to_unity();
+        let coarse = self.unit(triangle);
         let start = self.start * coarse;
         let offset = |p: Vector| p * coarse - start;
         let radius = self.radius * coarse;
