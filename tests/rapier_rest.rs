@@ -47,6 +47,14 @@ struct Fall {
     gain: Real,
 }
 
+impl Fall {
+    /// Neither sank that deep nor gained energy.
+    #[track_caller]
+    fn assert_calm(&self, deepest: Real, context: &str) {
+        assert!(self.deepest > deepest && self.gain < 1e-3, "{context}: {} {}", self.deepest, self.gain);
+    }
+}
+
 #[test]
 fn on_flat_ground_at_the_right_height() {
     for ground in FLAT {
@@ -70,12 +78,7 @@ fn on_flat_ground_at_the_right_height() {
                     let way = (pose.translation - Vector::new(0.1, height, -0.2)).length();
                     assert!(way < 0.01, "{context} went {way}");
                 }
-                assert!(
-                    fall.deepest > -0.02 && fall.gain < 1e-3,
-                    "{context}: {} {}",
-                    fall.deepest,
-                    fall.gain
-                );
+                fall.assert_calm(-0.02, &context);
             }
         }
     }
@@ -93,12 +96,7 @@ fn on_bumps_and_in_hollows_touching() {
                 let context = format!("{:?} {attitude} on a {}", link.caps(), ground.0);
                 let fall = settle(&mut drop, 1500).unwrap_or_else(|| panic!("{context} is awake"));
                 assert!(drop.gap(0.1).abs() < EXACT, "{context}: {}", drop.gap(0.1));
-                assert!(
-                    fall.deepest > -0.05 && fall.gain < 1e-3,
-                    "{context}: {} {}",
-                    fall.deepest,
-                    fall.gain
-                );
+                fall.assert_calm(-0.05, &context);
             }
         }
     }
