@@ -281,3 +281,27 @@ fn links_whose_lowest_point_is_above_the_interior() {
     links::<f64>(-12.0);
     links::<f32>(-4.5);
 }
+
+fn vanishing<T: Precision>(lengths: std::ops::Range<i32>, widths: std::ops::Range<i32>) {
+    let end = Vector::new(0.0, 0.5, -0.5);
+    for (length, width) in lengths.flat_map(|length| widths.clone().map(move |width| (length, width))) {
+        let (far, thin) = (2.0_f64.powi(length), 2.0_f64.powi(-width));
+        let triangle = [Vector::splat(thin), Vector::X * thin, Vector::splat(0.5)].map(T::vec3);
+        let start = T::vec3(Vector::new(far, thin, 0.0));
+        for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
+            for radius in [0.0, 0.125] {
+                let found =
+                    triangle_modified_cylinder(triangle, start, T::vec3(end), T::from_f64(radius), flat);
+                // The end's foot is the corner at the origin, and the cap's nearest point has the same foot.
+                let error = (found.distance.into() - (0.5_f64.sqrt() - radius)).abs();
+                assert!(error <= 16.0 * T::UNIT * far, "2^{length}, 2^-{width}, {flat:?}, {radius}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn slivers_whose_width_is_lost_beside_a_long_link() {
+    vanishing::<f64>(20..40, 60..110);
+    vanishing::<f32>(8..16, 26..50);
+}

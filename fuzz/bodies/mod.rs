@@ -1,8 +1,6 @@
 //! What is fuzzed. Each body takes any bytes and panics where a promise of the crate is broken. The fuzzer calls them
 //! through `fuzz_targets`, the test suite through `tests/fuzz_bodies.rs`.
 
-#![allow(dead_code, reason = "each target calls its own body")]
-
 mod chain_mesh;
 mod constructors;
 mod link_triangle;

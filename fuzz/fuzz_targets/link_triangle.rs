@@ -1,12 +1,3 @@
 #![no_main]
 
-#[path = "../bodies/mod.rs"]
-mod bodies;
-#[path = "../../examples/scene"]
-mod scene {
-    #![allow(dead_code, reason = "only files are read here")]
-    pub mod mesh_file;
-    pub mod surface;
-}
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| bodies::link_triangle(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| parry_continuum_fuzz::bodies::link_triangle(bytes));

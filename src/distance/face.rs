@@ -20,6 +20,8 @@ use super::vec3::Vec3;
 pub(crate) struct Face<T: Scalar> {
     /// The vertices, the one opposite the longest edge first.
     pub vertices: [Vec3<T>; 3],
+    /// A normal of twice the area's length.
+    pub across: Vec3<T>,
     /// The basis dual to the edges from the first vertex, within the plane; zero without area.
     pub dual: [Vec3<T>; 2],
 }
@@ -47,35 +49,22 @@ impl<T: Scalar> Face<T> {
             Vec3::select(ab_longest, a, Vec3::select(bc_longest, b, c)),
             Vec3::select(ab_longest, b, Vec3::select(bc_longest, c, a)),
         ];
-        let mut face = Self { vertices, dual: [Vec3::zero(ab); 2] };
-        let ([e1, e2], across) = (face.edges(), face.across());
+        let ([e1, e2], across) = (edges(&vertices), across(&vertices));
         let inverse = ab.one().over(across.norm_squared());
-        face.dual = [e2.cross(across) * inverse, across.cross(e1) * inverse];
-        face
+        Self { vertices, across, dual: [e2.cross(across) * inverse, across.cross(e1) * inverse] }
     }
 
-    /// The edges from the first vertex.
+    /// The face that [`Face::new`] made, put together again from its `vertices` and `dual`.
     #[inline(always)]
-    fn edges(&self) -> [Vec3<T>; 2] {
-        let [apex, b, c] = self.vertices;
-        [b - apex, c - apex]
-    }
-
-    /// A normal of twice the area's length, without a component along the longest edge.
-    #[inline(always)]
-    pub(crate) fn across(&self) -> Vec3<T> {
-        let [e1, e2] = self.edges();
-        let longest = self.vertices[2] - self.vertices[1];
-        let across = e1.cross(e2);
-        across.along(longest, -across.dot(longest).over(longest.norm_squared()))
+    pub(crate) fn again(vertices: [Vec3<T>; 3], dual: [Vec3<T>; 2]) -> Self {
+        Self { vertices, across: across(&vertices), dual }
     }
 
     /// The unit normal, zero for a triangle without area.
     #[inline(always)]
     pub(crate) fn normal(&self) -> Vec3<T> {
-        let across = self.across();
-        let norm = across.norm();
-        across * norm.one().over(norm)
+        let norm = self.across.norm();
+        self.across * norm.one().over(norm)
     }
 
     /// Whether the triangle has an area.
@@ -85,7 +74,8 @@ impl<T: Scalar> Face<T> {
         dual.x.zero().lt(dual.norm_squared())
     }
 
-    /// The same triangle in coordinates from `origin`.
+    /// The same triangle in coordinates from `origin`. Far from the triangle that rounds its vertices, but not its
+    /// plane: a normal of the rounded ones would contradict the basis, or be 0.
     #[inline(always)]
     pub(crate) fn seen_from(&self, origin: Vec3<T>) -> Self {
         let [a, b, c] = self.vertices;
@@ -96,7 +86,7 @@ impl<T: Scalar> Face<T> {
     #[inline(always)]
     pub(crate) fn project(&self, point: Vec3<T>) -> Projection<T> {
         let relative = point - self.vertices[0];
-        let [e1, e2] = self.edges();
+        let [e1, e2] = edges(&self.vertices);
         let mut residual = relative;
         let (mut alpha, mut beta) = (relative.x.zero(), relative.x.zero());
         for _ in 0..T::FACE_PASSES {
@@ -110,7 +100,7 @@ impl<T: Scalar> Face<T> {
     /// The point of the plane with these coordinates along the edges from the first vertex.
     #[inline(always)]
     pub(crate) fn at(&self, alpha: T, beta: T) -> Vec3<T> {
-        let [e1, e2] = self.edges();
+        let [e1, e2] = edges(&self.vertices);
         self.vertices[0].along(e1, alpha).along(e2, beta)
     }
 
@@ -128,4 +118,18 @@ impl<T: Scalar> Face<T> {
         let zero = alpha.zero();
         self.has_area() & zero.le(alpha) & zero.le(beta) & (alpha + beta).le(alpha.one())
     }
+}
+
+/// The edges from the first vertex.
+#[inline(always)]
+fn edges<T: Scalar>([apex, b, c]: &[Vec3<T>; 3]) -> [Vec3<T>; 2] {
+    [*b - *apex, *c - *apex]
+}
+
+/// A normal of twice the area's length, without a component along the longest edge.
+#[inline(always)]
+fn across<T: Scalar>(vertices: &[Vec3<T>; 3]) -> Vec3<T> {
+    let ([e1, e2], longest) = (edges(vertices), vertices[2] - vertices[1]);
+    let across = e1.cross(e2);
+    across.along(longest, -across.dot(longest).over(longest.norm_squared()))
 }

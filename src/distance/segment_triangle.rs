@@ -69,8 +69,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
         .nearer_where(low.inside, above(face, zero, &low))
         .nearer_where(high.inside, above(face, one, &high));
     // Case 1.
-    let normal = face.across();
-    let (from, to) = (-normal.dot(a), normal.dot(end - a));
+    let (from, to) = (-face.across.dot(a), face.across.dot(end - a));
     let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };

@@ -66,7 +66,7 @@ impl<E: Lane> SoaMesh<E> {
     pub(super) fn faces<L: Pack<Element = E>>(&self, token: L::Token, block: usize, lane: usize) -> Face<L> {
         let rows = &self.faces[block * BLOCK * FACE_ROWS..][..BLOCK * FACE_ROWS];
         let dual = [load(token, rows, 9, lane), load(token, rows, 12, lane)];
-        Face { vertices: load_vertices(token, rows, lane), dual }
+        Face::again(load_vertices(token, rows, lane), dual)
     }
 }
 

@@ -5,6 +5,8 @@ struct Face {
     a: vec3<real>,
     b: vec3<real>,
     c: vec3<real>,
+    // A normal of twice the area's length.
+    across: vec3<real>,
     // The basis dual to the edges from the first vertex; zero without area.
     dual1: vec3<real>,
     dual2: vec3<real>,
@@ -30,36 +32,41 @@ fn face_new(a: vec3<real>, b: vec3<real>, c: vec3<real>) -> Face {
         select(select(a, c, bc_longest), b, ab_longest),
         zero(),
         zero(),
+        zero(),
     );
     let e1 = face.b - face.a;
     let e2 = face.c - face.a;
-    let across = face_across(face);
-    let inverse = over(real(1.0), norm_squared(across));
-    face.dual1 = cross(e2, across) * inverse;
-    face.dual2 = cross(across, e1) * inverse;
+    face.across = face_across(face.a, face.b, face.c);
+    let inverse = over(real(1.0), norm_squared(face.across));
+    face.dual1 = cross(e2, face.across) * inverse;
+    face.dual2 = cross(face.across, e1) * inverse;
     return face;
 }
 
+// The face that face_new made, put together again from its vertices and its dual basis.
+fn face_again(a: vec3<real>, b: vec3<real>, c: vec3<real>, dual1: vec3<real>, dual2: vec3<real>) -> Face {
+    return Face(a, b, c, face_across(a, b, c), dual1, dual2);
+}
+
 // A normal of twice the area's length, without a component along the longest edge.
-fn face_across(face: Face) -> vec3<real> {
-    let longest = face.c - face.b;
-    let across = cross(face.b - face.a, face.c - face.a);
+fn face_across(a: vec3<real>, b: vec3<real>, c: vec3<real>) -> vec3<real> {
+    let longest = c - b;
+    let across = cross(b - a, c - a);
     return along(across, longest, -over(dot(across, longest), norm_squared(longest)));
 }
 
 // The unit normal, zero for a triangle without area.
 fn face_normal(face: Face) -> vec3<real> {
-    let across = face_across(face);
-    return across * over(real(1.0), norm(across));
+    return face.across * over(real(1.0), norm(face.across));
 }
 
 fn face_has_area(face: Face) -> bool {
     return real(0.0) < norm_squared(face.dual1);
 }
 
-// The same triangle in coordinates from `start`.
+// The same triangle in coordinates from `start`. Far from the triangle that rounds its vertices, but not its plane.
 fn face_seen_from(face: Face, start: vec3<real>) -> Face {
-    return Face(face.a - start, face.b - start, face.c - start, face.dual1, face.dual2);
+    return Face(face.a - start, face.b - start, face.c - start, face.across, face.dual1, face.dual2);
 }
 
 // The foot of `point` on the plane and what is left, refined.

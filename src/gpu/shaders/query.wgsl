@@ -57,7 +57,7 @@ fn load_face(triangle: u32) -> Face {
     let second = faces[4u * triangle + 1u];
     let third = faces[4u * triangle + 2u];
     let fourth = faces[4u * triangle + 3u];
-    return Face(
+    return face_again(
         first.xyz,
         vec3<real>(first.w, second.xy),
         vec3<real>(second.zw, third.x),

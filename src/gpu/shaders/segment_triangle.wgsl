@@ -28,7 +28,7 @@ fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
     nearest = axis_triangle_nearer_where(low.inside, segment_triangle_above(face, real(0.0), low), nearest);
     nearest = axis_triangle_nearer_where(high.inside, segment_triangle_above(face, real(1.0), high), nearest);
     // Case 1.
-    let normal = face_across(face);
+    let normal = face.across;
     let start_side = -dot(normal, face.a);
     let end_side = dot(normal, end - face.a);
     let opposite = (start_side < real(0.0) && real(0.0) < end_side)
