@@ -109,6 +109,10 @@ fn polygons_are_cut_and_objects_joined() {
     assert_eq!(triangles.len(), 2);
     assert!(triangles[0].iter().all(|&i| points[i as usize].z == 0.0));
     assert!(triangles[1].iter().all(|&i| points[i as usize].z == 9.0));
+    // What a surface needs not may be broken: here a texture coordinate that is not there.
+    let textured = b"v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\nvn 0 0 1\nf 1/-9/2 2/7/1 3/1/-5\n";
+    let (points, triangles) = mesh_file::load(&file("textured.obj", textured), 1.0).unwrap();
+    assert_eq!((points.len(), triangles), (3, vec![[0, 1, 2]]));
     let mesh = (vec![Vector::ZERO; 5], vec![[0; 3]]);
     let text = ply_header(&mesh, "ascii", "float") + &"0 0 0\n".repeat(5) + "5 0 1 2 3 4\n";
     let (_, triangles) = mesh_file::load(&file("pentagon.ply", text.as_bytes()), 1.0).unwrap();
