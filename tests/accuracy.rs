@@ -9,7 +9,7 @@ mod levels;
 mod reference;
 
 use extremes::measure::{Measured, Measurement, measure, problems, range};
-use extremes::{EACH, LARGEST, engines, tables};
+use extremes::{EACH, LARGEST, certificates, engines, tables};
 
 /// A file of the repository.
 fn read(path: &str) -> String {
@@ -39,9 +39,28 @@ fn assert_same(written: &str, measured: &str) {
 
 #[test]
 fn the_written_errors_are_the_measured_ones() {
-    let measured = reference::tables(&common::distance_cases());
-    assert_same(&written("ours"), &measured);
-    assert!(measured.lines().count() > 200, "every kind and category has a row");
+    let cases = common::distance_cases();
+    assert_same(&written("ours"), &reference::table(&cases));
+    let file = read("docs/accuracy_cases.csv");
+    let (head, file) = file.split_once('\n').expect("a head");
+    assert_eq!(head, reference::HEAD);
+    // Only parry's cells, the last two, may differ.
+    let ours = |line: &str| line.rsplitn(3, ',').last().unwrap_or_default().to_owned();
+    let written: Vec<_> = file.lines().map(ours).collect();
+    let measured: Vec<_> = reference::lines(&cases, |_| "-,-".into()).iter().map(|line| ours(line)).collect();
+    assert_same(&written.join("\n"), &measured.join("\n"));
+    assert!(measured.len() > 150, "every kind and category has a row");
+}
+
+#[test]
+fn the_written_gaps_of_certificates_are_the_measured_ones() {
+    let measured = certificates::table(&common::distance_cases(), &problems::<f64>(EACH));
+    assert_same(&written("certificates"), &measured);
+    for link in ["barrel", "round cap", "flat cap", "rim"] {
+        for mesh in ["vertex", "edge", "interior"] {
+            assert!(measured.contains(&format!("| {mesh} | {link} |")), "{mesh}, {link}: {measured}");
+        }
+    }
 }
 
 /// Of each line of the file: scalar cells as they are, the cells of an instruction set of this machine as upper bounds.
@@ -103,5 +122,42 @@ fn the_readme_quotes_the_worst_errors() {
     for (cell, precision) in [(4, "double"), (7, "single")] {
         let quote = format!("{} u x extent in {precision} precision", cells[cell]);
         assert!(readme.contains(&quote), "README.md should say: {quote}");
+    }
+}
+
+/// On the GPU that the table was measured on its cells are upper bounds; on any other the promise is 16.
+#[cfg(feature = "gpu")]
+#[test]
+fn the_kernels_of_the_gpu_keep_to_the_written_errors() {
+    use common::gpu::{PRECISIONS, open};
+
+    let file = read("docs/accuracy_gpu.csv");
+    let (head, file) = file.split_once('\n').expect("a head");
+    assert_eq!(head, extremes::gpu::HEAD);
+    let mut measured = Vec::new();
+    let mut adapter = None;
+    for ((_, precision), name) in PRECISIONS.into_iter().zip(["f32", "f64"]) {
+        let Some(gpu) = open(precision) else { continue };
+        adapter = Some(gpu.adapter().to_string());
+        let found = match name {
+            "f32" => extremes::gpu::measure(gpu, &problems::<f32>(EACH)),
+            _ => extremes::gpu::measure(gpu, &problems::<f64>(EACH)),
+        };
+        measured.extend(extremes::gpu::lines(name, &found.expect("a GPU that works")));
+    }
+    let Some(adapter) = adapter else { return };
+    let is_the_written_one = written("gpu").contains(&adapter);
+    println!("{adapter}{}", if is_the_written_one { ", as written" } else { "" });
+    for line in measured {
+        let (place, worst) = line.rsplit_once(',').expect("cells");
+        let worst: f64 = worst.parse().unwrap_or(0.0);
+        assert!(worst <= 16.0, "{line}");
+        // Up to the number of problems.
+        let place = place.rsplit_once(',').expect("a cell").0;
+        let written = file.lines().find(|written| written.starts_with(place));
+        let bound = written.and_then(|written| written.rsplit_once(',')?.1.parse::<f64>().ok());
+        if let (true, Some(bound)) = (is_the_written_one, bound) {
+            assert!(worst <= bound, "docs/accuracy_gpu.csv says {bound}, but measured is\n{line}");
+        }
     }
 }

@@ -1,11 +1,14 @@
 //! Measures the narrow phase, the engines and parry: `cargo run --release --example accuracy`.
 //!
-//! Writes `docs/ACCURACY.md`, `docs/accuracy.csv` and the picture `docs/correctness.png`. They tell how far this crate's
-//! distances are from the truth, on the reference cases and on seeded problems at the extremes, and how far those of
-//! parry's `query::distance` are for the same links.
+//! Writes `docs/ACCURACY.md`, tables by category beside it (`accuracy*.csv`) and the picture `docs/correctness.png`. They
+//! tell how far this crate's distances are from the truth, on the reference cases and on seeded problems at the
+//! extremes, and how far those of parry's `query::distance` are for the same links. With the feature `gpu` the kernels
+//! on the GPU are measured too.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
+#[cfg(feature = "gpu")]
+mod device;
 mod extremes;
 mod peers;
 mod reference;
@@ -13,16 +16,23 @@ mod reference;
 mod scene;
 mod slice;
 
+use clap::Parser;
 use common::distance_cases;
 use extremes::measure::{Measurement, measure, problems, range};
-use extremes::{EACH, LARGEST, engines, tables};
+use extremes::{EACH, LARGEST, certificates, engines, tables};
 use peers::{Peer, comparison};
+use scene::command;
 use scene::levels::levels;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs");
+#[derive(Parser)]
+struct Options {
+    /// Where to write ACCURACY.md, the tables by category and the picture
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    out: PathBuf,
+}
 
 const INTRODUCTION: &str = "# Accuracy
 
@@ -40,7 +50,7 @@ and 2^-24 in single precision (f32). The extent is the largest difference betwee
 its radius. An error of 1 means one rounding of a number as large as the problem. The crate promises at most 16.
 Single precision is measured on the cases whose input it can hold. Of two errors in the middle, the median is the
 smaller. The numbers do not depend on the machine, because the kernels use only operations that IEEE 754 rounds
-correctly.
+correctly. [accuracy_cases.csv](accuracy_cases.csv) has each category by itself.
 
 <!-- ours -->
 ";
@@ -52,7 +62,7 @@ const EXTREMES: &str = "<!-- /ours -->
 Seeded problems, each driven to an extreme: a triangle and a link, from which every pair takes its part. The expected
 distance is proven for each, by two points and a plane between the shapes, computed with twice the digits of f64. k goes
 from 1 to 12, to 16 for short links, or to the last digit of the precision. Among subnormal numbers half their spacing is
-the unit, as no answer can be nearer. `docs/accuracy.csv` has each pair in each category by itself.
+the unit, as no answer can be nearer. [accuracy.csv](accuracy.csv) has each pair in each category by itself.
 
 <!-- extremes -->
 ";
@@ -70,7 +80,27 @@ least distance, in units of the link and the triangle that are named. Exhaustive
 
 ";
 
+const CERTIFICATES: &str = "
+## Certificates
+
+How far apart the bounds of `Certificate::between` lie, in units of u x extent, on the links of the reference cases and
+on the extreme problems with each choice of caps. The goal is 16. The features are those that the nearest points lie on.
+
+<!-- certificates -->
+";
+
+const GPU: &str = "
+## On the GPU
+
+The extreme problems by the kernels of the feature `gpu`; `--features gpu` measures them. Without a GPU, or with one in
+software only, what a GPU was measured at is kept.
+
+<!-- gpu -->
+";
+
 const PEERS: &str = "
+## parry at the extremes
+
 parry's `distance` for the same capsules and cylinders, in the same units (u x extent, f64). An over-estimate reports more
 clearance than there is, by more than 1e-9 of the extent. *No answer* is a panic, NaN or infinity.
 
@@ -91,37 +121,58 @@ the extent.
 ";
 
 fn main() -> ExitCode {
-    match write_all(Path::new(DOCS)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    command::run(|options: &Options| write_all(&options.out))
 }
 
 fn write_all(docs: &Path) -> Result<(), String> {
+    let path = docs.join("ACCURACY.md");
     let cases = distance_cases();
     let levels = levels();
-    let (problems, single) =
-        (problems::<f64>(EACH), measure(&extremes::measure::problems::<f32>(EACH), &levels));
-    let double = measure(&problems, &levels);
+    let (problems, single) = (problems::<f64>(EACH), problems::<f32>(EACH));
+    let (double_errors, single_errors) = (measure(&problems, &levels), measure(&single, &levels));
     let peer = Peer::ask(&problems);
-    let page = format!(
-        "{INTRODUCTION}{}{EXTREMES}{}{LEVELS}{}{ENGINES}{}{PEERS}{}{COMPARISON}{}",
-        reference::tables(&cases),
-        tables::tables(&double, &single, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
-        by_level(&double, &single),
-        engines_table(&engines::measure(&problems, &levels)),
-        peer.table(),
-        comparison(&cases),
-    );
-    save(&docs.join("ACCURACY.md"), &page)?;
-    save(&docs.join("accuracy.csv"), &file(&double, &single, &peer))?;
+    std::fs::create_dir_all(docs)
+        .map_err(|error| format!("cannot make {} ({error}); choose another --out", docs.display()))?;
+    let before = std::fs::read_to_string(&path).unwrap_or_default();
+    let on_gpu = between(&before, "gpu").unwrap_or("No GPU has been measured yet.\n").to_owned();
+    #[cfg(feature = "gpu")]
+    let on_gpu = device::section(docs, &on_gpu, &problems, &single)?.unwrap_or(on_gpu);
+    let page = [
+        INTRODUCTION,
+        &reference::table(&cases),
+        EXTREMES,
+        &tables::tables(&double_errors, &single_errors, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
+        LEVELS,
+        &by_level(&double_errors, &single_errors),
+        ENGINES,
+        &engines_table(&engines::measure(&problems, &levels)),
+        CERTIFICATES,
+        &certificates::table(&cases, &problems),
+        "<!-- /certificates -->\n",
+        GPU,
+        &on_gpu,
+        "<!-- /gpu -->\n",
+        PEERS,
+        &peer.table(),
+        COMPARISON,
+        &comparison(&cases),
+    ]
+    .concat();
+    save(&path, &page)?;
+    save(&docs.join("accuracy.csv"), &file(&double_errors, &single_errors, &peer))?;
+    let mut lines = vec![reference::HEAD.to_owned()];
+    lines.extend(reference::lines(&cases, peers::on_cases));
+    save(&docs.join("accuracy_cases.csv"), &(lines.join("\n") + "\n"))?;
     let picture = docs.join("correctness.png");
     slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
     println!("{}", picture.display());
     Ok(())
+}
+
+/// What stands between two marks of a page.
+fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
+    let (_, rest) = page.split_once(&format!("<!-- {mark} -->\n"))?;
+    Some(rest.split_once(&format!("<!-- /{mark} -->"))?.0)
 }
 
 fn file(double: &Measurement, single: &Measurement, peer: &Peer) -> String {

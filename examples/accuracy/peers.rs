@@ -3,7 +3,7 @@
 use crate::common::Case;
 use crate::extremes::measure::{Problem, scaled};
 use crate::extremes::problems::Extreme;
-use crate::reference::{categories, distance, median_and_worst};
+use crate::reference::{distance, median_and_worst};
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Capsule, Cylinder, Triangle};
@@ -132,32 +132,19 @@ pub fn comparison(cases: &[Case]) -> String {
             }
         }
     }
-    text += "\nThe worst error relative to the extent, and parry's over-estimates, by category:\n";
-    for (name, cases) in [("Capsules", &capsules), ("Cylinders", &cylinders)] {
-        write!(
-            text,
-            "\n### {name} by category\n\n| category | cases | this crate | parry | parry, x 1e-3 | over-estimates | x 1e-3 |\n|---|---|---|---|---|---|---|\n"
-        )
-        .ok();
-        for category in categories(cases) {
-            let some: Vec<_> = cases.iter().copied().filter(|case| case.cat == category).collect();
-            let ours = Total::of(&some, distance::<f64>, 1.0);
-            let [given, metres] = UNITS.map(|(_, factor)| Total::of(&some, parry, factor));
-            writeln!(
-                text,
-                "| {} | {} | {} | {} | {} | {} | {} |",
-                category.replace('_', " "),
-                some.len(),
-                digit(ours.worst),
-                digit(given.worst),
-                digit(metres.worst),
-                given.over,
-                metres.over
-            )
-            .ok();
-        }
-    }
     text
+}
+
+/// Median and worst error of parry on some cases of a kind, in units of u x extent.
+pub fn on_cases(cases: &[&Case]) -> String {
+    let is_asked = |case: &&&Case| ["triangle_capsule", "triangle_cylinder"].contains(&case.kind.as_str());
+    let unit = f64::EPSILON / 2.0;
+    let error = |case: &&Case| {
+        let error = (parry(case, 1.0) - case.distance()).abs() / (unit * case.scale);
+        if error.is_nan() { f64::INFINITY } else { error }
+    };
+    median_and_worst(cases.iter().filter(is_asked).map(error).collect())
+        .map_or("-,-".into(), |(median, worst)| format!("{},{}", digit(median), digit(worst)))
 }
 
 /// How a program does on some cases.

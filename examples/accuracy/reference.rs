@@ -7,7 +7,6 @@
 use crate::common::Case;
 use crate::common::precision::Precision;
 use parry_continuum::distance::*;
-use std::fmt::Write;
 
 /// The kinds of pairs, in the order of the tables.
 pub const KINDS: [(&str, &str); 9] = [
@@ -57,29 +56,46 @@ pub fn categories<'a>(cases: &[&'a Case]) -> Vec<&'a str> {
     names
 }
 
-/// All tables of this crate's own errors.
-pub fn tables(cases: &[Case]) -> String {
-    const HEAD: &str = "| cases | f64 median | f64 worst | f32 cases | f32 median | f32 worst |\n|---|---|---|---|---|---|---|\n";
-    let mut text = format!("| pair {HEAD}");
-    let of_kind = |kind| cases.iter().filter(move |case| case.kind == kind).collect::<Vec<_>>();
+/// This crate's own errors, by pair.
+pub fn table(cases: &[Case]) -> String {
+    let mut text = String::from(
+        "| pair | cases | f64 median | f64 worst | f32 cases | f32 median | f32 worst |\n|---|---|---|---|---|---|---|\n",
+    );
     for (kind, name) in KINDS {
-        text += &row(name, &of_kind(kind));
+        text += &row(name, &of_kind(cases, kind));
     }
-    text += &row("**all**", &cases.iter().collect::<Vec<_>>());
+    text + &row("**all**", &cases.iter().collect::<Vec<_>>())
+}
+
+/// The head of [`lines`].
+pub const HEAD: &str =
+    "pair,category,cases,f64 median,f64 worst,f32 cases,f32 median,f32 worst,parry median,parry worst";
+
+/// One line for each pair and category. `peer` writes what is known of parry.
+pub fn lines(cases: &[Case], mut peer: impl FnMut(&[&Case]) -> String) -> Vec<String> {
+    let mut lines = Vec::new();
     for (kind, name) in KINDS {
-        let cases = of_kind(kind);
-        write!(text, "\n### {}{}\n\n| category {HEAD}", name[..1].to_uppercase(), &name[1..]).ok();
+        let cases = of_kind(cases, kind);
         for category in categories(&cases) {
             let some: Vec<_> = cases.iter().copied().filter(|case| case.cat == category).collect();
-            text += &row(&category.replace('_', " "), &some);
+            let errors = errors_in_both(&some).replace(" | ", ",");
+            lines.push(format!("{name},{},{errors},{}", category.replace('_', " "), peer(&some)));
         }
     }
-    text
+    lines
+}
+
+fn of_kind<'a>(cases: &'a [Case], kind: &str) -> Vec<&'a Case> {
+    cases.iter().filter(|case| case.kind == kind).collect()
 }
 
 fn row(name: &str, cases: &[&Case]) -> String {
+    format!("| {name} | {} |\n", errors_in_both(cases))
+}
+
+fn errors_in_both(cases: &[&Case]) -> String {
     let single: Vec<_> = cases.iter().copied().filter(|case| case.f32).collect();
-    format!("| {name} | {} | {} |\n", errors::<f64>(cases), errors::<f32>(&single))
+    format!("{} | {}", errors::<f64>(cases), errors::<f32>(&single))
 }
 
 /// Number of cases, median and worst error in units of u x extent.

@@ -1,6 +1,9 @@
 //! How far the numbers hold: the kernels and engines on seeded problems that are driven to an extreme.
 
+pub mod certificates;
 pub mod engines;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod measure;
 pub mod problems;
 pub mod tables;
