@@ -108,7 +108,8 @@ impl<E: Lane> CoarseLink<E> {
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
-        ((limit - radius).max(0.0) + 2.0 * error) / self.factor
+        // Never rounded down, not even where the factor overflows: what is nearer than 0 would not be found.
+        (((limit - radius).max(0.0) + 2.0 * error) / self.factor.min(Real::MAX)).next_up()
     }
 
     /// What a triangle is at least from the link, in the probe's units, if its axis distance (beyond a flat cap: its
