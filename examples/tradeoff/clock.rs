@@ -5,7 +5,7 @@ use crate::scene::ctr::{Centreline, Joints, Robot};
 use crate::shapes::{Stations, step_before};
 use crate::statistics::quantile;
 use crate::subject::{Model, Subject};
-use crate::ways::{self, text};
+use crate::ways::{self, Device, text};
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Chain, simplify};
@@ -41,7 +41,13 @@ pub struct Building {
 }
 
 /// Times the shapes on one thread.
-pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Result<Times, String> {
+pub fn time(
+    robot: &Robot,
+    shapes: &[Joints],
+    mesh: &TriMesh,
+    base: &Pose,
+    devices: &[Device],
+) -> Result<Times, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(text)?;
     pool.install(|| {
         let mut times = Times { queries: Vec::new(), building: Vec::new(), apart: 0.0 };
@@ -58,7 +64,7 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
             };
             let subjects: Result<Vec<_>, String> =
                 curves.iter().map(|[before, now]| Ok([subject(before)?, subject(now)?])).collect();
-            let (rows, apart) = queries(&subjects?, mesh, base)?;
+            let (rows, apart) = queries(&subjects?, mesh, base, devices)?;
             times.queries.push(rows);
             times.apart = times.apart.max(apart);
         }
@@ -67,11 +73,16 @@ pub fn time(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Re
 }
 
 /// The times of every way to ask, and by how much this crate's differ from each other.
-fn queries(subjects: &[[Subject; 2]], mesh: &TriMesh, base: &Pose) -> Result<(Vec<Timed>, Real), String> {
+fn queries(
+    subjects: &[[Subject; 2]],
+    mesh: &TriMesh,
+    base: &Pose,
+    devices: &[Device],
+) -> Result<(Vec<Timed>, Real), String> {
     let mut rows = Vec::new();
     let mut apart: Real = 0.0;
     let mut first: Vec<(Model, Vec<Real>)> = Vec::new();
-    for mut way in ways::all(mesh)? {
+    for mut way in ways::all(mesh, devices)? {
         let mut times = Vec::with_capacity(subjects.len());
         let mut clearances = Vec::with_capacity(subjects.len());
         for [before, now] in subjects {

@@ -5,7 +5,7 @@
 //! cargo run --release --example tradeoff
 //! ```
 //!
-//! Needs a few minutes. `--mesh` takes other anatomy; then the page goes to `target/tradeoff`, as it does with other
+//! Needs a few minutes. With `--features gpu` the engines on the GPU take part. `--mesh` takes other anatomy; then the page goes to `target/tradeoff`, as it does with other
 //! numbers of shapes.
 
 #[path = "../speed/machine.rs"]
@@ -16,6 +16,8 @@ mod scene;
 
 mod clock;
 mod front;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod guide;
 mod kinematics;
 mod outcome;
@@ -101,7 +103,11 @@ fn measure(options: &Options) -> Result<(), String> {
     let (kinematics, torsion_median, torsion_worst) =
         kinematics::chapter(&robot, &shapes[..some], &outcomes[..some], &mesh, &base)?;
     stage("times");
-    let times = clock::time(&robot, &timed, &mesh, &base)?;
+    #[cfg(feature = "gpu")]
+    let devices = gpu::devices();
+    #[cfg(not(feature = "gpu"))]
+    let devices = Vec::new();
+    let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
 
     stage("writing");
     let errors = front::errors(&outcomes);
@@ -122,6 +128,7 @@ fn measure(options: &Options) -> Result<(), String> {
         errors: &errors,
         all: &all,
         widest,
+        device: devices.first().map(|device| device.name.as_str()),
     });
     fs::create_dir_all(&out).map_err(|error| unwritable(&out, error))?;
     let file = out.join("TRADEOFF.md");

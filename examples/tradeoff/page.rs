@@ -24,14 +24,16 @@ pub struct Facts<'a> {
     pub all: &'a [Combination],
     /// The largest radius of the robot.
     pub widest: f64,
+    /// The GPU, if one took part.
+    pub device: Option<&'a str>,
 }
 
 /// The page, without the chapters of the shares and of torsion.
 pub fn page(facts: &Facts) -> String {
-    let Facts { command, triangles, timed, outcomes, checked, times, errors, all, widest } = *facts;
+    let Facts { command, triangles, timed, outcomes, checked, times, errors, all, widest, device } = *facts;
     format!(
         "# What accuracy costs\n\n\
-         Written by `{command}` on {}.\n\n\
+         Written by `{command}` on {}{}.\n\n\
          A concentric tube robot in a mesh of {triangles} triangles. Its shapes are drawn from a seed: a reach of 15, 30 \
          or 60 %, each as likely, then each section's extension uniform up to that share of its length, and every \
          tube's angle uniform. {}.\n\n\
@@ -62,6 +64,7 @@ pub fn page(facts: &Facts) -> String {
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),
+        device.map_or(String::new(), |name| format!(" and {name}")),
         clearances(outcomes),
         length(checked.halved),
         length(checked.quartered),
@@ -78,21 +81,21 @@ pub fn page(facts: &Facts) -> String {
 
 /// The trade's table.
 fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
-    let mut page = String::from(
-        "| model | within | links | search, cold | search, warm | exhaustive, f32 | exhaustive, f64 | error: median | worst over | worst under |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+    let of_model =
+        |index: usize, model| times.queries[index].iter().filter(move |timed| timed.model == model);
+    let ways: Vec<_> = of_model(0, Model::ALL[0]).map(|timed| timed.way).collect();
+    let mut page = format!(
+        "| model | within | links | {} | error: median | worst over | worst under |\n{}\n",
+        ways.join(" | "),
+        "|---".repeat(6 + ways.len()) + "|"
     );
     for (which, model) in Model::ALL.into_iter().enumerate() {
         for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
             let error = &errors[index][which];
-            let links = times.queries[index].iter().find(|timed| timed.model == model);
-            let mut cells: Vec<_> = times.queries[index]
-                .iter()
-                .filter(|timed| timed.model == model)
-                .map(|timed| microseconds(timed.time))
-                .collect();
+            let links = of_model(index, model).next();
+            let mut cells: Vec<_> = of_model(index, model).map(|timed| microseconds(timed.time)).collect();
             // parry has one way, a search without memory.
-            cells.resize(4, String::new());
+            cells.resize(ways.len(), String::new());
             // Writing to a string cannot fail.
             let _ = writeln!(
                 page,

@@ -110,6 +110,8 @@ fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
             Shape::Square => {
                 series.legend(|(x, y)| Rectangle::new([(x + 4, y - 3), (x + 10, y + 3)], BLACK.filled()))
             }
+            Shape::Frame => series
+                .legend(|(x, y)| Rectangle::new([(x + 3, y - 4), (x + 11, y + 4)], BLACK.stroke_width(1))),
         };
     }
     Ok(())
@@ -122,6 +124,7 @@ enum Shape {
     Triangle,
     Cross,
     Square,
+    Frame,
 }
 
 fn shape(way: &str) -> Shape {
@@ -130,7 +133,8 @@ fn shape(way: &str) -> Shape {
         "search, cold" => Shape::Ring,
         "exhaustive, f32" => Shape::Triangle,
         "exhaustive, f64" => Shape::Cross,
-        _ => Shape::Square,
+        "parry's search" => Shape::Square,
+        _ => Shape::Frame,
     }
 }
 
@@ -155,6 +159,10 @@ fn mark(chart: &mut Chart, at: (f64, f64), way: &str, colour: RGBColor) -> Drawn
         Shape::Square => {
             let square = Rectangle::new([(-3, -3), (3, 3)], colour.filled());
             chart.draw_series([EmptyElement::at(at) + square])?
+        }
+        Shape::Frame => {
+            let frame = Rectangle::new([(-4, -4), (4, 4)], colour.stroke_width(1));
+            chart.draw_series([EmptyElement::at(at) + frame])?
         }
     };
     Ok(())

@@ -21,8 +21,19 @@ pub struct Way<'a> {
     pub program: Box<dyn Clearance + 'a>,
 }
 
+/// What an engine can run on beside the CPU.
+pub struct Device {
+    /// What its engine is called here.
+    pub way: &'static str,
+    pub name: String,
+    pub engine: Box<EngineOn>,
+}
+
+/// Makes an engine for a mesh and a model.
+pub type EngineOn = dyn Fn(&TriMesh, Model) -> Result<Box<dyn Clearance>, String> + Sync;
+
 /// Every way. An engine of this crate is a line in the list of engines.
-pub fn all(mesh: &TriMesh) -> Result<Vec<Way<'_>>, String> {
+pub fn all<'a>(mesh: &'a TriMesh, devices: &[Device]) -> Result<Vec<Way<'a>>, String> {
     let mut ways = Vec::new();
     for model in Model::OURS {
         let search = || BvhSearch::new(mesh).map_err(text);
@@ -39,6 +50,9 @@ pub fn all(mesh: &TriMesh) -> Result<Vec<Way<'_>>, String> {
             ),
         ];
         ways.extend(engines.into_iter().map(|(name, program)| Way { model, name, program }));
+        for device in devices {
+            ways.push(Way { model, name: device.way, program: (device.engine)(mesh, model)? });
+        }
     }
     for model in [Model::ParryCapsule, Model::ParryCylinder, Model::Spheres] {
         ways.push(Way { model, name: "parry's search", program: Box::new(Peer { mesh, model }) });
