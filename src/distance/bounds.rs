@@ -2,7 +2,8 @@
 //!
 //! Let F be the distance between axis and triangle, p* the triangle's point, and U the distance of p* from
 //! the link. With K the capsule around the link, d_K = max(0, F - r) <= d <= U <= F, because the link lies in
-//! K and p* lies in the triangle. A lower bound far sharper than d_K is a separating plane. Beyond a flat end, with A the axis pointing out of it, l the height of p* over the cap and b its distance from the
+//! K and p* lies in the triangle. A lower bound far sharper than d_K is a separating plane. Beyond
+//! a flat end, with A the axis pointing out of it, l the height of p* over the cap and b its distance from the
 //! rim's cylinder, take the normal (l A + b R) / |(l, b)| where R points radially from the axis to p*. Both
 //! coefficients are >= 0, so whatever their rounding the link lies behind the plane through x, the rim point
 //! towards p* (or the foot of p* on the cap, where b = 0), and

@@ -80,10 +80,19 @@ impl<L: Pack> PackedLink<L> {
         L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
     }
 
+    /// How far the axis reaches along `v`, from the link's start and in units of 1 / |v|.
+    ///
+    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
+    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
+    #[inline(always)]
+    fn reach_along(&self, v: Vec3<L>) -> L {
+        v.dot(self.link.end).max(self.length.zero())
+    }
+
     /// The squared distance between the axis and patches, from below but for rounding.
     ///
-    /// Let v lead from the axis to a patch's centre. The plane through the axis point with normal v keeps
-    /// |v| - e from the patch, where e is how far the patch reaches from its centre against v: at most
+    /// Let v lead from the axis to a patch's centre. The plane with normal v before the axis keeps as far from the
+    /// centre as v is long, less e, where e is how far the patch reaches from its centre against v: at most
     /// (|v_n| thickness + |v_t| radius) / |v| for its disc, with v_n and v_t the parts of v along and across the
     /// disc's normal, and <|v|, half> / |v| for its box. The disc is nearly exact for a patch of wall, however it
     /// is turned. The distance between the boxes of patch and axis serves the large patches near the root.
@@ -96,11 +105,12 @@ impl<L: Pack> PackedLink<L> {
         let across = (squared - normal_part * normal_part).max(zero).sqrt();
         let disc = normal_part.abs().mul_add(patch.thickness, across * patch.radius);
         let reach = disc.min(magnitudes(v).dot(patch.half));
-        let ahead = (squared - reach).max(zero);
+        let relative = patch.centre - self.start;
+        let ahead = (v.dot(relative) - self.reach_along(v) - reach).max(zero);
         let plane = (ahead * ahead).over(squared);
 
         let middle = self.link.end * zero.lit(0.5);
-        let gap = magnitudes(patch.centre - self.start - middle) - patch.half - magnitudes(middle);
+        let gap = magnitudes(relative - middle) - patch.half - magnitudes(middle);
         let gap = Vec3::new(gap.x.max(zero), gap.y.max(zero), gap.z.max(zero));
         plane.max(gap.norm_squared())
     }
@@ -110,8 +120,8 @@ impl<L: Pack> PackedLink<L> {
     pub(super) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
         let v = self.offset_from_axis(centre);
-        let foot = centre - v;
-        let ahead = v.dot(a - foot).min(v.dot(b - foot)).min(v.dot(c - foot)).max(limit.zero());
+        let axis = v.dot(self.start) + self.reach_along(v);
+        let ahead = (v.dot(a).min(v.dot(b)).min(v.dot(c)) - axis).max(limit.zero());
         // A centre on the axis rules nothing out, nor does what falls below the range.
         L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
     }

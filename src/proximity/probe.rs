@@ -75,13 +75,20 @@ impl Probe {
         (closest.distance < bound).then(|| closest.met())
     }
 
+    /// How far the axis reaches along a vector, from the link's start and in units of 1 / the vector's length.
+    ///
+    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
+    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
+    fn reach_along(&self, vector: Vec3<f64>) -> Real {
+        vector.dot(self.link.end).max(0.0)
+    }
+
     /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
     fn at_least(&self, [a, b, c]: [Vec3<f64>; 3]) -> Real {
         let centre = (a + b + c) * (1.0 / 3.0);
         let t = centre.dot(self.link.axis).max(0.0).min(self.length);
-        let foot = self.link.axis * t;
-        let normal = centre - foot;
-        let beyond = normal.dot(a - foot).min(normal.dot(b - foot)).min(normal.dot(c - foot));
+        let normal = centre.along(self.link.axis, -t);
+        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.reach_along(normal);
         beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
@@ -109,9 +116,9 @@ impl Probe {
     /// A lower bound on the distance between the link and anything in the box, in scaled units, less what
     /// rounding may have added.
     ///
-    /// With c the box's centre, p the axis point nearest to c and v = c - p, the whole axis lies behind the
-    /// plane through p with normal v, and the box beyond the one through its corner on that side. So the bound
-    /// is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
+    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies behind a plane
+    /// with normal v before its ends, and the box beyond the one through its corner on that side. But for rounding
+    /// the bound is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
     /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
     /// badly.
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
@@ -119,9 +126,9 @@ impl Probe {
         let centre = to_vec3((mins - self.start) * self.scale + half);
         let t = centre.dot(self.link.axis).max(0.0).min(self.length);
         let to_centre = centre.along(self.link.axis, -t);
-        let distance = to_centre.norm();
         let corner = half.dot(Vector::from_array(to_centre.into()).abs());
-        (distance - corner.over(distance) - self.link.radius - SLACK).max(0.0)
+        let beyond = to_centre.dot(centre) - self.reach_along(to_centre) - corner;
+        (beyond.over(to_centre.norm()) - self.link.radius - SLACK).max(0.0)
     }
 
     /// An answer in the mesh's frame.
