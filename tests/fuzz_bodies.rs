@@ -3,11 +3,13 @@
 
 #[path = "../fuzz/bodies/mod.rs"]
 mod bodies;
-mod common;
+#[path = "../examples/scene/random.rs"]
+#[allow(dead_code, reason = "other tests use more of it")]
+mod random;
 #[path = "../examples/scene/mod.rs"]
 mod scene;
 
-use common::Random;
+use random::Random;
 use std::fs;
 use std::path::Path;
 
