@@ -15,6 +15,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Precision, Proximity};
 use std::fmt::Write;
 use std::hint::black_box;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 /// The robot of the ventricle with 30 links, as capsules (K), by Algorithm 1 (Z*) and as cylinders (Z).
@@ -30,7 +31,10 @@ pub fn models() -> Result<[(&'static str, Chain); 3], String> {
 
 /// The ventricle divided in four so many times, in the order of subdivision.
 pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
-    (0..times).fold(ventricle::mesh(ventricle::DEFAULT_TRIANGLES), |mesh, _| in_four(mesh))
+    // Growing it takes longer than some of the chapters.
+    static WHOLE: LazyLock<(Vec<Vector>, Vec<[u32; 3]>)> =
+        LazyLock::new(|| ventricle::mesh(ventricle::DEFAULT_TRIANGLES));
+    (0..times).fold(WHOLE.clone(), |mesh, _| in_four(mesh))
 }
 
 pub fn on_one_thread<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, String> {
