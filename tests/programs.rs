@@ -1,46 +1,8 @@
 //! The example programs as a user meets them: bad input gives one line and an error code, good input a picture.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::OnceLock;
+mod programs_common;
 
-/// A file with the given text, in a directory of this test's own.
-fn file(name: &str, text: &str) -> String {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, text).unwrap();
-    path.to_str().unwrap().into()
-}
-
-/// Runs an example program as a user does, in a directory of this test's own.
-fn program(name: &str, arguments: &[&str]) -> (bool, String, String) {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    let directory = BUILT.get_or_init(|| {
-        let mut build = Command::new(env!("CARGO"));
-        build.args([
-            "build",
-            "--quiet",
-            "--example",
-            "ventricle",
-            "--example",
-            "figure7",
-            "--example",
-            "rapier_ventricle",
-            "--example",
-            "tradeoff",
-        ]);
-        assert!(build.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
-        // This test is target/debug/deps/scene-..; examples are in target/debug/examples.
-        std::env::current_exe().unwrap().ancestors().nth(2).unwrap().join("examples")
-    });
-    let output = Command::new(directory.join(name))
-        .args(arguments)
-        .current_dir(env!("CARGO_TARGET_TMPDIR"))
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.success(), text(output.stdout), text(output.stderr))
-}
+use programs_common::*;
 
 #[test]
 fn programs_answer_bad_input_with_one_line_and_an_error_code() {
@@ -63,103 +25,73 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--base", "1,2,inf"], "three numbers"),
         (&["--axis", "0,0,0"], "a direction needs a length"),
         (&["--model", "cone"], "capsule, cylinder, modified"),
-        (&["--engine", "gpu"], "--features gpu"),
         (&["--tolerance", "-0.1"], "at least 0"),
         (&["--steps", "0"], "1..=100000"),
         (&["--scale", "2"], "--mesh"),
     ] {
-        let (success, out, error) = program("ventricle", arguments);
-        assert!(!success && out.is_empty(), "{arguments:?}: {out}");
-        assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
+        refuse("ventricle", arguments, expected);
     }
+    #[cfg(not(feature = "gpu"))]
+    refuse("ventricle", &["--engine", "gpu"], "--features gpu");
     for (arguments, expected) in [
         (&["--mesh", "nowhere.stl"][..], "check the path"),
         (&["--mesh", sheet], "name one with --base"),
         (&["--push", "101"], "from 0 to 100"),
         (&["--links", "2"], "3..=60"),
     ] {
-        let (success, out, error) = program("rapier_ventricle", arguments);
-        assert!(!success && out.is_empty(), "{arguments:?}: {out}");
-        assert!(error.contains(expected) && error.lines().count() == 1, "{arguments:?}: {error}");
+        refuse("rapier_ventricle", arguments, expected);
     }
-    assert!(program("ventricle", &["--help"]).0 && program("rapier_ventricle", &["--help"]).0);
+    for name in ["ventricle", "rapier_ventricle"] {
+        assert!(succeed(name, &["--help"]).contains("--mesh"));
+    }
 }
 
 #[test]
 fn programs_draw_their_pictures() {
-    let corners = (0..8).map(|k| format!("v {} {} {}\n", 60 * (k & 1), 30 * (k & 2), 15 * (k & 4)));
-    let sides = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    let room = file("room.obj", &(corners.collect::<String>() + sides));
+    let room = room("room.obj");
     let arguments =
         ["--mesh", &room, "--model", "capsule", "--tolerance", "0.2", "--steps", "3", "--out", "drawn"];
-    let (success, out, error) = program("ventricle", &arguments);
-    assert!(success, "{error}");
+    let out = succeed("ventricle", &arguments);
     assert!(out.contains("12 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
     for line in ["parry distance(Cylinder, TriMesh)", "search, cold", "search, warm", "exhaustive"] {
         assert!(out.contains(line), "{out}");
     }
-    let (success, _, error) = program("figure7", &["--out", "drawn/seven.png"]);
-    assert!(success, "{error}");
+    succeed("figure7", &["--out", "drawn/seven.png"]);
     for name in ["drawn/ventricle.png", "drawn/seven.png"] {
-        let file = std::fs::File::open(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        let colours: BTreeSet<_> = pixels.as_chunks::<3>().0.iter().collect();
-        assert!(colours.len() > 1000, "{name} has {} colours", colours.len());
+        assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
 }
 
 #[test]
-fn the_trade_is_measured_drawn_and_quoted() {
-    let corners = (0..8).map(|k| format!("v {} {} {}\n", 60 * (k & 1), 30 * (k & 2), 15 * (k & 4)));
-    let sides = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    let hall = file("hall.obj", &(corners.collect::<String>() + sides));
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("trade");
-    std::fs::create_dir_all(&directory).unwrap();
-    let readme = directory.join("README.md");
-    std::fs::write(&readme, "before\n<!-- tradeoff -->\nstale\n<!-- /tradeoff -->\nafter\n").unwrap();
-    let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
-    let small = ["--shapes", "12", "--timed", "2", "--out", "trade/docs"];
-    let (success, _, error) = program("tradeoff", &[place, small].concat());
-    assert!(success, "{error}");
-
-    let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
-    let page = read(directory.join("docs/TRADEOFF.md"));
-    let trade = page.split("## The trade").nth(1).unwrap().split("![").next().unwrap();
-    for model in [
-        "K, capsules",
-        "Z, cylinders",
-        "Z*, modified",
-        "Z*, faces fixed",
-        "parry's Capsule",
-        "parry's Cylinder",
-        "7 spheres a link",
-    ] {
-        assert_eq!(trade.matches(&format!("\n| {model} | ")).count(), 7, "{model}: {trade}");
+fn the_robot_is_pushed_recorded_and_filmed() {
+    let _ = std::fs::remove_dir_all(place("pushed"));
+    let out =
+        succeed("rapier_ventricle", &["--links", "5", "--push", "0.5", "--frames", "2", "--out", "pushed"]);
+    let steps: usize = out.split(" steps: ").next().unwrap().parse().unwrap();
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+        let rows: Vec<_> = read(name).lines().skip(1).map(numbers).collect();
+        assert!(rows.iter().flatten().all(|number| number.is_finite()), "{name}");
+        rows
+    };
+    let whole = rows("pushed/steps.csv");
+    assert!(steps > 1000 && whole.len() == steps, "{} rows: {out}", whole.len());
+    // step, time, out, pushed, links, clearance, closest link, links held, force, and two deviations.
+    assert!(whole.iter().enumerate().all(|(place, row)| row.len() == 11 && row[0] == (place + 1) as f64));
+    assert!(whole.is_sorted_by_key(|row| row[2]) && whole.is_sorted_by_key(|row| row[3]));
+    let last = &whole[steps - 1];
+    assert!(last[2] > 20.0 && last[3] == 0.5 && last[4] == 5.0, "{last:?}");
+    let links = rows("pushed/links.csv");
+    assert_eq!(links.len() as f64, whole.iter().map(|row| row[4]).sum());
+    for (row, of_links) in whole.iter().zip(links.chunk_by(|a, b| a[0] == b[0])) {
+        let nearest = of_links.iter().map(|link| link[2]).fold(f64::INFINITY, f64::min);
+        assert!(row[0] == of_links[0][0] && row[5] == nearest && nearest > 0.0, "{row:?}");
     }
-    for text in [
-        "of the 12 shapes are free",
-        "95 % confidence (Wilson)",
-        "GJK alone",
-        "torsion, same angles at the base",
-    ] {
-        assert!(page.contains(text), "{text}: {page}");
+    let pictures: Vec<_> =
+        std::fs::read_dir(place("pushed")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let frames = pictures.iter().filter(|name| name.to_str().unwrap().starts_with("frame_")).count();
+    assert!((2..=3).contains(&frames), "{pictures:?}");
+    for name in ["pushed/sheet.png", "pushed/frame_000.png"] {
+        assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
-    assert!(!page.contains("NaN") && !page.contains("inf "), "{page}");
-    // Discs and rings for the search of four models at seven tolerances, and in the legend.
-    assert_eq!(read(directory.join("docs/tradeoff.svg")).matches("<circle").count(), 2 * 4 * 7 + 2);
-    let readme = read(readme);
-    assert!(
-        readme.starts_with("before\n<!-- tradeoff -->\nMeasured by") && !readme.contains("stale"),
-        "{readme}"
-    );
-    assert!(readme.ends_with("\n<!-- /tradeoff -->\nafter\n"), "{readme}");
-
-    let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
-    let arguments =
-        ["--mesh", &wall, "--base", "0,0,0", "--axis", "0,0,1", "--shapes", "10", "--out", "trade/none"];
-    let (success, _, error) = program("tradeoff", &arguments);
-    assert!(!success && error.contains("every shape touches the wall"), "{error}");
-    assert_eq!(error.lines().count(), 1, "{error}");
 }

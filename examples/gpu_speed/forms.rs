@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 /// The chapter of the page.
-pub fn chapter(opened: &[Opened], count: usize) -> Result<String, String> {
+pub fn chapter(opened: &[Opened], count: usize, enough: Duration) -> Result<String, String> {
     let mut page = format!(
         "## Tables II and III: clamps against branches\n\n\
          {count} random problems in the unit cube, a thread each. Milliseconds by the device's clock, and with the \
@@ -39,7 +39,7 @@ pub fn chapter(opened: &[Opened], count: usize) -> Result<String, String> {
                     &mut || clamps.solve(&points, &mut one).map_err(text).map(|()| clamps.device_time()),
                     &mut || tree.solve(&points, &mut other).map_err(text).map(|()| tree.device_time()),
                 ],
-                Duration::from_secs(1),
+                enough,
             )?;
             let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
             let ratio = seconds(timed[1].device)

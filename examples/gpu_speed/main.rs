@@ -98,10 +98,10 @@ fn measure(options: &Options) -> Result<(), String> {
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let adapter = opened[0].gpu.adapter();
-    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+    let command = command::line("--features gpu --example gpu_speed");
     let mut page = format!(
         "# Speed on the GPU\n\n\
-         Written by `cargo run --release --features gpu --example gpu_speed -- {command}` on {adapter}; the engines on the \
+         Written by `{command}` on {adapter}; the engines on the \
          CPU beside it ran on {cores} cores. Times are medians; jobs that are compared take turns in one run. Device: the \
          GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers and what the CPU \
          measures again.\n"
@@ -119,7 +119,7 @@ fn measure(options: &Options) -> Result<(), String> {
         println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
     };
     add("chains", chains::chapter(&opened, options.largest, options.every_pair, enough)?);
-    add("forms", forms::chapter(&opened, options.problems as usize)?);
+    add("forms", forms::chapter(&opened, options.problems as usize, enough)?);
     add("roots", roots::chapter(&opened, options.problems as usize)?);
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page))

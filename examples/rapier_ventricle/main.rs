@@ -45,7 +45,7 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(3..=60))]
     links: u32,
 
-    /// Pictures of the film; 0 for none
+    /// Pictures of the film, about; 0 for none
     #[arg(long, value_name = "COUNT", default_value_t = 40)]
     frames: u32,
 
@@ -102,8 +102,9 @@ fn simulate(options: &Options) -> Result<(), String> {
     best.print(steps, &plan);
     clocks.print();
 
-    if options.frames > 0 {
-        for (k, moment) in film.iter().enumerate() {
+    // A sheet needs at least 40 moments to choose from, however few pictures are wanted.
+    if let Some(every) = film.len().checked_div(options.frames as usize) {
+        for (k, moment) in film.iter().step_by(every.max(1)).enumerate() {
             let path = options.out.join(format!("frame_{k:03}.png"));
             studio.frame(moment).save(&path).map_err(cannot)?;
         }

@@ -30,6 +30,16 @@ pub fn run<Options: Parser>(program: impl Fn(&Options) -> Result<(), String>) ->
     }
 }
 
+/// The command that runs this program as it was run; `program` is how cargo finds it.
+pub fn line(program: &str) -> String {
+    let mut line = format!("cargo run --release {program}");
+    for (index, word) in std::env::args().skip(1).enumerate() {
+        line += if index == 0 { " -- " } else { " " };
+        line += &word;
+    }
+    line
+}
+
 /// The file that `--out` means: itself if it ends in .png, otherwise `name` in that directory, which is made.
 ///
 /// # Errors

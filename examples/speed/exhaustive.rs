@@ -1,5 +1,6 @@
 //! Exhaustive engines against parry, pair by pair and on one thread; and how they use two threads and memory.
 
+use crate::Effort;
 use crate::goals::{Goal, Goals};
 use crate::machine;
 use crate::scene::levels::levels;
@@ -14,6 +15,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Precision, Proximity};
 use std::fmt::Write;
 use std::hint::black_box;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 /// The robot of the ventricle with 30 links, as capsules (K), by Algorithm 1 (Z*) and as cylinders (Z).
@@ -29,7 +31,10 @@ pub fn models() -> Result<[(&'static str, Chain); 3], String> {
 
 /// The ventricle divided in four so many times, in the order of subdivision.
 pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
-    (0..times).fold(ventricle::mesh(ventricle::DEFAULT_TRIANGLES), |mesh, _| in_four(mesh))
+    // Growing it takes longer than some of the chapters.
+    static WHOLE: LazyLock<(Vec<Vector>, Vec<[u32; 3]>)> =
+        LazyLock::new(|| ventricle::mesh(ventricle::DEFAULT_TRIANGLES));
+    (0..times).fold(WHOLE.clone(), |mesh, _| in_four(mesh))
 }
 
 pub fn on_one_thread<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, String> {
@@ -38,10 +43,11 @@ pub fn on_one_thread<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, Strin
 }
 
 /// The chapter of the page.
-pub fn chapter(goals: &mut Goals) -> Result<String, String> {
-    let mut page = String::from(
+pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
+    let (times, often) = if effort.largest < 2 { (1, "once") } else { (2, "twice") };
+    let mut page = format!(
         "## Exhaustive\n\n\
-         The ventricle of 6,000 triangles divided in four twice, 30 links, one thread. The peer is a loop of parry's \
+         The ventricle of 6,000 triangles divided in four {often}, 30 links, one thread. The peer is a loop of parry's \
          `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, but a sphere around \
          it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled, as in the \
          paper; and in the order of subdivision, where neighbours stand together.\n\n\
@@ -52,24 +58,27 @@ pub fn chapter(goals: &mut Goals) -> Result<String, String> {
          precision:\n\n| order | precision | K | Z* | Z |\n|---|---|---|---|---|\n",
     );
     let models = models()?;
-    let sorted = divided(2);
+    let sorted = divided(times);
     for (order, (vertices, indices)) in [("shuffled", shuffled(sorted.clone(), 1)), ("sorted", sorted)] {
         let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
         let (mesh, models, goals) = (&mesh, &models, &mut *goals);
         let (rows, shares) = on_one_thread(move || -> Result<_, String> {
-            let single = rows::<f32>(order, "f32", mesh, models, goals)?;
-            let double = rows::<f64>(order, "f64", mesh, models, goals)?;
+            let single = rows::<f32>(order, "f32", mesh, models, effort, goals)?;
+            let double = rows::<f64>(order, "f64", mesh, models, effort, goals)?;
             Ok((single.0 + &double.0, single.1 + &double.1))
         })??;
         page.push_str(&rows);
         work.push_str(&shares);
     }
-    Ok(page + &work + &instruction_sets(&models[0].1)?)
+    Ok(page + &work + &instruction_sets(divided(times), &models[0].1, effort)?)
 }
 
 /// What each instruction set of the machine makes of the same kernels: none may fall back to narrower ones.
-fn instruction_sets(robot: &Chain) -> Result<String, String> {
-    let (vertices, indices) = divided(2);
+fn instruction_sets(
+    (vertices, indices): (Vec<Vector>, Vec<[u32; 3]>),
+    robot: &Chain,
+    effort: Effort,
+) -> Result<String, String> {
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
     let mut page = String::from(
         "\nNanoseconds a pair by instruction set, K without culling, one thread:\n\n\
@@ -78,7 +87,11 @@ fn instruction_sets(robot: &Chain) -> Result<String, String> {
     for (name, level) in levels() {
         let (mesh, robot) = (&mesh, robot);
         let [single, double] = on_one_thread(move || -> Result<_, String> {
-            Ok([without_culling::<f32>(mesh, robot, level)?, without_culling::<f64>(mesh, robot, level)?])
+            let enough = effort.enough / 8;
+            Ok([
+                without_culling::<f32>(mesh, robot, level, enough)?,
+                without_culling::<f64>(mesh, robot, level, enough)?,
+            ])
         })??;
         let _ = writeln!(page, "| {name} | {:.1} | {:.1} |", single * 1e9, double * 1e9);
     }
@@ -86,14 +99,19 @@ fn instruction_sets(robot: &Chain) -> Result<String, String> {
 }
 
 /// Seconds a pair.
-fn without_culling<T: Precision>(mesh: &TriMesh, robot: &Chain, level: Level) -> Result<f64, String> {
+fn without_culling<T: Precision>(
+    mesh: &TriMesh,
+    robot: &Chain,
+    level: Level,
+    enough: Duration,
+) -> Result<f64, String> {
     let mut engine = Exhaustive::<T>::new(mesh).map_err(|error| error.to_string())?;
     engine.set_culling(false);
     engine.set_level(level);
     let mut out = Vec::new();
     let mut query =
         || engine.per_link(robot, &ventricle::entry(), &mut out).map_err(|error| error.to_string());
-    let time = medians::<String>(&mut [&mut query], Duration::from_millis(500))?[0].as_secs_f64();
+    let time = medians::<String>(&mut [&mut query], enough)?[0].as_secs_f64();
     Ok(time / (mesh.num_triangles() * robot.links().len()) as f64)
 }
 
@@ -102,6 +120,7 @@ fn rows<T: Precision + Send>(
     precision: &str,
     mesh: &TriMesh,
     models: &[(&str, Chain); 3],
+    effort: Effort,
     goals: &mut Goals,
 ) -> Result<(String, String), String> {
     let base = ventricle::entry();
@@ -138,7 +157,7 @@ fn rows<T: Precision + Send>(
                 &mut || z_star.per_link(&models[1].1, &base, &mut out2).map_err(text),
                 &mut || z.per_link(&models[2].1, &base, &mut out3).map_err(text),
             ],
-            Duration::from_secs(2),
+            effort.enough / 2,
         )?;
         let peer = times[0].as_secs_f64() / (cylinders.len() * sample.len()) as f64;
         let pairs = (cylinders.len() * mesh.num_triangles()) as f64;
@@ -170,8 +189,8 @@ fn rows<T: Precision + Send>(
 }
 
 /// Bytes a triangle, as the system sees them grow: to be measured first, while no memory is there to be used again.
-pub fn memory() -> Result<String, String> {
-    let (vertices, indices) = divided(4);
+pub fn memory(effort: Effort) -> Result<String, String> {
+    let (vertices, indices) = divided(effort.largest.min(4));
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
     let triangles = mesh.num_triangles() as f64;
     let mut page = format!(

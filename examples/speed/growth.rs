@@ -1,5 +1,6 @@
 //! Time against the number of triangles, links and threads: the paper's Figure 9 for the CPU.
 
+use crate::Effort;
 use crate::exhaustive::{models, on_one_thread};
 use crate::scene::subdivide::{in_four, shuffled};
 use crate::scene::timing::medians;
@@ -23,20 +24,20 @@ struct Series {
 }
 
 /// The chapter of the page; the plot goes to `out`.
-pub fn chapter(largest: u32, out: &Path) -> Result<String, String> {
-    let models = models()?;
+pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
+    let (models, enough) = (models()?, effort.enough / 10);
     let mut all: Vec<Series> = Vec::new();
     let mut threads = String::new();
     let mut mesh = ventricle::mesh(SMALLEST);
-    for step in 0..=largest {
+    for step in 0..=effort.largest {
         let (vertices, indices) = shuffled(mesh.clone(), 1);
         let tri_mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
         for (model, robot) in &models {
             let job = || -> Result<[f64; 3], String> {
                 Ok([
-                    time(&mut exhaustive::<f32>(&tri_mesh)?, robot)?,
-                    time(&mut exhaustive::<f64>(&tri_mesh)?, robot)?,
-                    time(&mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?, robot)?,
+                    time(&mut exhaustive::<f32>(&tri_mesh)?, robot, enough)?,
+                    time(&mut exhaustive::<f64>(&tri_mesh)?, robot, enough)?,
+                    time(&mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?, robot, enough)?,
                 ])
             };
             let times = on_one_thread(job)??;
@@ -50,8 +51,8 @@ pub fn chapter(largest: u32, out: &Path) -> Result<String, String> {
                 }
             }
         }
-        if step == largest {
-            threads = scaling(&tri_mesh, &models[1].1)?;
+        if step == effort.largest {
+            threads = scaling(&tri_mesh, &models[1].1, enough)?;
         } else {
             mesh = in_four(mesh);
         }
@@ -64,16 +65,16 @@ fn exhaustive<T: Precision>(mesh: &TriMesh) -> Result<Exhaustive<T>, String> {
     Exhaustive::new(mesh).map_err(|error| error.to_string())
 }
 
-fn time(engine: &mut dyn Proximity, robot: &Chain) -> Result<f64, String> {
+fn time(engine: &mut dyn Proximity, robot: &Chain, enough: Duration) -> Result<f64, String> {
     let mut out = Vec::new();
     let base = ventricle::entry();
     let mut query = || engine.per_link(robot, &base, &mut out).map_err(|error| error.to_string());
     query()?;
-    Ok(medians::<String>(&mut [&mut query], Duration::from_millis(400))?[0].as_secs_f64())
+    Ok(medians::<String>(&mut [&mut query], enough)?[0].as_secs_f64())
 }
 
 /// Links and threads: how the time of an exhaustive query in single precision grows and shrinks.
-fn scaling(mesh: &TriMesh, robot: &Chain) -> Result<String, String> {
+fn scaling(mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
     let links = robot.links().len();
     let points: Vec<_> = robot.links().iter().map(|link| link.start()).collect();
     let radii: Vec<_> = robot.links().iter().map(|link| link.radius()).collect();
@@ -81,9 +82,9 @@ fn scaling(mesh: &TriMesh, robot: &Chain) -> Result<String, String> {
         .map_err(|error| error.to_string())?;
     let one = on_one_thread(|| -> Result<_, String> {
         let mut engine = exhaustive::<f32>(mesh)?;
-        Ok((time(&mut engine, robot)?, time(&mut engine, &half)?))
+        Ok((time(&mut engine, robot, enough)?, time(&mut engine, &half, enough)?))
     })??;
-    let all = time(&mut exhaustive::<f32>(mesh)?, robot)?;
+    let all = time(&mut exhaustive::<f32>(mesh)?, robot, enough)?;
     let cores = rayon::current_num_threads();
     Ok(format!(
         "\nAt {} triangles, exhaustive in f32: half of the links take {:.2} of the time of all; {cores} threads are {:.2} \

@@ -5,7 +5,8 @@
 //! cargo run --release --example speed
 //! ```
 //!
-//! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles.
+//! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
+//! `--out` of its own, is a rehearsal.
 
 #[path = "../scene/mod.rs"]
 mod scene;
@@ -23,6 +24,7 @@ use scene::{command, quote};
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 #[derive(Parser)]
 struct Options {
@@ -30,9 +32,28 @@ struct Options {
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 
-    /// How often the ventricle of 10,000 triangles is divided in four for the largest mesh
+    /// How often the ventricle of 10,000 triangles is divided in four for the largest mesh; no other is larger
     #[arg(long, value_name = "TIMES", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=6))]
     largest: u32,
+
+    /// Seconds for each group of jobs that take turns; groups of a few jobs take less
+    #[arg(long, value_name = "SECONDS", default_value_t = 4.0, value_parser = seconds)]
+    enough: f64,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("write a number of seconds from 0 to 60, for example 4".into()),
+    }
+}
+
+/// How much is measured.
+#[derive(Clone, Copy)]
+struct Effort {
+    /// No mesh is divided in four more often.
+    largest: u32,
+    enough: Duration,
 }
 
 fn main() -> ExitCode {
@@ -40,20 +61,19 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options) -> Result<(), String> {
-    let mut page = String::new();
-    let head = format!(
+    let effort = Effort { largest: options.largest, enough: Duration::from_secs_f64(options.enough) };
+    let written = format!("Written by `{}` on {}", command::line("--example speed"), machine::description());
+    let mut page = format!(
         "# Speed\n\n\
-         Written by `cargo run --release --example speed` on {}. \
-         Times are medians; jobs that are compared take turns in one run. [GPU_SPEED.md](GPU_SPEED.md) is about the GPU.\n",
-        machine::description()
+         {written}. \
+         Times are medians; jobs that are compared take turns in one run. [GPU_SPEED.md](GPU_SPEED.md) is about the GPU.\n"
     );
-    page.push_str(&head);
-    let memory = exhaustive::memory()?;
+    let memory = exhaustive::memory(effort)?;
     let mut goals = Goals::default();
-    let (search, table) = search::chapter(&mut goals)?;
-    let exhaustive = exhaustive::chapter(&mut goals)?;
-    let growth = growth::chapter(options.largest, &options.out)?;
-    for chapter in [search, exhaustive, growth, moving::chapter()?, memory, goals.chapter()] {
+    let (search, table) = search::chapter(effort, &mut goals)?;
+    let exhaustive = exhaustive::chapter(effort, &mut goals)?;
+    let growth = growth::chapter(effort, &options.out)?;
+    for chapter in [search, exhaustive, growth, moving::chapter(effort)?, memory, goals.chapter()] {
         page.push('\n');
         page.push_str(&chapter);
     }
@@ -63,11 +83,10 @@ fn measure(options: &Options) -> Result<(), String> {
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
     println!("{}", path.display());
     let quote = format!(
-        "Written by `cargo run --release --example speed` on {}: a robot of 30 links in a cavity of about 100 mm, at the \
+        "{written}: a robot of 30 links in a cavity of about 100 mm, at the \
          wall (2 mm away) and in the middle (19 mm). Times faster than parry's `distance(Cylinder, TriMesh)` for each \
          link in the same run; `clears` against parry's `closest_points` with the same margin. \
-         [docs/SPEED.md](docs/SPEED.md) has the rest.\n\n{table}",
-        machine::description()
+         [docs/SPEED.md](docs/SPEED.md) has the rest.\n\n{table}"
     );
     quote::in_readme(&quote, "speed", &options.out)
 }

@@ -1,5 +1,6 @@
 //! Moving anatomy: a ventricle whose every vertex moves in each frame.
 
+use crate::Effort;
 use crate::exhaustive::{divided, models};
 use crate::scene::timing::medians;
 use crate::scene::ventricle;
@@ -7,10 +8,9 @@ use parry_continuum::parry::math::Vector;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 use std::fmt::Write;
-use std::time::Duration;
 
 /// The chapter of the page.
-pub fn chapter() -> Result<String, String> {
+pub fn chapter(effort: Effort) -> Result<String, String> {
     let mut page = String::from(
         "## Moving anatomy\n\n\
          A pulsating ventricle: every vertex moves in every frame, then one per-link query of 30 links (Z*), on all \
@@ -19,7 +19,7 @@ pub fn chapter() -> Result<String, String> {
     );
     let [_, (_, robot), _] = models()?;
     let base = ventricle::entry();
-    for times in [0, 2, 4] {
+    for times in [0, 2, 4].into_iter().filter(|times| *times <= effort.largest) {
         let (rest, indices) = divided(times);
         let centre = rest.iter().sum::<Vector>() / rest.len() as f64;
         let beats =
@@ -48,7 +48,7 @@ pub fn chapter() -> Result<String, String> {
                     built.per_link(&robot, &base, out4).map_err(|error| error.to_string())
                 },
             ],
-            Duration::from_secs(2),
+            effort.enough / 2,
         )?;
         let _ = write!(page, "| {} |", mesh.num_triangles());
         for time in times {

@@ -112,11 +112,7 @@ fn measure(options: &Options) -> Result<(), String> {
     stage("writing");
     let errors = front::errors(&outcomes);
     let all = front::combinations(&times, &errors);
-    let mut command = String::from("cargo run --release --example tradeoff");
-    for (index, word) in std::env::args().skip(1).enumerate() {
-        command += if index == 0 { " -- " } else { " " };
-        command += &word;
-    }
+    let command = command::line("--example tradeoff");
     let widest = robot.sections.iter().map(|section| section.radius).fold(0.0, f64::max);
     let page = page::page(&page::Facts {
         command: &command,

@@ -2,12 +2,11 @@
 
 use super::coarse::CoarseLink;
 use super::probe::{Probe, check_margin, check_moved, check_vertices, place};
-use super::scan::{Findings, Job, SharedBound, Work};
+use super::scan::{Findings, InFull, Job, Scan, SharedBound, Work};
 use super::search::Found;
 use super::soa::SoaMesh;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;
-use crate::distance::lanes::Lane;
 use crate::distance::{Convex, DiscSolver};
 use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -45,7 +44,7 @@ pub struct Exhaustive<T: Precision, S = Convex> {
 
 /// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
 #[allow(private_bounds)] // sealed: nobody else implements it
-pub trait Precision: Lane {}
+pub trait Precision: Scan {}
 
 impl Precision for f32 {}
 impl Precision for f64 {}
@@ -154,9 +153,8 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Exhaustive<T, S> {
             indices: &self.indices,
             links,
             bounds,
-            culling: self.culling,
             stop_at_first: aim == Aim::Any,
-            solver: self.solver,
+            nearer_than: Probe::nearer_than_by::<S>,
         };
         #[cfg(feature = "parallel")]
         let threads =
@@ -165,9 +163,9 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Exhaustive<T, S> {
         let threads = 1;
         findings.resize_with(threads, Findings::default);
 
-        let (level, next) = (self.level, AtomicUsize::new(0));
-        if self.culling && aim != Aim::Any {
-            dispatch!(level, simd => job.first_bounds::<T::Pack<_>>(simd));
+        let (level, culling, next) = (self.level, self.culling, AtomicUsize::new(0));
+        if culling && aim != Aim::Any {
+            T::first_bounds(level, &job);
         }
         let run = |findings: &mut Findings| {
             findings.work = Work::default();
@@ -178,7 +176,11 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Exhaustive<T, S> {
                 if chunk >= job.chunks() {
                     break;
                 }
-                dispatch!(level, simd => job.scan::<T::Pack<_>>(simd, chunk, findings));
+                if culling {
+                    T::scan(level, &job, chunk, findings);
+                } else {
+                    dispatch!(level, simd => job.scan::<T::Pack<_>, InFull<S>>(simd, chunk, findings));
+                }
             }
         };
         #[cfg(feature = "parallel")]

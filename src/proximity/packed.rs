@@ -57,6 +57,11 @@ impl<L: Pack> PackedLink<L> {
         }
     }
 
+    #[inline(always)]
+    pub(super) fn radius(&self) -> L {
+        self.link.radius
+    }
+
     /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
     #[inline(always)]
     fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {

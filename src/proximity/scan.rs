@@ -4,9 +4,10 @@ use super::coarse::CoarseLink;
 use super::packed::{BLOCK, PackedLink};
 use super::probe::Probe;
 use super::search::Found;
-use super::soa::SoaMesh;
+use super::soa::{self, SoaMesh};
 use crate::distance::lanes::{Lane, Pack};
-use crate::distance::{DiscSolver, Scalar};
+use crate::distance::{Closest, DiscSolver, Scalar};
+use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Real, Vector};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -19,7 +20,7 @@ pub(super) const CHUNK: usize = 64;
 const STRIDE: usize = 16;
 
 /// What one query asks of the mesh.
-pub(super) struct Job<'a, E, S> {
+pub(super) struct Job<'a, E> {
     pub mesh: &'a SoaMesh<E>,
     pub vertices: &'a [Vector],
     pub indices: &'a [[u32; 3]],
@@ -27,11 +28,10 @@ pub(super) struct Job<'a, E, S> {
     pub links: &'a [(Probe, Option<CoarseLink<E>>)],
     /// For each link, or once for all of them: what a triangle must be nearer than.
     pub bounds: &'a [SharedBound],
-    pub culling: bool,
     /// Any triangle nearer than the bound will do.
     pub stop_at_first: bool,
-    /// The route to the discs of flat caps.
-    pub solver: PhantomData<fn() -> S>,
+    /// [`Probe::nearer_than_by`] with the route to the discs of flat caps.
+    pub nearer_than: fn(&Probe, Real, [Vector; 3]) -> Option<Closest<f64>>,
 }
 
 /// A distance that only shrinks, seen by all threads; in the probe's units.
@@ -95,7 +95,96 @@ impl Findings {
     }
 }
 
-impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Job<'_, E, S> {
+/// How a link meets a pack of triangles.
+pub(super) trait Look<L: Pack> {
+    /// Which of the triangles from `lane` on may be nearer than `limit`, as bits.
+    fn nearer(
+        token: L::Token,
+        link: &PackedLink<L>,
+        mesh: &SoaMesh<L::Element>,
+        place: (usize, usize),
+        limit: L,
+        work: &mut Work,
+    ) -> u64;
+}
+
+/// Cheap, exact bounds spare what they can.
+struct Culled;
+
+impl<L: Pack<Element: Lane>> Look<L> for Culled {
+    #[inline(always)]
+    fn nearer(
+        token: L::Token,
+        link: &PackedLink<L>,
+        mesh: &SoaMesh<L::Element>,
+        (block, lane): (usize, usize),
+        limit: L,
+        work: &mut Work,
+    ) -> u64 {
+        let (centre, radius) = mesh.spheres::<L>(token, block, lane);
+        if link.meets_spheres(centre, radius, limit) == 0 {
+            return 0;
+        }
+        work.axis_distances += L::LANES as u64;
+        link.may_be_nearer(&mesh.faces::<L>(token, block, lane), limit).nearer
+    }
+}
+
+/// Every pair costs its full distance, discs by the route `S` included.
+pub(super) struct InFull<S>(PhantomData<fn() -> S>);
+
+impl<L: Pack<Element: Lane>, S: DiscSolver<L::Element>> Look<L> for InFull<S> {
+    #[inline(always)]
+    fn nearer(
+        token: L::Token,
+        link: &PackedLink<L>,
+        mesh: &SoaMesh<L::Element>,
+        (block, lane): (usize, usize),
+        limit: L,
+        work: &mut Work,
+    ) -> u64 {
+        work.axis_distances += L::LANES as u64;
+        let distances = link.distances::<S>(token, &mesh.faces::<L>(token, block, lane));
+        L::bits((distances + link.radius()).lt(limit))
+    }
+}
+
+/// The precisions of a scan, with what does not depend on the route to the discs: functions without parameters, which
+/// are compiled in this crate and not again in each that uses an engine.
+pub(super) trait Scan: Lane {
+    /// [`Job::first_bounds`].
+    fn first_bounds(level: Level, job: &Job<Self>);
+    /// [`Job::scan`] with culling.
+    fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings);
+    /// `soa::prepare`.
+    fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]);
+}
+
+macro_rules! scan {
+    ($element:ty) => {
+        impl Scan for $element {
+            #[inline(never)]
+            fn first_bounds(level: Level, job: &Job<Self>) {
+                dispatch!(level, simd => job.first_bounds::<<Self as Lane>::Pack<_>>(simd));
+            }
+
+            #[inline(never)]
+            fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings) {
+                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, Culled>(simd, chunk, findings));
+            }
+
+            #[inline(never)]
+            fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]) {
+                dispatch!(level, simd => soa::prepare::<<Self as Lane>::Pack<_>>(simd, faces, spheres));
+            }
+        }
+    };
+}
+
+scan!(f32);
+scan!(f64);
+
+impl<E: Lane> Job<'_, E> {
     /// How many chunks there are.
     pub(super) fn chunks(&self) -> usize {
         self.mesh.blocks().div_ceil(CHUNK)
@@ -125,7 +214,12 @@ impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Job<'_, E, S> {
 
     /// All links against one chunk of the mesh.
     #[inline(always)]
-    pub(super) fn scan<L: Pack<Element = E>>(&self, token: L::Token, chunk: usize, findings: &mut Findings) {
+    pub(super) fn scan<L: Pack<Element = E>, K: Look<L>>(
+        &self,
+        token: L::Token,
+        chunk: usize,
+        findings: &mut Findings,
+    ) {
         let blocks = chunk * CHUNK..self.mesh.blocks().min((chunk + 1) * CHUNK);
         for (number, (probe, link)) in self.links.iter().enumerate() {
             let shared = &self.bounds[number.min(self.bounds.len() - 1)];
@@ -133,7 +227,7 @@ impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Job<'_, E, S> {
             if bound > 0.0 {
                 let mut turn = Turn { job: self, probe, bound, found: None, work: &mut findings.work };
                 match link {
-                    Some(link) => turn.scan::<L>(token, link, blocks.clone()),
+                    Some(link) => turn.scan::<L, K>(token, link, blocks.clone()),
                     None => turn.measure_all(blocks.clone()),
                 }
                 if let Some(found) = turn.found {
@@ -146,37 +240,29 @@ impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Job<'_, E, S> {
 }
 
 /// One link's turn with a chunk.
-struct Turn<'a, E, S> {
-    job: &'a Job<'a, E, S>,
+struct Turn<'a, E> {
+    job: &'a Job<'a, E>,
     probe: &'a Probe,
     bound: Real,
     found: Option<Found>,
     work: &'a mut Work,
 }
 
-impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Turn<'_, E, S> {
+impl<E: Lane> Turn<'_, E> {
     #[inline(always)]
-    fn scan<L: Pack<Element = E>>(&mut self, token: L::Token, link: &CoarseLink<E>, blocks: Range<usize>) {
+    fn scan<L: Pack<Element = E>, K: Look<L>>(
+        &mut self,
+        token: L::Token,
+        link: &CoarseLink<E>,
+        blocks: Range<usize>,
+    ) {
         let mesh = self.job.mesh;
         let packed = PackedLink::<L>::new(token, link);
         let mut limit = L::splat(token, link.axis_limit(self.bound));
         self.work.pairs += (blocks.len() * BLOCK) as u64;
         for block in blocks {
             for lane in (0..BLOCK).step_by(L::LANES) {
-                if self.job.culling {
-                    let (centre, radius) = mesh.spheres::<L>(token, block, lane);
-                    if packed.meets_spheres(centre, radius, limit) == 0 {
-                        continue;
-                    }
-                }
-                self.work.axis_distances += L::LANES as u64;
-                let face = mesh.faces::<L>(token, block, lane);
-                let mut nearer = if self.job.culling {
-                    packed.may_be_nearer(&face, limit).nearer
-                } else {
-                    let slack = L::splat(token, link.radius);
-                    L::bits((packed.distances::<S>(token, &face) + slack).lt(limit))
-                };
+                let mut nearer = K::nearer(token, &packed, mesh, (block, lane), limit, self.work);
                 while nearer != 0 {
                     let triangle = block * BLOCK + lane + nearer.trailing_zeros() as usize;
                     nearer &= nearer - 1;
@@ -203,7 +289,7 @@ impl<E: Lane, S: DiscSolver<E> + DiscSolver<f64>> Turn<'_, E, S> {
         let Some(corners) = job.indices.get(triangle) else { return false };
         self.work.measured += 1;
         let vertices = corners.map(|index| job.vertices[index as usize]);
-        let Some(closest) = self.probe.nearer_than_by::<S>(self.bound, vertices) else { return false };
+        let Some(closest) = (job.nearer_than)(self.probe, self.bound, vertices) else { return false };
         self.bound = closest.distance;
         self.found = Some(Found { triangle: triangle as u32, closest });
         true

@@ -2,10 +2,11 @@
 
 use super::coarse::CoarseFrame;
 use super::packed::BLOCK;
+use super::scan::Scan;
 use super::share::each;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use parry3d_f64::math::Vector;
 
 /// Rows of a block that bound its triangles: a sphere's centre and radius.
@@ -22,7 +23,7 @@ pub(super) struct SoaMesh<E> {
     faces: Vec<E>,
 }
 
-impl<E: Lane> SoaMesh<E> {
+impl<E: Scan> SoaMesh<E> {
     pub(super) fn new(level: Level, vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         let mut mesh = Self { frame: CoarseFrame::new(vertices), spheres: Vec::new(), faces: Vec::new() };
         mesh.update(level, vertices, indices);
@@ -40,10 +41,12 @@ impl<E: Lane> SoaMesh<E> {
         let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE * BLOCK * SPHERE_ROWS)).collect();
         each(&mut shares, |share, (faces, spheres)| {
             fill(frame, vertices, indices, share * SHARE, faces);
-            dispatch!(level, simd => prepare::<E::Pack<_>>(simd, faces, spheres));
+            E::prepare(level, faces, spheres);
         });
     }
+}
 
+impl<E: Lane> SoaMesh<E> {
     /// How many blocks there are.
     pub(super) fn blocks(&self) -> usize {
         self.spheres.len() / (BLOCK * SPHERE_ROWS)
@@ -105,7 +108,7 @@ pub(super) fn place_triangle<E: Lane>(
 
 /// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
 #[inline(always)]
-fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], spheres: &mut [L::Element]) {
+pub(super) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], spheres: &mut [L::Element]) {
     let faces = faces.chunks_exact_mut(BLOCK * FACE_ROWS);
     for (face, sphere) in faces.zip(spheres.chunks_exact_mut(BLOCK * SPHERE_ROWS)) {
         for lane in (0..BLOCK).step_by(L::LANES) {
