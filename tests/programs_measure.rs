@@ -172,3 +172,18 @@ fn the_studies_are_made_and_one_is_made_again() {
         refuse("studies", &arguments, expected);
     }
 }
+
+#[test]
+fn accuracy_is_measured_and_drawn() {
+    succeed("accuracy", &["--out", "accuracy"]);
+    let page = read("accuracy/ACCURACY.md");
+    for table in ["ours", "extremes", "certificates", "gpu"] {
+        assert!(page.contains(&format!("<!-- {table} -->\n")), "{table}: {page}");
+    }
+    assert_finite(&page);
+    for (file, least) in [("accuracy.csv", 2 * 18 * 11), ("accuracy_cases.csv", 150)] {
+        let lines = read(&format!("accuracy/{file}"));
+        assert!(lines.lines().count() > least, "{file}: {lines}");
+    }
+    assert!(colours("accuracy/correctness.png") > 10);
+}
