@@ -44,6 +44,15 @@ impl<T: Scalar> Link<T> {
         Self { end, axis, radius, flat }
     }
 
+    /// How far the axis reaches along `v`, from the link's start and in units of 1 / |v|.
+    ///
+    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
+    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
+    #[inline(always)]
+    pub(crate) fn reach_along(&self, v: Vec3<T>) -> T {
+        v.dot(self.end).max(self.radius.zero())
+    }
+
     /// The distance of a point from the solid link, and the link's nearest point (the point itself inside).
     #[inline(always)]
     pub(crate) fn closest_to(&self, point: Vec3<T>) -> (T, Vec3<T>) {

@@ -2,7 +2,7 @@
 
 use super::coarse::CoarseLink;
 use super::probe::{Probe, check_margin, check_moved, check_vertices, place};
-use super::scan::{Findings, InFull, Job, Scan, SharedBound, Work};
+use super::scan::{Findings, Job, Scan, SharedBound, Work};
 use super::search::Found;
 use super::soa::SoaMesh;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
@@ -179,7 +179,7 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Exhaustive<T, S> {
                 if culling {
                     T::scan(level, &job, chunk, findings);
                 } else {
-                    dispatch!(level, simd => job.scan::<T::Pack<_>, InFull<S>>(simd, chunk, findings));
+                    dispatch!(level, simd => job.scan::<T::Pack<_>, S, false>(simd, chunk, findings));
                 }
             }
         };

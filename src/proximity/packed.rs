@@ -57,11 +57,6 @@ impl<L: Pack> PackedLink<L> {
         }
     }
 
-    #[inline(always)]
-    pub(super) fn radius(&self) -> L {
-        self.link.radius
-    }
-
     /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
     #[inline(always)]
     fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {
@@ -85,15 +80,6 @@ impl<L: Pack> PackedLink<L> {
         L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
     }
 
-    /// How far the axis reaches along `v`, from the link's start and in units of 1 / |v|.
-    ///
-    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
-    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
-    #[inline(always)]
-    fn reach_along(&self, v: Vec3<L>) -> L {
-        v.dot(self.link.end).max(self.length.zero())
-    }
-
     /// The squared distance between the axis and patches, from below but for rounding.
     ///
     /// Let v lead from the axis to a patch's centre. The plane with normal v before the axis keeps as far from the
@@ -111,7 +97,7 @@ impl<L: Pack> PackedLink<L> {
         let disc = normal_part.abs().mul_add(patch.thickness, across * patch.radius);
         let reach = disc.min(magnitudes(v).dot(patch.half));
         let relative = patch.centre - self.start;
-        let ahead = (v.dot(relative) - self.reach_along(v) - reach).max(zero);
+        let ahead = (v.dot(relative) - self.link.reach_along(v) - reach).max(zero);
         let plane = (ahead * ahead).over(squared);
 
         let middle = self.link.end * zero.lit(0.5);
@@ -125,7 +111,7 @@ impl<L: Pack> PackedLink<L> {
     pub(super) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
         let v = self.offset_from_axis(centre);
-        let axis = v.dot(self.start) + self.reach_along(v);
+        let axis = v.dot(self.start) + self.link.reach_along(v);
         let ahead = (v.dot(a).min(v.dot(b)).min(v.dot(c)) - axis).max(limit.zero());
         // A centre on the axis rules nothing out, nor does what falls below the range.
         L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))

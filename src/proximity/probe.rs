@@ -75,20 +75,17 @@ impl Probe {
         (closest.distance < bound).then(|| closest.met())
     }
 
-    /// How far the axis reaches along a vector, from the link's start and in units of 1 / the vector's length.
-    ///
-    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
-    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
-    fn reach_along(&self, vector: Vec3<f64>) -> Real {
-        vector.dot(self.link.end).max(0.0)
+    /// From the axis point nearest to `point` to that point.
+    fn offset_from_axis(&self, point: Vec3<f64>) -> Vec3<f64> {
+        let t = point.dot(self.link.axis).max(0.0).min(self.length);
+        point.along(self.link.axis, -t)
     }
 
     /// A lower bound for a triangle in scaled units, by the plane of [`Probe::distance_to_box`].
     fn at_least(&self, [a, b, c]: [Vec3<f64>; 3]) -> Real {
         let centre = (a + b + c) * (1.0 / 3.0);
-        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
-        let normal = centre.along(self.link.axis, -t);
-        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.reach_along(normal);
+        let normal = self.offset_from_axis(centre);
+        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
         beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
@@ -124,10 +121,9 @@ impl Probe {
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
         let half = (maxs - mins) * (0.5 * self.scale);
         let centre = to_vec3((mins - self.start) * self.scale + half);
-        let t = centre.dot(self.link.axis).max(0.0).min(self.length);
-        let to_centre = centre.along(self.link.axis, -t);
+        let to_centre = self.offset_from_axis(centre);
         let corner = half.dot(Vector::from_array(to_centre.into()).abs());
-        let beyond = to_centre.dot(centre) - self.reach_along(to_centre) - corner;
+        let beyond = to_centre.dot(centre) - self.link.reach_along(to_centre) - corner;
         (beyond.over(to_centre.norm()) - self.link.radius - SLACK).max(0.0)
     }
 

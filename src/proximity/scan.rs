@@ -6,10 +6,9 @@ use super::probe::Probe;
 use super::search::Found;
 use super::soa::{self, SoaMesh};
 use crate::distance::lanes::{Lane, Pack};
-use crate::distance::{Closest, DiscSolver, Scalar};
+use crate::distance::{Closest, Convex, DiscSolver, Scalar};
 use fearless_simd::{Level, dispatch};
 use parry3d_f64::math::{Real, Vector};
-use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -95,60 +94,6 @@ impl Findings {
     }
 }
 
-/// How a link meets a pack of triangles.
-pub(super) trait Look<L: Pack> {
-    /// Which of the triangles from `lane` on may be nearer than `limit`, as bits.
-    fn nearer(
-        token: L::Token,
-        link: &PackedLink<L>,
-        mesh: &SoaMesh<L::Element>,
-        place: (usize, usize),
-        limit: L,
-        work: &mut Work,
-    ) -> u64;
-}
-
-/// Cheap, exact bounds spare what they can.
-struct Culled;
-
-impl<L: Pack<Element: Lane>> Look<L> for Culled {
-    #[inline(always)]
-    fn nearer(
-        token: L::Token,
-        link: &PackedLink<L>,
-        mesh: &SoaMesh<L::Element>,
-        (block, lane): (usize, usize),
-        limit: L,
-        work: &mut Work,
-    ) -> u64 {
-        let (centre, radius) = mesh.spheres::<L>(token, block, lane);
-        if link.meets_spheres(centre, radius, limit) == 0 {
-            return 0;
-        }
-        work.axis_distances += L::LANES as u64;
-        link.may_be_nearer(&mesh.faces::<L>(token, block, lane), limit).nearer
-    }
-}
-
-/// Every pair costs its full distance, discs by the route `S` included.
-pub(super) struct InFull<S>(PhantomData<fn() -> S>);
-
-impl<L: Pack<Element: Lane>, S: DiscSolver<L::Element>> Look<L> for InFull<S> {
-    #[inline(always)]
-    fn nearer(
-        token: L::Token,
-        link: &PackedLink<L>,
-        mesh: &SoaMesh<L::Element>,
-        (block, lane): (usize, usize),
-        limit: L,
-        work: &mut Work,
-    ) -> u64 {
-        work.axis_distances += L::LANES as u64;
-        let distances = link.distances::<S>(token, &mesh.faces::<L>(token, block, lane));
-        L::bits((distances + link.radius()).lt(limit))
-    }
-}
-
 /// The precisions of a scan, with what does not depend on the route to the discs: functions without parameters, which
 /// are compiled in this crate and not again in each that uses an engine.
 pub(super) trait Scan: Lane {
@@ -170,7 +115,7 @@ macro_rules! scan {
 
             #[inline(never)]
             fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings) {
-                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, Culled>(simd, chunk, findings));
+                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, Convex, true>(simd, chunk, findings));
             }
 
             #[inline(never)]
@@ -212,9 +157,10 @@ impl<E: Lane> Job<'_, E> {
         }
     }
 
-    /// All links against one chunk of the mesh.
+    /// All links against one chunk of the mesh. With `CULLING` cheap, exact bounds spare what they can; without it every
+    /// pair costs its full distance, discs by the route `S` included.
     #[inline(always)]
-    pub(super) fn scan<L: Pack<Element = E>, K: Look<L>>(
+    pub(super) fn scan<L: Pack<Element = E>, S: DiscSolver<E>, const CULLING: bool>(
         &self,
         token: L::Token,
         chunk: usize,
@@ -227,7 +173,7 @@ impl<E: Lane> Job<'_, E> {
             if bound > 0.0 {
                 let mut turn = Turn { job: self, probe, bound, found: None, work: &mut findings.work };
                 match link {
-                    Some(link) => turn.scan::<L, K>(token, link, blocks.clone()),
+                    Some(link) => turn.scan::<L, S, CULLING>(token, link, blocks.clone()),
                     None => turn.measure_all(blocks.clone()),
                 }
                 if let Some(found) = turn.found {
@@ -250,7 +196,7 @@ struct Turn<'a, E> {
 
 impl<E: Lane> Turn<'_, E> {
     #[inline(always)]
-    fn scan<L: Pack<Element = E>, K: Look<L>>(
+    fn scan<L: Pack<Element = E>, S: DiscSolver<E>, const CULLING: bool>(
         &mut self,
         token: L::Token,
         link: &CoarseLink<E>,
@@ -262,7 +208,20 @@ impl<E: Lane> Turn<'_, E> {
         self.work.pairs += (blocks.len() * BLOCK) as u64;
         for block in blocks {
             for lane in (0..BLOCK).step_by(L::LANES) {
-                let mut nearer = K::nearer(token, &packed, mesh, (block, lane), limit, self.work);
+                if CULLING {
+                    let (centre, radius) = mesh.spheres::<L>(token, block, lane);
+                    if packed.meets_spheres(centre, radius, limit) == 0 {
+                        continue;
+                    }
+                }
+                self.work.axis_distances += L::LANES as u64;
+                let face = mesh.faces::<L>(token, block, lane);
+                let mut nearer = if CULLING {
+                    packed.may_be_nearer(&face, limit).nearer
+                } else {
+                    let slack = L::splat(token, link.radius);
+                    L::bits((packed.distances::<S>(token, &face) + slack).lt(limit))
+                };
                 while nearer != 0 {
                     let triangle = block * BLOCK + lane + nearer.trailing_zeros() as usize;
                     nearer &= nearer - 1;
