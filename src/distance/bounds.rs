@@ -13,18 +13,22 @@
 //! ```
 //!
 //! The difference p* - x would do as a normal in exact arithmetic; its rounding tilts it by u extent / U, and
-//! the bound would then be wrong by as much wherever the link nearly touches.
+//! the bound would then be wrong by as much wherever the link nearly touches. R is at a right angle to A only to
+//! rounding too: where p* lies much nearer to the axis than to the centre of the cap, the far end of the link sticks
+//! out of the plane by -<normal, A> times its distance from the cap, which is taken off.
 
 use super::{Mask, Scalar, Vec3};
 
 /// The plane's lower bound on the distance between a triangle and a link whose flat cap lies around the
-/// origin with the outward unit normal `outward`, less what rounding can have added to it; and U.
+/// origin with the outward unit normal `outward` and which reaches at most `behind` behind it, less what rounding can
+/// have added to it; and U.
 #[inline(always)]
 pub(crate) fn separating_plane<T: Scalar>(
     vertices: [Vec3<T>; 3],
     on_triangle: Vec3<T>,
     outward: Vec3<T>,
     radius: T,
+    behind: T,
 ) -> (T, T) {
     let zero = radius.zero();
     let height = on_triangle.dot(outward);
@@ -38,7 +42,8 @@ pub(crate) fn separating_plane<T: Scalar>(
     let support = direction * rho.min(radius);
     let [a, b, c] = vertices;
     let ahead = normal.dot(a - support).min(normal.dot(b - support)).min(normal.dot(c - support));
-    let extent = a.largest().max(b.largest()).max(c.largest()).max(radius);
-    let bound = ahead.over(upper) - extent * zero.lit(16.0 * T::UNIT_ROUNDOFF);
+    let tilt = (-normal.dot(outward)).max(zero);
+    let extent = a.largest().max(b.largest()).max(c.largest()).max(behind);
+    let bound = (ahead - tilt * behind).over(upper) - extent * zero.lit(16.0 * T::UNIT_ROUNDOFF);
     (zero.lt(upper).select(bound.max(zero), zero), upper)
 }

@@ -123,7 +123,8 @@ impl<T: Scalar> Axial<T> {
     pub(crate) fn cap_bounds(&self, link: &Link<T>, face: &Face<T>) -> (T, T) {
         let (centre, outward) = self.cap(link);
         let vertices = face.seen_from(centre).vertices;
-        bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius)
+        let behind = link.end.largest() * link.radius.lit(2.0) + link.radius;
+        bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius, behind)
     }
 
     /// The answer, discs included, by the route `S`.

@@ -13,6 +13,7 @@ fn bounds_separating_plane(
     on_triangle: vec3<real>,
     outward: vec3<real>,
     radius: real,
+    behind: real,
 ) -> Bounds {
     let height = dot(on_triangle, outward);
     let radial = along(on_triangle, outward, -height);
@@ -25,7 +26,8 @@ fn bounds_separating_plane(
 
     let support = direction * min(rho, radius);
     let ahead = min(min(dot(normal, a - support), dot(normal, b - support)), dot(normal, c - support));
-    let extent = max(max(max(largest(a), largest(b)), largest(c)), radius);
-    let bound = over(ahead, upper) - extent * (real(16.0) * UNIT_ROUNDOFF);
+    let extent = max(max(max(largest(a), largest(b)), largest(c)), behind);
+    let tilt = max(-dot(normal, outward), real(0.0));
+    let bound = over(ahead - tilt * behind, upper) - extent * (real(16.0) * UNIT_ROUNDOFF);
     return Bounds(select(real(0.0), max(bound, real(0.0)), real(0.0) < upper), upper);
 }

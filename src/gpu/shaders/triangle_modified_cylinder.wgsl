@@ -57,6 +57,7 @@ fn axial_cap_bounds(axial: Axial, link: Link, face: Face) -> Bounds {
         axial.on_triangle - cap.centre,
         cap.outward,
         link.radius,
+        largest(link.end) * real(2.0) + link.radius,
     );
 }
 
