@@ -5,6 +5,9 @@ mod common;
 mod extremes;
 #[path = "../examples/scene/levels.rs"]
 mod levels;
+#[path = "../examples/scene/quote.rs"]
+#[allow(dead_code, reason = "programs write too")]
+mod quote;
 #[path = "../examples/accuracy/reference.rs"]
 mod reference;
 
@@ -20,8 +23,7 @@ fn read(path: &str) -> String {
 /// The part of the page between two marks.
 fn written(mark: &str) -> String {
     let page = read("docs/ACCURACY.md");
-    let (_, rest) = page.split_once(&format!("<!-- {mark} -->\n")).expect("where the tables begin");
-    rest.split_once(&format!("<!-- /{mark} -->")).expect("where the tables end").0.to_owned()
+    quote::between(&page, mark).expect("the page's marks").to_owned()
 }
 
 /// The kernels are scalar IEEE arithmetic, so the numbers agree to the last digit on any machine. An error that

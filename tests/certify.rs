@@ -23,9 +23,7 @@ fn link_of(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Modifie
 fn the_reference_cases_lie_within_tight_bounds() {
     let (mut apart, mut nearly_touching, mut touching, mut widest) = (0, 0, 0, 0.0_f64);
     for case in &distance_cases() {
-        if !["triangle_capsule", "triangle_cylinder", "triangle_modified_cylinder"]
-            .contains(&case.kind.as_str())
-        {
+        if !case.is_link() {
             continue;
         }
         let link = link_of(case.p0.into(), case.p1.into(), case.r, case.flat());

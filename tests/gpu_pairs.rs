@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::gpu::problem_of;
 use common::kernels::Input;
 use common::problems::{Family, Problem};
 use common::{Case, Random, distance_cases, gpu};
@@ -16,11 +17,6 @@ fn unit(precision: Precision) -> f64 {
         Precision::F32 => f64::from(f32::EPSILON) / 2.0,
         Precision::F64 => f64::EPSILON / 2.0,
     }
-}
-
-fn problem_of(input: &Input<f64>, flat: [bool; 2]) -> PairProblem {
-    let Input { triangle, plane_normal, start, end, disc_normal, radius } = *input;
-    PairProblem { triangle, plane_normal, start, end, disc_normal, radius, flat }
 }
 
 /// The CPU's answer.

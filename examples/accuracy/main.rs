@@ -23,6 +23,7 @@ use extremes::{EACH, LARGEST, certificates, engines, tables};
 use peers::{Peer, comparison};
 use scene::command;
 use scene::levels::levels;
+use scene::quote::between;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -167,12 +168,6 @@ fn write_all(docs: &Path) -> Result<(), String> {
     slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
     println!("{}", picture.display());
     Ok(())
-}
-
-/// What stands between two marks of a page.
-fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
-    let (_, rest) = page.split_once(&format!("<!-- {mark} -->\n"))?;
-    Some(rest.split_once(&format!("<!-- /{mark} -->"))?.0)
 }
 
 fn file(double: &Measurement, single: &Measurement, peer: &Peer) -> String {

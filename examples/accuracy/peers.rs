@@ -1,6 +1,7 @@
 //! parry's answers beside this crate's.
 
 use crate::common::Case;
+use crate::common::precision::vector;
 use crate::extremes::measure::{Problem, scaled};
 use crate::extremes::problems::Extreme;
 use crate::reference::{distance, median_and_worst};
@@ -61,7 +62,6 @@ impl Peer {
         std::panic::set_hook(Box::new(|_| {}));
         let mut answers = Vec::new();
         for problem in problems {
-            let vector = |point| Vector::from_array(<[f64; 3]>::from(point));
             let input = &problem.input;
             let ends = [vector(input.start), vector(input.end)];
             for (kernel, flat) in [(10, false), (12, true)] {
@@ -116,8 +116,7 @@ impl Peer {
 }
 
 pub fn comparison(cases: &[Case]) -> String {
-    let is_link = |case: &&Case| case.kind.contains("capsule") || case.kind.contains("cylinder");
-    let alike = |case: &&Case, flat| is_link(case) && case.flat() == [flat; 2];
+    let alike = |case: &&Case, flat| case.is_link() && case.flat() == [flat; 2];
     let capsules: Vec<_> = cases.iter().filter(|case| alike(case, false)).collect();
     let cylinders: Vec<_> = cases.iter().filter(|case| alike(case, true)).collect();
     let mut text = String::from(

@@ -3,10 +3,11 @@
 //! A tube of half a millimetre, in metres, and a triangle beside it: from right to left the gap between them grows
 //! smaller, from the bottom up the triangle tilts away from the tube's axis. Every cell is one query.
 
+use crate::common::precision::Precision;
 use crate::peers::parry_distance;
 use crate::scene::canvas::{Align, Canvas, Colour, hex, mix};
 use parry_continuum::ModifiedCylinder;
-use parry_continuum::distance::{Vec3, triangle_modified_cylinder};
+use parry_continuum::distance::triangle_modified_cylinder;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Certificate;
 use rayon::prelude::*;
@@ -56,9 +57,8 @@ fn errors(column: usize, row: usize) -> [f64; 2] {
     let Ok(link) = ModifiedCylinder::cylinder(start, end, RADIUS) else { return [f64::NAN; 2] };
     let Ok(proof) = Certificate::between(&link, &Pose::IDENTITY, triangle) else { return [f64::NAN; 2] };
     let truth = proof.lower.midpoint(proof.upper);
-    let vec3 = |point: Vector| Vec3::from(point.to_array());
-    let ours =
-        triangle_modified_cylinder(triangle.map(vec3), vec3(start), vec3(end), RADIUS, [true; 2]).distance;
+    let [from, to] = [start, end].map(f64::vec3);
+    let ours = triangle_modified_cylinder(triangle.map(f64::vec3), from, to, RADIUS, [true; 2]).distance;
     [parry_distance(triangle, [start, end], RADIUS, true), ours]
         .map(|distance| (distance - truth).abs() / truth)
 }

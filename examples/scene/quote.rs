@@ -1,9 +1,22 @@
-//! What programs write into the README: the text between two marks.
+//! What programs write between two marks of a page: `<!-- mark -->` and `<!-- /mark -->`.
 
 use std::fs;
 use std::path::Path;
 
-/// Puts `text` between `<!-- mark -->` and `<!-- /mark -->` of the README beside the directory `docs`, if there is one
+/// What a page says before, between and after its marks; None where it has no such marks.
+fn parted<'a>(page: &'a str, mark: &str) -> Option<[&'a str; 3]> {
+    let begin = format!("<!-- {mark} -->\n");
+    let from = page.find(&begin)? + begin.len();
+    let to = from + page[from..].find(&format!("<!-- /{mark} -->"))?;
+    Some([&page[..from], &page[from..to], &page[to..]])
+}
+
+/// What stands between two marks of a page.
+pub fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
+    parted(page, mark).map(|[_, between, _]| between)
+}
+
+/// Puts `text` between two marks of the README beside the directory `docs`, if there is one
 /// that has these marks.
 ///
 /// # Errors
@@ -11,9 +24,7 @@ use std::path::Path;
 pub fn in_readme(text: &str, mark: &str, docs: &Path) -> Result<(), String> {
     let path = docs.join("../README.md");
     let Ok(readme) = fs::read_to_string(&path) else { return Ok(()) };
-    let (begin, end) = (format!("<!-- {mark} -->\n"), format!("<!-- /{mark} -->"));
-    let Some((before, rest)) = readme.split_once(&begin) else { return Ok(()) };
-    let Some((_, after)) = rest.split_once(&end) else { return Ok(()) };
-    fs::write(&path, format!("{before}{begin}{text}{end}{after}"))
+    let Some([before, _, after]) = parted(&readme, mark) else { return Ok(()) };
+    fs::write(&path, format!("{before}{text}{after}"))
         .map_err(|error| format!("cannot write {} ({error})", path.display()))
 }

@@ -56,6 +56,11 @@ impl Case {
         self.d.parse().expect("a decimal number")
     }
 
+    /// Whether the pair is a triangle and a link.
+    pub fn is_link(&self) -> bool {
+        self.kind.contains("capsule") || self.kind.contains("cylinder")
+    }
+
     /// Which caps are flat, for the kinds that have caps.
     pub fn flat(&self) -> [bool; 2] {
         match self.kind.as_str() {

@@ -2,9 +2,9 @@
 
 use super::measure::{Problem, scaled};
 use crate::common::Case;
-use crate::common::precision::{extent, vector};
+use crate::common::precision::{Precision, extent, vector};
 use crate::reference::median_and_worst;
-use parry_continuum::distance::{Closest, Vec3, triangle_modified_cylinder};
+use parry_continuum::distance::{Closest, triangle_modified_cylinder};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Certificate;
 use parry_continuum::{Cap, ModifiedCylinder};
@@ -27,8 +27,7 @@ struct Pair {
 
 impl Pair {
     fn of_case(case: &Case) -> Option<Self> {
-        let is_link = case.kind.contains("capsule") || case.kind.contains("cylinder");
-        is_link.then(|| Self {
+        case.is_link().then(|| Self {
             triangle: case.tri.map(Vector::from),
             ends: [case.p0, case.p1].map(Vector::from),
             radius: case.r,
@@ -64,10 +63,9 @@ impl Pair {
     /// Which features are nearest, told apart as far as `rounding` lets.
     fn features(&self, rounding: f64) -> Features {
         let Self { triangle, ends: [start, end], radius, flat, .. } = *self;
-        let vec3 = |point: Vector| Vec3::from(point.to_array());
-        let [from, to] = [vec3(start), vec3(end)];
+        let [from, to] = [start, end].map(f64::vec3);
         let Closest { distance, point1, point2 } =
-            triangle_modified_cylinder(triangle.map(vec3), from, to, radius, flat);
+            triangle_modified_cylinder(triangle.map(f64::vec3), from, to, radius, flat);
         if distance <= 0.0 {
             return None;
         }

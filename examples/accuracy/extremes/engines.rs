@@ -2,6 +2,7 @@
 
 use super::measure::{Problem, scaled};
 use super::problems::Extreme;
+use crate::common::precision::vector;
 use fearless_simd::Level;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -23,7 +24,6 @@ struct Scene {
 impl Scene {
     fn new(problems: &[&Problem<f64>], of_link: usize, flat: bool) -> Option<Self> {
         let exponent = problems[of_link].exponent;
-        let vector = |point| Vector::from_array(<[f64; 3]>::from(point));
         let large = |point: Vector| Vector::from_array(point.to_array().map(|x| scaled(x, exponent)));
         let near_one: Vec<_> = problems.iter().map(|problem| problem.near_one.triangle.map(vector)).collect();
         let input = &problems[of_link].near_one;

@@ -3,10 +3,8 @@
 use super::measure::{Found, Measured, PAIRS, Problem, scaled};
 use super::problems::Extreme;
 use super::tables::cell;
-use crate::common::kernels::Input;
-use crate::common::precision::vector;
-use parry_continuum::distance::Vec3;
-use parry_continuum::gpu::{Gpu, GpuError, GpuPairs, Pair, PairProblem};
+use crate::common::gpu::problem_of;
+use parry_continuum::gpu::{Gpu, GpuError, GpuPairs, Pair};
 
 /// The pair and the caps of each of the [`KERNELS`](crate::common::kernels::KERNELS).
 const PAIR_OF_KERNEL: [(Pair, [bool; 2]); 15] = [
@@ -34,7 +32,8 @@ pub const HEAD: &str = "precision,category,pair,problems,GPU median,GPU worst";
 pub fn measure<T: Measured>(gpu: &Gpu, problems: &[Problem<T>]) -> Result<Vec<Found>, GpuError> {
     let mut found = Vec::new();
     for (kernel, (pair, flat)) in PAIR_OF_KERNEL.into_iter().enumerate() {
-        let numbers: Vec<_> = problems.iter().map(|problem| pair_problem(&problem.input, flat)).collect();
+        let exact = |problem: &Problem<T>| problem_of(&problem.input.map(Into::into), flat);
+        let numbers: Vec<_> = problems.iter().map(exact).collect();
         let mut answers = Vec::new();
         GpuPairs::new(gpu, pair)?.solve(&numbers, &mut answers)?;
         for (problem, answer) in problems.iter().zip(&answers) {
@@ -46,19 +45,6 @@ pub fn measure<T: Measured>(gpu: &Gpu, problems: &[Problem<T>]) -> Result<Vec<Fo
         }
     }
     Ok(found)
-}
-
-fn pair_problem<T: Measured>(input: &Input<T>, flat: [bool; 2]) -> PairProblem {
-    let wide = |v: Vec3<T>| Vec3::from(vector(v).to_array());
-    PairProblem {
-        triangle: input.triangle.map(wide),
-        plane_normal: wide(input.plane_normal),
-        start: wide(input.start),
-        end: wide(input.end),
-        disc_normal: wide(input.disc_normal),
-        radius: input.radius.into(),
-        flat,
-    }
 }
 
 /// One line for each category and pair.
