@@ -255,25 +255,44 @@ fn a_batch_is_its_robots_one_by_one() {
 fn scaling_by_a_power_of_two_scales_the_answers_bit_for_bit() {
     let mut random = Random::new(17);
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
-    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
     let mut plain = Vec::new();
-    for (k, (_, mut engine)) in engines(&mesh).into_iter().enumerate() {
-        engine.per_link(&robot, &Pose::IDENTITY, &mut plain).unwrap();
-        for power in [-300, -40, 40, 300] {
-            let factor = 2.0_f64.powi(power);
-            let vertices = mesh.vertices().iter().map(|&vertex| vertex * factor).collect();
-            let scaled_mesh = TriMesh::new(vertices, mesh.indices().to_vec()).unwrap();
-            let mut points = vec![robot.links()[0].start() * factor];
-            points.extend(robot.links().iter().map(|link| link.end() * factor));
-            let radii: Vec<_> = robot.links().iter().map(|link| link.radius() * factor).collect();
-            let scaled = Chain::from_centreline(&points, &radii).unwrap();
-            let mut answers = Vec::new();
-            engines(&scaled_mesh).remove(k).1.per_link(&scaled, &Pose::IDENTITY, &mut answers).unwrap();
-            for (answer, plain) in answers.iter().zip(&plain) {
-                assert_eq!(answer.distance, plain.distance * factor);
+    for robot in [random_robot(&mut random, 1.0, Vector::ZERO, 0), bent_towards(&mesh)] {
+        for (k, (_, mut engine)) in engines(&mesh).into_iter().enumerate() {
+            engine.per_link(&robot, &Pose::IDENTITY, &mut plain).unwrap();
+            for power in [-900, -300, -40, 40, 300] {
+                let factor = 2.0_f64.powi(power);
+                let vertices = mesh.vertices().iter().map(|&vertex| vertex * factor).collect();
+                let scaled_mesh = TriMesh::new(vertices, mesh.indices().to_vec()).unwrap();
+                let mut points = vec![robot.links()[0].start() * factor];
+                points.extend(robot.links().iter().map(|link| link.end() * factor));
+                let radii: Vec<_> = robot.links().iter().map(|link| link.radius() * factor).collect();
+                let scaled = Chain::from_centreline(&points, &radii).unwrap();
+                let mut answers = Vec::new();
+                let (name, mut engine) = engines(&scaled_mesh).remove(k);
+                engine.per_link(&scaled, &Pose::IDENTITY, &mut answers).unwrap();
+                for (answer, plain) in answers.iter().zip(&plain) {
+                    assert_eq!(answer.distance, plain.distance * factor, "{name} 2^{power}");
+                }
+                let least = plain.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min) * factor;
+                assert!(least > 0.0, "{least}");
+                let minimum = engine.minimum(&scaled, &Pose::IDENTITY).unwrap().distance;
+                assert_eq!(minimum, least, "{name} 2^{power}");
+                for (margin, clears) in [(least, false), (least.next_down(), true)] {
+                    let found = engine.clears(&scaled, &Pose::IDENTITY, margin).unwrap();
+                    assert_eq!(found, clears, "{name} 2^{power} {margin}");
+                }
             }
         }
     }
+}
+
+/// A robot whose middle is nearest to the mesh and whose ends are far away.
+fn bent_towards(mesh: &TriMesh) -> Chain {
+    let bounds = mesh.local_aabb();
+    let size = bounds.extents().max_element();
+    let near = Vector::new(bounds.center().x, bounds.maxs.y + 0.1 * size, bounds.center().z);
+    let aside = |x| near + Vector::new(x, 5.0, 0.0) * size;
+    Chain::capsules(&[aside(-5.0), near, aside(5.0)], &[0.01 * size; 2]).unwrap()
 }
 
 #[test]

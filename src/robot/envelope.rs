@@ -4,6 +4,7 @@
 //! halves, and knows how many entries to pass over to leave it.
 
 use super::ModifiedCylinder;
+use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
 /// An entry of the list.
@@ -54,16 +55,22 @@ impl Envelope {
     /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the balls around
     /// the link's ends.
     fn around(start: Vector, end: Vector, links: &[ModifiedCylinder]) -> Self {
-        let mut radius: Real = 0.0;
-        let mut reach: Real = 0.0;
-        for link in links {
-            for point in [link.start(), link.end()] {
-                radius = radius.max(distance_to_segment(point, start, end) + link.radius());
-                reach = reach.max(point.abs().max_element());
-            }
+        let balls =
+            || links.iter().flat_map(|link| [link.start(), link.end()].map(|point| (point, link.radius())));
+        let reach = balls()
+            .fold(0.0, |reach: Real, (point, radius)| reach.max(point.abs().max_element()).max(radius));
+        // Near one, because the squares of tiny lengths vanish.
+        let scale = reach.power_of_two_to_unity();
+        let (from, to) = (start * scale, end * scale);
+        let radius = balls().fold(0.0, |largest: Real, (point, radius)| {
+            largest.max(distance_to_segment(point * scale, from, to) + radius * scale)
+        });
+        // What the roundings may have taken away.
+        Self {
+            start,
+            end,
+            radius: ((radius + 16.0 * Real::EPSILON * (reach * scale + radius)) / scale).next_up(),
         }
-        // What the roundings of distance and sum may have taken away.
-        Self { start, end, radius: radius + 16.0 * Real::EPSILON * (reach + radius) }
     }
 }
 
