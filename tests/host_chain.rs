@@ -133,6 +133,11 @@ fn bounds_hold_the_links_and_boxes_touch_them() {
     for _ in 0..200 {
         let (chain, pose) = (chain(&mut random), random.pose(2.0));
         let ball = chain.compute_local_bounding_sphere();
+        for k in [-900, 300] {
+            let unit = Real::powi(2.0, k);
+            let scaled = chain.scale_dyn(Vector::splat(unit), 4).unwrap().compute_local_bounding_sphere();
+            assert!((scaled.radius / unit - ball.radius).abs() < 32.0 * U, "2^{k}: {scaled:?} {ball:?}");
+        }
         for (aabb, pose) in [(chain.compute_local_aabb(), Pose::IDENTITY), (chain.compute_aabb(&pose), pose)]
         {
             let moved: Vec<_> = chain.links().iter().map(|link| link.transformed(&pose)).collect();

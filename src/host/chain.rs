@@ -11,6 +11,7 @@
 //! [`joint`](super::joint)).
 
 use super::joint::Joints;
+use crate::robot::length;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d_f64::mass_properties::MassProperties;
@@ -35,7 +36,7 @@ impl Shape for Chain {
         let center = self.local_aabb().center();
         let reach = |link: &ModifiedCylinder| {
             let ball = link.compute_local_bounding_sphere();
-            (ball.center - center).length() + ball.radius
+            length(ball.center - center) + ball.radius
         };
         BoundingSphere::new(center, self.links().iter().map(reach).fold(0.0, Real::max))
     }

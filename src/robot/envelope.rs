@@ -4,7 +4,7 @@
 //! halves, and knows how many entries to pass over to leave it.
 
 use super::ModifiedCylinder;
-use crate::distance::Scalar;
+use super::scale::to_unit;
 use parry3d_f64::math::{Real, Vector};
 
 /// An entry of the list.
@@ -60,7 +60,7 @@ impl Envelope {
         let reach = balls()
             .fold(0.0, |reach: Real, (point, radius)| reach.max(point.abs().max_element()).max(radius));
         // Near one, because the squares of tiny lengths vanish.
-        let scale = reach.power_of_two_to_unity();
+        let scale = to_unit(reach);
         let (from, to) = (start * scale, end * scale);
         let radius = balls().fold(0.0, |largest: Real, (point, radius)| {
             largest.max(distance_to_segment(point * scale, from, to) + radius * scale)

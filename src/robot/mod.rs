@@ -20,4 +20,5 @@ pub(crate) use envelope::{Envelope, Run, distance_to_segment};
 pub use error::RobotError;
 pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
+pub(crate) use scale::length;
 pub use simplify::simplify;

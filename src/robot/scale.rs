@@ -12,7 +12,7 @@ pub(super) fn to_unit(size: Real) -> Real {
 }
 
 /// The length of `v`.
-pub(super) fn length(v: Vector) -> Real {
+pub(crate) fn length(v: Vector) -> Real {
     let scale = to_unit(v.abs().max_element());
     (v * scale).length() / scale
 }
