@@ -1,16 +1,17 @@
 //! Every engine gives the same answers, on pleasant and on nasty meshes.
 
+mod cases;
+#[path = "../common/mod.rs"]
 mod common;
+mod route;
+mod scenes;
 
-use common::{Case, Random, distance_cases, read_lines};
-use parry_continuum::distance::{Closest, Convex, DiscSolver, Vec3};
+use common::Random;
+use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::*;
-use parry_continuum::roots::*;
-use parry_continuum::{Cap, Chain};
-use serde::Deserialize;
-use std::sync::atomic::{AtomicBool, Ordering};
+use scenes::{bent_towards, extent, mesh_of, nasty_mesh, random_robot};
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -29,11 +30,6 @@ fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
         }
     }
     engines
-}
-
-fn extent(mesh: &TriMesh, robot: &Chain) -> f64 {
-    let (mesh, robot) = (mesh.local_aabb(), robot.local_aabb());
-    (mesh.maxs.max(robot.maxs) - mesh.mins.min(robot.mins)).max_element()
 }
 
 /// All engines, all methods: the same distances, and witnesses that realise them.
@@ -78,78 +74,6 @@ fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f64) -
         }
     }
     reference
-}
-
-#[derive(Deserialize)]
-struct ChainCase {
-    id: String,
-    points: Vec<[f64; 3]>,
-    segment_radius: Vec<f64>,
-    tris: Vec<[[f64; 3]; 3]>,
-    d_seg: Vec<String>,
-}
-
-fn mesh_of(triangles: &[[[f64; 3]; 3]]) -> TriMesh {
-    let vertices = triangles.iter().flatten().map(|&vertex| Vector::from(vertex)).collect();
-    let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    TriMesh::new(vertices, indices).unwrap()
-}
-
-#[test]
-fn chain_cases() {
-    let cases: Vec<ChainCase> = read_lines(include_str!("data/chain_open.jsonl"));
-    assert_eq!(cases.len(), 40);
-    for case in cases {
-        let points: Vec<_> = case.points.iter().map(|&point| Vector::from(point)).collect();
-        let robot = Chain::from_centreline(&points, &case.segment_radius).unwrap();
-        let mesh = mesh_of(&case.tris);
-        let found = check_agreement(&mesh, &robot, &Pose::IDENTITY, 0.0);
-        let unit = UNIT * extent(&mesh, &robot);
-        for (link, (found, expected)) in found.iter().zip(&case.d_seg).enumerate() {
-            let error = (found - expected.parse::<f64>().unwrap()).abs() / unit;
-            assert!(error <= 16.0, "{} link {link}: {error} units", case.id);
-        }
-    }
-}
-
-/// A bumpy sphere with slivers, points, folded and duplicate triangles strewn in.
-fn nasty_mesh(random: &mut Random, size: f64, offset: Vector) -> TriMesh {
-    let mut triangles = Vec::new();
-    for _ in 0..400 {
-        let centre = random.direction() * size * random.between(0.5, 1.5);
-        let mut corner = || centre + random.direction() * size * 0.2;
-        let (a, b, c) = (corner(), corner(), corner());
-        let kind = random.below(8);
-        triangles.push(match kind {
-            0 => [a, a, a],
-            1 => [a, b, b],
-            2 => [a, a.lerp(b, 0.3), b],
-            3 => [a, a.lerp(b, 0.3) + (c - a) * 1e-9, b],
-            4 => [a, b, a + (c - a) * 1e-12],
-            _ => [a, b, c],
-        });
-        if kind == 5 {
-            triangles.push([b, c, a]);
-        }
-    }
-    mesh_of(&triangles.iter().map(|t| t.map(|v| (v + offset).to_array())).collect::<Vec<_>>())
-}
-
-fn random_robot(random: &mut Random, size: f64, offset: Vector, model: u32) -> Chain {
-    let mut points = vec![offset + random.direction() * size * 0.2];
-    let mut heading = random.direction();
-    let mut radii = Vec::new();
-    for segment in 0..12 {
-        heading = (heading + random.direction() * 0.4).normalize();
-        points.push(points[segment] + heading * size * random.between(0.01, 0.1));
-        radii.push(size * [0.05, 0.03, 0.01][segment / 4]);
-    }
-    match model {
-        0 => Chain::from_centreline(&points, &radii),
-        1 => Chain::capsules(&points, &radii),
-        _ => Chain::cylinders(&points, &radii),
-    }
-    .unwrap()
 }
 
 #[test]
@@ -286,15 +210,6 @@ fn scaling_by_a_power_of_two_scales_the_answers_bit_for_bit() {
     }
 }
 
-/// A robot whose middle is nearest to the mesh and whose ends are far away.
-fn bent_towards(mesh: &TriMesh) -> Chain {
-    let bounds = mesh.local_aabb();
-    let size = bounds.extents().max_element();
-    let near = Vector::new(bounds.center().x, bounds.maxs.y + 0.1 * size, bounds.center().z);
-    let aside = |x| near + Vector::new(x, 5.0, 0.0) * size;
-    Chain::capsules(&[aside(-5.0), near, aside(5.0)], &[0.01 * size; 2]).unwrap()
-}
-
 #[test]
 fn bad_input_is_an_error() {
     let mut random = Random::new(19);
@@ -330,94 +245,5 @@ fn bad_input_is_an_error() {
                 assert!(message.contains("vertex 7"), "{message}");
             }
         }
-    }
-}
-
-/// The flat caps of single cases as chains of one link: the search must find what the kernel finds.
-#[test]
-fn one_link_chains_of_the_distance_cases() {
-    let flat_and_apart = |case: &&Case| case.kind == "triangle_cylinder" && case.distance() > 0.0;
-    let cases = distance_cases();
-    let cases: Vec<_> = cases.iter().filter(flat_and_apart).collect();
-    assert!(cases.len() > 100);
-    for case in cases {
-        let (start, end) = (Vector::from(case.p0), Vector::from(case.p1));
-        if start == end {
-            continue;
-        }
-        let robot = Chain::cylinders(&[start, end], &[case.r]).unwrap();
-        assert_eq!(robot.links()[0].caps(), [Cap::Flat; 2]);
-        for (name, mut engine) in engines(&mesh_of(&[case.tri])) {
-            let found = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
-            let error = (found.distance - case.distance()).abs() / (UNIT * case.scale);
-            assert!(error <= 16.0, "{} {} {name}: {error}", case.id, case.cat);
-        }
-    }
-}
-
-/// A route that finds discs by a quartic, or none while it is blind. (Two routes would be two engines to compile, each
-/// for every instruction set.)
-struct Quartic;
-
-static IS_BLIND: AtomicBool = AtomicBool::new(false);
-
-impl<T: Real> DiscSolver<T> for Quartic {
-    fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
-        if IS_BLIND.load(Ordering::Relaxed) {
-            Closest { distance: radius.one() / radius.zero(), point1: ends[0], point2: ends[0] }
-        } else {
-            RecentredQuartic::<Companion>::segment_disc(ends, normal, radius)
-        }
-    }
-}
-
-#[test]
-fn the_exhaustive_engine_takes_any_route_to_the_discs() {
-    fn answers<T: Precision, S: DiscSolver<T> + DiscSolver<f64>>(
-        mesh: &TriMesh,
-        robot: &Chain,
-        culling: bool,
-    ) -> Vec<f64> {
-        let mut engine = Exhaustive::<T, S>::with_solver(mesh).unwrap();
-        engine.set_culling(culling);
-        let mut out = Vec::new();
-        engine.per_link(robot, &Pose::IDENTITY, &mut out).unwrap();
-        assert_eq!(engine.minimum(robot, &Pose::IDENTITY).unwrap().distance, minimum(&out));
-        out.iter().map(|answer| answer.distance).collect()
-    }
-    fn minimum(answers: &[LinkProximity]) -> f64 {
-        answers.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min)
-    }
-    // Cylinders above a few hundred triangles, so that caps come nearest to edges.
-    let mut random = Random::new(5);
-    let mut point = |size: f64| random.point() * size;
-    let vertices: Vec<_> = (0..900).map(|_| point(10.0)).collect();
-    let indices = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let mesh = TriMesh::new(vertices, indices).unwrap();
-    let line: Vec<_> = (0..40).map(|_| point(30.0)).collect();
-    let robot = Chain::cylinders(&line, &[0.4; 39]).unwrap();
-    let capsules = Chain::capsules(&line, &[0.4; 39]).unwrap();
-
-    let expected = answers::<f64, Convex>(&mesh, &robot, true);
-    let unit = UNIT * extent(&mesh, &robot);
-    for culling in [false, true] {
-        let by_quartic = |is_blind: bool, robot: &Chain| {
-            IS_BLIND.store(is_blind, Ordering::Relaxed);
-            [answers::<f64, Quartic>(&mesh, robot, culling), answers::<f32, Quartic>(&mesh, robot, culling)]
-        };
-        let single = answers::<f32, Convex>(&mesh, &robot, culling);
-        for found in by_quartic(false, &robot).into_iter().chain([single]) {
-            for (found, expected) in found.iter().zip(&expected) {
-                assert!((found - expected).abs() <= 16.0 * unit, "{found} for {expected}");
-            }
-        }
-        // The route is what the answers come from, where a cap decides and nowhere else.
-        for blind in by_quartic(true, &robot) {
-            let farther =
-                blind.iter().zip(&expected).filter(|(blind, right)| **blind > **right + 1e-6).count();
-            assert!(farther > 0 && blind.iter().zip(&expected).all(|(b, e)| *b >= e - 16.0 * unit));
-        }
-        let right = answers::<f64, Convex>(&mesh, &capsules, culling);
-        assert_eq!(by_quartic(true, &capsules), [right.clone(), right]);
     }
 }

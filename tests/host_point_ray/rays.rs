@@ -1,163 +1,12 @@
-//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and
-//! against parry, and unchanged by the unit of length.
+//! Ray queries.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{CAPS, Draw, U, extent, largest, scaled, surface_point, violation};
+use crate::common::Random;
+use crate::host_common::{Draw, U, extent, largest, surface_point};
+use crate::ray_near;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
-use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape, SupportMap};
+use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape};
 use parry_continuum::{Cap, ModifiedCylinder};
-
-/// A point around, inside or on a link, at times on its axis line or very far away.
-fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
-    let surface = surface_point(random, link);
-    let t = random.between(-0.5, 1.5);
-    let on_axis = link.start() * (1.0 - t) + link.end() * t;
-    match random.index(6) {
-        0 => on_axis,
-        1 => surface + random.direction() * random.log_between(1e-9, 1e-3),
-        2 => surface + random.direction() * random.log_between(1e2, 1e6),
-        3 => surface,
-        4 => on_axis * 0.5 + surface * 0.5,
-        _ => surface + random.vector(2.0),
-    }
-}
-
-/// How far `link` reaches along `direction`, by the support map that `tests/host_shape.rs` checks.
-fn reach(link: &ModifiedCylinder, direction: Vector, from: Vector) -> Real {
-    (link.local_support_point(direction) - from).dot(direction)
-}
-
-#[test]
-fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() {
-    let mut random = Random::new(11);
-    let (mut outside, mut certified, mut inside, mut inner_pieces) = (0, 0, 0, [0; 3]);
-    let count = 20_000;
-    for _ in 0..count {
-        let link = random.link();
-        let p = point_near(&mut random, &link);
-        let (size, coordinates) = (extent(&link, p), largest(&link, p));
-        let distance = link.distance_to_local_point(p, false);
-        let (projection, feature) = link.project_local_point_and_get_feature(p);
-        let context = || format!("{link:?} from {p}: {projection:?} {feature:?} at {distance}");
-        assert_eq!(projection.is_inside, distance <= 0.0, "{}", context());
-
-        // The witness lies on the link and realises the distance.
-        let apart = (projection.point - p).length();
-        assert!((apart - distance.abs()).abs() <= 8.0 * U * (coordinates + size), "{}", context());
-        assert!(violation(&link, projection.point).abs() <= 8.0 * U * (coordinates + size), "{}", context());
-
-        if distance > 0.0 {
-            outside += 1;
-            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the
-            // normal is. On a rim the normal is the difference of the witnesses, which is only as good as
-            // they are apart.
-            let (normal, tolerance) = match feature {
-                FeatureId::Face(_) => (link.feature_normal_at_point(0, feature, p), 16.0),
-                _ if apart < 1e-9 * coordinates => (None, 0.0),
-                _ => (Some((p - projection.point) / apart), 16.0 * (1.0 + size / distance)),
-            };
-            if let Some(normal) = normal {
-                certified += 1;
-                let lower = -reach(&link, normal, p);
-                let error = (lower - distance).abs() / (U * (coordinates + size));
-                assert!(error <= tolerance, "off by {error}: {}", context());
-            }
-        } else {
-            inside += 1;
-            if let FeatureId::Face(piece) = feature {
-                inner_pieces[piece as usize] += 1;
-            }
-            // No direction leads out sooner.
-            for _ in 0..20 {
-                let direction = random.direction();
-                assert!(
-                    reach(&link, direction, p) >= -distance - 8.0 * U * (coordinates + size),
-                    "{}",
-                    context()
-                );
-            }
-            let axis = (link.end() - link.start()).normalize_or_zero();
-            for direction in [axis, -axis] {
-                let leaves = direction == Vector::ZERO
-                    || reach(&link, direction, p) >= -distance - 8.0 * U * coordinates;
-                assert!(leaves, "{}", context());
-            }
-        }
-    }
-    assert!(certified > outside * 9 / 10, "{certified} of {outside} certified");
-    assert!(outside > count / 3 && inside > count / 4, "{outside} outside, {inside} inside");
-    assert!(inner_pieces.iter().all(|&visits| visits > inside / 20), "{inner_pieces:?} of {inside}");
-}
-
-#[test]
-fn solid_points_stay_and_distances_carry_parrys_sign() {
-    let mut random = Random::new(12);
-    for _ in 0..2000 {
-        let link = random.link();
-        let p = point_near(&mut random, &link);
-        let signed = link.distance_to_local_point(p, false);
-        let solid = link.project_local_point(p, true);
-        assert_eq!(link.contains_local_point(p), solid.is_inside);
-        assert_eq!(link.distance_to_local_point(p, true), signed.max(0.0));
-        if solid.is_inside {
-            assert_eq!(solid.point, p);
-        } else {
-            assert_eq!(solid.point, link.project_local_point(p, false).point);
-        }
-    }
-}
-
-#[test]
-fn points_agree_with_parrys_capsule_and_cylinder() {
-    let mut random = Random::new(13);
-    for _ in 0..5000 {
-        let (half, radius) = (random.log_between(0.1, 2.0), random.log_between(0.1, 2.0));
-        let (start, end) = (Vector::new(0.0, -half, 0.0), Vector::new(0.0, half, 0.0));
-        let p = random.vector(3.0);
-        let capsule = ModifiedCylinder::capsule(start, end, radius).unwrap();
-        let cylinder = ModifiedCylinder::cylinder(start, end, radius).unwrap();
-        let pairs: [(&dyn Shape, &dyn Shape); 2] =
-            [(&capsule, &Capsule::new(start, end, radius)), (&cylinder, &Cylinder::new(half, radius))];
-        for (ours, theirs) in pairs {
-            for solid in [false, true] {
-                let (a, b) =
-                    (ours.distance_to_local_point(p, solid), theirs.distance_to_local_point(p, solid));
-                assert!((a - b).abs() < 1e-14, "{a} for {b} at {p}, half {half}, radius {radius}");
-            }
-            assert_eq!(ours.contains_local_point(p), theirs.contains_local_point(p));
-        }
-    }
-}
-
-/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the
-/// disc, 0.95 to the half ball.
-#[test]
-fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
-    let link = ModifiedCylinder::new(Vector::ZERO, 0.1 * Vector::Z, 1.0, [Cap::Flat, Cap::Round]).unwrap();
-    let (projection, feature) = link.project_local_point_and_get_feature(0.15 * Vector::Z);
-    assert!((projection.point - Vector::ZERO).length() < 1e-16 && projection.is_inside);
-    assert_eq!(feature, FeatureId::Face(1));
-}
-
-/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far
-/// away, its direction of any length.
-fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
-    let origin = point_near(random, link);
-    let target = surface_point(random, link);
-    let axis = link.end() - link.start();
-    let direction = match random.index(5) {
-        0 if axis != Vector::ZERO => axis * if random.chance(0.5) { 1.0 } else { -1.0 },
-        1 => axis.cross(random.direction()) + random.direction() * 1e-9,
-        2 => target - origin,
-        3 => target + random.vector(0.3) - origin,
-        _ => random.direction(),
-    };
-    Ray::new(origin, direction * random.log_between(1e-3, 1e3))
-}
 
 /// Along the ray no point before the time of impact is on the link, and the point at that time is.
 #[test]
@@ -287,7 +136,7 @@ fn bullet() -> ModifiedCylinder {
 }
 
 #[track_caller]
-fn assert_hit(
+pub fn assert_hit(
     link: &ModifiedCylinder,
     origin: [Real; 3],
     dir: [Real; 3],
@@ -377,41 +226,6 @@ fn a_direction_of_subnormal_length_is_a_direction() {
     assert!((time * 1e-310 / 0.5e-5 - 1.0).abs() < 1e-12, "{time}");
 }
 
-#[test]
-fn balls_and_wires_answer_rays_and_points() {
-    let ball = ModifiedCylinder::capsule(Vector::X, Vector::X, 0.5).unwrap();
-    assert_hit(&ball, [1.0, 3.0, 0.0], [0.0, -1.0, 0.0], true, 2.5, [0.0, 1.0, 0.0]);
-    assert_hit(&ball, [1.0, 0.0, 0.0], [0.0, 0.0, 2.0], false, 0.25, [0.0, 0.0, -1.0]);
-    assert_eq!(ball.distance_to_local_point(Vector::X, false), -0.5);
-    assert_eq!(ball.distance_to_local_point(3.0 * Vector::X, false), 1.5);
-
-    for caps in CAPS {
-        let wire = ModifiedCylinder::new(Vector::ZERO, Vector::X, 0.0, caps).unwrap();
-        assert_hit(&wire, [0.5, 2.0, 0.0], [0.0, -1.0, 0.0], true, 2.0, [0.0, 1.0, 0.0]);
-        assert_eq!(wire.distance_to_local_point(Vector::new(0.5, 3.0, 4.0), false), 5.0);
-        assert_eq!(wire.distance_to_local_point(Vector::new(4.0, 4.0, 0.0), false), 5.0);
-        assert!(wire.contains_local_point(Vector::new(0.5, 0.0, 0.0)));
-        assert!(!wire.contains_local_point(Vector::new(0.5, 1e-100, 0.0)));
-    }
-}
-
-#[test]
-fn on_the_axis_any_way_out_is_taken_but_a_whole_radius_long() {
-    let mut random = Random::new(17);
-    for _ in 0..2000 {
-        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.log_between(1e-3, 1.0));
-        let link = ModifiedCylinder::new(start, start + axis, radius, random.caps()).unwrap();
-        let p = start + axis * random.between(0.4, 0.6);
-        let depth = -link.distance_to_local_point(p, false);
-        let way = link.project_local_point(p, false).point - p;
-        let heights = [(p - start).length(), (start + axis - p).length()];
-        let flat = link.caps().into_iter().zip(heights).filter(|(cap, _)| *cap == Cap::Flat);
-        let expected = flat.map(|(_, height)| height).fold(radius, Real::min);
-        assert!((depth - expected).abs() < 1e-14, "{depth} for {expected}");
-        assert!((way.length() - depth).abs() < 1e-14, "{way} for {depth}");
-    }
-}
-
 /// From a million radii away the hit is still on the surface to the rounding of that distance.
 #[test]
 fn a_far_origin_loses_no_more_than_its_own_rounding() {
@@ -432,61 +246,4 @@ fn a_far_origin_loses_no_more_than_its_own_rounding() {
         }
     }
     assert!(hits > 2500, "{hits}");
-}
-
-#[test]
-fn a_change_of_unit_changes_no_bit() {
-    let mut random = Random::new(19);
-    for _ in 0..2000 {
-        let link = random.link();
-        let ray = ray_near(&mut random, &link);
-        let distance = link.distance_to_local_point(ray.origin, false);
-        let projection = link.project_local_point(ray.origin, false);
-        let hit = link.cast_local_ray_and_get_normal(&ray, Real::MAX, false);
-        for k in [-300, -41, 7, 300] {
-            let unit = Real::powi(2.0, k);
-            let (link, ray) = (scaled(&link, unit), Ray::new(ray.origin * unit, ray.dir * unit));
-            assert_eq!(link.distance_to_local_point(ray.origin, false), distance * unit);
-            assert_eq!(link.project_local_point(ray.origin, false).point, projection.point * unit);
-            let scaled_hit = link.cast_local_ray_and_get_normal(&ray, Real::MAX, false);
-            assert_eq!(
-                scaled_hit.map(|h| (h.time_of_impact, h.normal)),
-                hit.map(|h| (h.time_of_impact, h.normal))
-            );
-        }
-    }
-}
-
-#[test]
-fn nothing_finite_gives_a_nan_and_nothing_panics() {
-    let sizes = [0.0, 5e-324, 1e-300, 1.0, 1e300, Real::MAX, Real::INFINITY, Real::NAN];
-    let mut random = Random::new(20);
-    let mut links = vec![];
-    for caps in CAPS {
-        for (reach, radius) in
-            [(1e150, 1e150), (1e150, 1e-300), (1e30, 1e150), (1e-300, 0.0), (5e-324, 5e-324)]
-        {
-            links.extend(ModifiedCylinder::new(-reach * Vector::X, reach * Vector::ONE, radius, caps));
-        }
-    }
-    assert_eq!(links.len(), 20);
-    for _ in 0..20_000 {
-        let mut any = || Vector::from([0; 3].map(|_| sizes[random.index(8)] * [1.0, -1.0][random.index(2)]));
-        let (origin, dir) = (any(), any());
-        let link = &links[random.index(20)];
-        let (point, distance) =
-            (link.project_local_point(origin, false).point, link.distance_to_local_point(origin, false));
-        let hit = link.cast_local_ray_and_get_normal(&Ray::new(origin, dir), Real::MAX, random.chance(0.5));
-        if origin.is_finite() {
-            assert!(!distance.is_nan() && point.is_finite(), "{link:?} {origin}: {distance} {point}");
-            assert!(
-                hit.is_none_or(|h| h.time_of_impact >= 0.0 && h.normal.is_finite()),
-                "{link:?} {origin} {dir} {hit:?}"
-            );
-        } else {
-            // Never a number that could be taken for a clearance.
-            assert!(!distance.is_finite() && hit.is_none(), "{link:?} {origin}: {distance} {hit:?}");
-        }
-        assert!(dir.is_finite() || hit.is_none(), "{link:?} {origin} {dir} {hit:?}");
-    }
 }
