@@ -93,7 +93,8 @@ impl<L: Pack> PackedLink<L> {
         let v = self.offset_from_axis(patch.centre);
         let squared = v.norm_squared();
         let normal_part = v.dot(patch.normal);
-        let across = (squared - normal_part * normal_part).max(zero).sqrt();
+        // Not the root of |v|^2 - v_n^2, which loses angles up to the root of the rounding.
+        let across = v.along(patch.normal, -normal_part).norm();
         let disc = normal_part.abs().mul_add(patch.thickness, across * patch.radius);
         let reach = disc.min(magnitudes(v).dot(patch.half));
         let relative = patch.centre - self.start;

@@ -67,7 +67,10 @@ impl Patch {
         );
         for patch in patches() {
             let cosine = around.normal.dot(patch.normal).abs().min(1.0);
-            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+            // Not the root of 1 - cosine^2, which loses angles up to the root of the rounding. Without a normal a patch
+            // reaches as far along any.
+            let has_normals = around.normal.norm_squared() > 0.5 && patch.normal.norm_squared() > 0.5;
+            let sine = if has_normals { around.normal.cross(patch.normal).norm() } else { 1.0 };
             // How far the smaller disc reaches along and across the larger one's normal.
             let along = cosine * patch.thickness + sine * patch.radius;
             let across = sine * patch.thickness + patch.radius;
@@ -117,4 +120,84 @@ fn fold_row<L: Pack<Element = f32>>(row: L, both: fn(f32, f32) -> f32) -> f32 {
 #[inline(always)]
 fn fold<L: Pack<Element = f32>>(rows: Vec3<L>, both: fn(f32, f32) -> f32) -> Vec3<f32> {
     Vec3::new(fold_row(rows.x, both), fold_row(rows.y, both), fold_row(rows.z, both))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tree::{Child, Node, Tree};
+    use super::*;
+    use fearless_simd::Level;
+    use parry3d_f64::math::{Rotation, Vector};
+
+    /// The corners of all triangles below a child, in the precision of the search.
+    fn corners_below(tree: &Tree, child: u32, out: &mut Vec<[f64; 3]>) {
+        match Child::unpack(child) {
+            Child::Leaf(leaf) => {
+                let rows = &tree.leaves[leaf as usize].rows;
+                let at = |corner: usize, lane: usize| {
+                    [0, 1, 2].map(|x| f64::from(rows[(3 * corner + x) * BLOCK + lane]))
+                };
+                out.extend((0..3 * BLOCK).map(|k| at(k / BLOCK, k % BLOCK)));
+            }
+            Child::Node(node) => {
+                children(&tree.nodes[node as usize]).for_each(|(child, _)| corners_below(tree, child, out))
+            }
+        }
+    }
+
+    fn children(node: &Node) -> impl Iterator<Item = (u32, Patch)> + '_ {
+        node.children.iter().copied().zip(node.patches_in_use())
+    }
+
+    /// A wall of 64 x 64 squares that bends by the angle.
+    fn wall(bend: f64, turn: Rotation) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        let point = |k: u32| {
+            let (x, y) = (f64::from(k % 65) / 64.0 - 0.5, f64::from(k / 65) / 64.0 - 0.5);
+            turn * Vector::new(x, y, bend * (x * x + 0.3 * x * y))
+        };
+        let squares = (0..64 * 65).filter(|k| k % 65 < 64);
+        let triangles = squares.flat_map(|k| [[k, k + 1, k + 66], [k, k + 66, k + 65]]);
+        ((0..65 * 65).map(point).collect(), triangles.collect())
+    }
+
+    /// Angles between normals of which the cosine rounds to one are angles all the same.
+    #[test]
+    fn every_patch_holds_its_triangles() {
+        let (mut checked, mut slight) = (0, 0);
+        for round in 0..60 {
+            let bend = 10.0_f64.powf(-f64::from(round % 12) * 0.5);
+            let turn = Rotation::from_scaled_axis(Vector::new(0.3, 1.7, -0.6) * f64::from(round));
+            let (vertices, triangles) = wall(bend, turn);
+            let tree = Tree::new(Level::new(), &vertices, &triangles);
+            for (child, patch) in tree.nodes.iter().flat_map(children) {
+                let [centre, half, normal] =
+                    [patch.centre, patch.half, patch.normal].map(|v| <[f32; 3]>::from(v).map(f64::from));
+                let mut corners = Vec::new();
+                corners_below(&tree, child, &mut corners);
+                for corner in corners {
+                    let offset = Vector::from(corner) - Vector::from(centre);
+                    let along = offset.dot(Vector::from(normal));
+                    let across = (offset - Vector::from(normal) * along).length();
+                    assert!(
+                        along.abs() <= f64::from(patch.thickness),
+                        "bend {bend}: {along} beyond {}",
+                        patch.thickness
+                    );
+                    assert!(
+                        across <= f64::from(patch.radius),
+                        "bend {bend}: {across} beyond {}",
+                        patch.radius
+                    );
+                    assert!(offset.abs().cmple(Vector::from(half)).all());
+                    checked += 1;
+                }
+                slight +=
+                    usize::from(matches!(Child::unpack(child), Child::Node(_)) && patch.thickness < 1e-3);
+            }
+        }
+        assert!(
+            checked > 100_000 && slight > 100,
+            "{checked} corners, {slight} nearly flat patches of patches"
+        );
+    }
 }
