@@ -111,9 +111,10 @@ fn stl(mut bytes: Vec<u8>) -> Result<Mesh, String> {
 }
 
 fn obj(bytes: Vec<u8>) -> Result<Mesh, String> {
-    // Only geometry: with texture coordinates and normals the reader would look up a face's numbers for them, and
-    // overflow where those are out of range.
-    let is_geometry = |line: &&[u8]| !matches!(line.trim_ascii_start(), [b'v', b't' | b'n', ..]);
+    // Only vertices and faces: with texture coordinates and normals the reader would look up a face's numbers for them,
+    // and overflow where those are out of range.
+    let is_geometry =
+        |line: &&[u8]| matches!(String::from_utf8_lossy(line).split_whitespace().next(), Some("v" | "f"));
     let bytes = bytes.split(|&byte| byte == b'\n').filter(is_geometry).collect::<Vec<_>>().join(&b'\n');
     let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
     let no_materials = |_: &Path| Ok(Default::default());
