@@ -164,7 +164,7 @@ impl GpuExhaustive {
     fn place(&mut self, robot: &Chain, pose: &Pose, margin: Option<Real>) -> Result<(), ProximityError> {
         place(robot.links(), pose, self.reach, &mut self.probes)?;
         for probe in &self.probes {
-            let bound = margin.map(|margin| probe.scaled(margin).next_up());
+            let bound = margin.map(|margin| probe.beyond(margin));
             let placed = PlacedLink::new(probe, &self.mesh.frame, bound, self.gpu.precision());
             self.links.push((*probe, placed.is_some().then_some(self.placed.len())));
             self.placed.extend(placed);
@@ -268,7 +268,7 @@ impl Proximity for GpuExhaustive {
         self.place(robot, pose, Some(margin))?;
         self.search()?;
         // The next number, because triangles strictly nearer than the bound are looked for.
-        let bound = self.links[0].0.scaled(margin).next_up();
+        let bound = self.links[0].0.beyond(margin);
         Ok((0..self.links.len()).all(|link| self.nearest(link, bound).is_none()))
     }
 

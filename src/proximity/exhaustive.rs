@@ -245,7 +245,7 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Proximity for Exhaustive<
         self.scratch.links.clear();
         self.place(robot, pose)?;
         // The next number, because the scan wants triangles strictly nearer than its bound.
-        let bound = self.scratch.links[0].0.scaled(margin).next_up();
+        let bound = self.scratch.links[0].0.beyond(margin);
         self.scan(bound, Aim::Any);
         Ok((0..self.scratch.links.len()).all(|link| self.found(link).is_none()))
     }

@@ -47,6 +47,11 @@ impl Probe {
         length * self.scale
     }
 
+    /// As [`beyond`], in the scale of this probe.
+    pub(crate) fn beyond(&self, margin: Real) -> Real {
+        beyond(margin, self.scale)
+    }
+
     /// The closest points of the link and a triangle, in scaled units and from the link's start, if they are
     /// closer than `bound`. The cheaper bounds spare the flat caps.
     pub(crate) fn nearer_than(&self, bound: Real, triangle: [Vector; 3]) -> Option<Closest<f64>> {
@@ -186,6 +191,13 @@ pub(crate) fn scale_for(
         }
     }
     Ok(reach.max(mesh_reach).power_of_two_to_unity())
+}
+
+/// What everything that is reported as at most `margin` away is nearer than, in scaled units.
+pub(crate) fn beyond(margin: Real, scale: Real) -> Real {
+    // A report is rounded to the numbers of the mesh's frame: what is nearer than half the least of them is 0.
+    let least = Real::from_bits(1) * scale;
+    (margin * scale + 0.5 * least).next_up()
 }
 
 /// The largest magnitude of a coordinate.

@@ -3,7 +3,7 @@
 use super::LinkProximity;
 use super::descent::Descent;
 use super::placed::Placed;
-use super::probe::Probe;
+use super::probe::{Probe, beyond};
 use super::search::Found;
 use crate::robot::{Run, distance_to_segment};
 use fearless_simd::Simd;
@@ -106,8 +106,7 @@ impl Walk<'_> {
 
     /// Whether every link keeps more than `margin` away from the mesh.
     pub(super) fn clears<S: Simd>(&mut self, simd: S, margin: Real) -> bool {
-        // The next number, because the search wants triangles strictly nearer than its bound.
-        let bound = (margin * self.placed.scale()).next_up();
+        let bound = beyond(margin, self.placed.scale());
         let runs = self.placed.runs();
         let mut place = 0;
         while let Some(run) = runs.get(place) {
