@@ -267,7 +267,6 @@ impl Proximity for GpuExhaustive {
         self.clear();
         self.place(robot, pose, Some(margin))?;
         self.search()?;
-        // The next number, because triangles strictly nearer than the bound are looked for.
         let bound = self.links[0].0.beyond(margin);
         Ok((0..self.links.len()).all(|link| self.nearest(link, bound).is_none()))
     }

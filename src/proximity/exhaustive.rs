@@ -244,7 +244,6 @@ impl<T: Precision, S: DiscSolver<T> + DiscSolver<f64>> Proximity for Exhaustive<
         check_margin(margin)?;
         self.scratch.links.clear();
         self.place(robot, pose)?;
-        // The next number, because the scan wants triangles strictly nearer than its bound.
         let bound = self.scratch.links[0].0.beyond(margin);
         self.scan(bound, Aim::Any);
         Ok((0..self.scratch.links.len()).all(|link| self.found(link).is_none()))
