@@ -195,9 +195,9 @@ pub(crate) fn scale_for(
 
 /// What everything that is reported as at most `margin` away is nearer than, in scaled units.
 pub(crate) fn beyond(margin: Real, scale: Real) -> Real {
-    // A report is rounded to the numbers of the mesh's frame: what is nearer than half the least of them is 0.
-    let least = Real::from_bits(1) * scale;
-    (margin * scale + 0.5 * least).next_up()
+    // A report among the subnormal numbers of the mesh's frame is rounded once more, by half the least of them.
+    let rounding = if margin < Real::MIN_POSITIVE { 0.5 * (Real::from_bits(1) * scale) } else { 0.0 };
+    (margin * scale + rounding).next_up()
 }
 
 /// The largest magnitude of a coordinate.
