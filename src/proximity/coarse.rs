@@ -7,7 +7,7 @@
 //! triangle whose computed distance exceeds a bound by more than `error` is therefore farther than the bound;
 //! any other is measured again in double precision. So every search returns the double-precision answer.
 
-use super::probe::Probe;
+use super::probe::{Probe, SLACK};
 use crate::distance::lanes::Lane;
 use crate::distance::{Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
@@ -108,8 +108,8 @@ impl<E: Lane> CoarseLink<E> {
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
-        // Never rounded down, not even where the factor overflows: what is nearer than 0 would not be found.
-        (((limit - radius).max(0.0) + 2.0 * error) / self.factor.min(Real::MAX)).next_up()
+        // The probe's own rounding counts where the mesh is tiny beside the robot.
+        ((limit - radius).max(0.0) + 2.0 * error) / self.factor.min(Real::MAX) + SLACK
     }
 
     /// What a triangle is at least from the link, in the probe's units, if its axis distance (beyond a flat cap: its

@@ -6,8 +6,8 @@ use crate::distance::{Axial, Closest, Convex, DiscSolver, Face, Link, Scalar, Ve
 use crate::robot::{COORDINATE_LIMIT, Cap, Envelope, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// What rounding can add to a bound on a box: all scaled numbers are below 2.
-const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+/// What rounding can add to a bound: all scaled numbers are below 2.
+pub(super) const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// A link against which triangles of one mesh are measured.
 ///
