@@ -88,8 +88,11 @@ impl<E: Lane> CoarseLink<E> {
         if flat.contains(&true) && !gives_direction(E::round(length) * E::round(length)) {
             return None;
         }
-        // The mesh's own rounding, where it lies far from the origin, is that of double precision.
-        let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach);
+        let factor = frame.scale / unit;
+        // The mesh's own rounding, where it lies far from the origin, is that of double precision; and so is that of the
+        // measured distances, which counts where the mesh is tiny beside the robot. The largest rules nothing out.
+        let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach) + SLACK * factor;
+        let error = error.min(1.0e3 * FARTHEST);
         Some(Self {
             start: round(start),
             along: round(along),
@@ -99,7 +102,7 @@ impl<E: Lane> CoarseLink<E> {
             radius: E::round(radius),
             flat,
             error: E::round(error),
-            factor: frame.scale / unit,
+            factor,
         })
     }
 
