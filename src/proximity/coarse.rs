@@ -3,7 +3,8 @@
 //! The mesh is moved to its centre and multiplied by a power of two, then rounded to `E` (`f32` or `f64`). A
 //! distance computed there errs by less than `error` = 64 u reach, where u is the unit roundoff of `E` and reach
 //! bounds the coordinates of mesh and link in that frame: 16 u for each unit of extent (at most 2 reach) from
-//! the kernel, and 2 u reach for each of the roundings of vertices, axis and the bound it is compared with. A
+//! the kernel, and 2 u reach for each of the roundings of vertices, axis and the bound it is compared with. What is
+//! computed in double precision, the way into that frame and the measured distances, adds its own rounding. A
 //! triangle whose computed distance exceeds a bound by more than `error` is therefore farther than the bound;
 //! any other is measured again in double precision. So every search returns the double-precision answer.
 
@@ -59,7 +60,7 @@ pub(crate) struct CoarseLink<E> {
 }
 
 impl<E: Lane> CoarseLink<E> {
-    /// The link of a probe. None where it lies too far out for the precision.
+    /// The link of a probe. None where it lies too far out for the precision, or is too large beside the mesh.
     pub(crate) fn new(probe: &Probe, frame: &CoarseFrame) -> Option<Self> {
         let [start, end] = probe.ends();
         let unit = probe.scaled(1.0);
@@ -90,9 +91,11 @@ impl<E: Lane> CoarseLink<E> {
         }
         let factor = frame.scale / unit;
         // The mesh's own rounding, where it lies far from the origin, is that of double precision; and so is that of the
-        // measured distances, which counts where the mesh is tiny beside the robot. The largest rules nothing out.
+        // measured distances, which counts where the mesh is tiny beside the robot. The largest would rule nothing out.
         let error = 64.0 * (E::UNIT_ROUNDOFF * reach + f64::UNIT_ROUNDOFF * frame.reach) + SLACK * factor;
-        let error = error.min(1.0e3 * FARTHEST);
+        if error > FARTHEST {
+            return None;
+        }
         Some(Self {
             start: round(start),
             along: round(along),
@@ -111,8 +114,7 @@ impl<E: Lane> CoarseLink<E> {
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
-        // The probe's own rounding counts where the mesh is tiny beside the robot.
-        ((limit - radius).max(0.0) + 2.0 * error) / self.factor.min(Real::MAX) + SLACK
+        ((limit - radius).max(0.0) + 2.0 * error) / self.factor
     }
 
     /// What a triangle is at least from the link, in the probe's units, if its axis distance (beyond a flat cap: its
