@@ -205,6 +205,7 @@ impl<E: Lane> Turn<'_, E> {
         let mesh = self.job.mesh;
         let packed = PackedLink::<L>::new(token, link);
         let mut limit = L::splat(token, link.axis_limit(self.bound));
+        let radius = L::splat(token, link.radius);
         self.work.pairs += (blocks.len() * BLOCK) as u64;
         for block in blocks {
             for lane in (0..BLOCK).step_by(L::LANES) {
@@ -219,8 +220,7 @@ impl<E: Lane> Turn<'_, E> {
                 let mut nearer = if CULLING {
                     packed.may_be_nearer(&face, limit).nearer
                 } else {
-                    let slack = L::splat(token, link.radius);
-                    L::bits((packed.distances::<S>(token, &face) + slack).lt(limit))
+                    L::bits((packed.distances::<S>(token, &face) + radius).lt(limit))
                 };
                 while nearer != 0 {
                     let triangle = block * BLOCK + lane + nearer.trailing_zeros() as usize;
