@@ -26,8 +26,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Every triangle is visited, but most need no more than a look at the sphere around them; see
 /// [`Exhaustive::set_culling`].
 ///
-/// `S` is the route to the discs of flat caps, one of [`distance`](crate::distance) or
-/// [`roots`](crate::roots). All but the default are there to be compared with it: they compute one disc at a time, and the
+/// `S` is the route to the discs of flat caps, such as [`Convex`]. All but the default are there to be compared with it: they compute one disc at a time, and the
 /// answers are no more exact than the route.
 pub struct Exhaustive<T: Precision, S = Convex> {
     level: Level,
