@@ -1,13 +1,11 @@
 //! Beside parry's own iterative answers (GJK): the same where the problem is well conditioned, and where they
 //! differ ours carries a proof.
 
-mod common;
-
-use common::Random;
-use common::certificate::{certify, directions, shapes};
-use common::kernels::Input;
-use common::precision::extent;
-use common::problems::{Family, Problem};
+use continuum_testing::Random;
+use continuum_testing::certificate::{certify, directions, shapes};
+use continuum_testing::kernels::Input;
+use continuum_testing::precision::extent;
+use continuum_testing::problems::{Family, Problem};
 use parry_continuum::distance::DoubleDouble;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::query;

@@ -1,9 +1,7 @@
 //! The reference distances, through the kernels in double and single precision and through parry's traits.
 
-mod common;
-
-use common::precision::Precision;
-use common::{Case, distance_cases};
+use continuum_testing::precision::Precision;
+use continuum_testing::{Case, distance_cases};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher};

@@ -2,13 +2,11 @@
 //! tests use: the reference cases and the seeded families. Cases are told by the geometry of the input and of the
 //! answer, both in double-double arithmetic; the library is not asked which way it went.
 
-mod common;
-
-use common::Random;
-use common::certificate::{Exact, Shape};
-use common::distance_cases;
-use common::kernels::Input;
-use common::problems::Family;
+use continuum_testing::Random;
+use continuum_testing::certificate::{Exact, Shape};
+use continuum_testing::distance_cases;
+use continuum_testing::kernels::Input;
+use continuum_testing::problems::Family;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::{Cap, Chain};
@@ -318,7 +316,7 @@ fn every_numbered_case_is_visited() {
             View::new(&input).count(|file, name| count(1, file, name));
         }
     }
-    for robot in common::read_lines::<Robot>(include_str!("data/algorithm1.jsonl")) {
+    for robot in continuum_testing::read_lines::<Robot>(include_str!("data/algorithm1.jsonl")) {
         count_caps(&robot, |file, name| count(0, file, name));
     }
     for ((file, case), [reference, seeded]) in &census {

@@ -1,13 +1,11 @@
 //! Every kernel's answers, on random problems of the kinds that break distance code, lie within bounds that prove
 //! themselves: two points that lie in the shapes, and a plane that separates them.
 
-mod common;
-
-use common::Random;
-use common::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
-use common::kernels::{Input, KERNELS};
-use common::precision::{Precision, extent, vector};
-use common::problems::Family;
+use continuum_testing::Random;
+use continuum_testing::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
+use continuum_testing::kernels::{Input, KERNELS};
+use continuum_testing::precision::{Precision, extent, vector};
+use continuum_testing::problems::Family;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 

@@ -1,10 +1,8 @@
 //! The library's certificates: bounds that hold on the reference cases, that are tight, and that catch a wrong answer.
 
-mod common;
-
-use common::precision::Precision;
-use common::problems::{Family, Problem};
-use common::{Random, distance_cases};
+use continuum_testing::precision::Precision;
+use continuum_testing::problems::{Family, Problem};
+use continuum_testing::{Random, distance_cases};
 use parry_continuum::distance::triangle_modified_cylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -75,7 +73,7 @@ fn random_pair(random: &mut Random, family: Family) -> ([Vector; 3], ModifiedCyl
     let Problem { triangle, start, end, radius, .. } = random.problem(family, -17.0);
     let flat = [random.below(2) == 0, random.below(2) == 0];
     let points = [triangle[0], triangle[1], triangle[2], start, end];
-    (triangle, link_of(start, end, radius, flat), common::precision::extent(&points, radius))
+    (triangle, link_of(start, end, radius, flat), continuum_testing::precision::extent(&points, radius))
 }
 
 #[test]

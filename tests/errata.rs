@@ -2,10 +2,8 @@
 //! answer that is right. What is printed stands in the test, so that the difference can be seen; a suspicion that
 //! turned out unfounded is here too.
 
-mod common;
-
-use common::Random;
-use common::rotation::Rotation;
+use continuum_testing::Random;
+use continuum_testing::rotation::Rotation;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 

@@ -1,9 +1,7 @@
 //! The paper's formulas for capsules and cylinders (section III.E) where they err, each beside the answer that is
 //! right; and a suspicion that turned out unfounded.
 
-mod common;
-
-use common::Random;
+use continuum_testing::Random;
 use parry_continuum::distance::*;
 
 type V = Vec3<f64>;

@@ -1,14 +1,6 @@
 //! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something (fuzz/corpus).
 
-#[path = "../fuzz/bodies/mod.rs"]
-mod bodies;
-#[path = "../examples/scene/random.rs"]
-#[allow(dead_code, reason = "other tests use more of it")]
-mod random;
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
-use random::Random;
+use continuum_testing::Random;
 use std::fs;
 use std::path::Path;
 
@@ -41,25 +33,25 @@ fn corpus(name: &str) -> impl Iterator<Item = Vec<u8>> {
 
 #[test]
 fn link_triangle() {
-    try_bytes("link_triangle", bodies::link_triangle, 3000);
+    try_bytes("link_triangle", continuum_fuzzing::link_triangle, 3000);
 }
 
 #[test]
 fn chain_mesh() {
-    try_bytes("chain_mesh", bodies::chain_mesh, 1000);
+    try_bytes("chain_mesh", continuum_fuzzing::chain_mesh, 1000);
 }
 
 #[test]
 fn constructors() {
-    try_bytes("constructors", bodies::constructors, 3000);
+    try_bytes("constructors", continuum_fuzzing::constructors, 3000);
 }
 
 #[test]
 fn mesh_file() {
-    try_bytes("mesh_file", bodies::mesh_file, 3000);
+    try_bytes("mesh_file", continuum_fuzzing::mesh_file, 3000);
 }
 
 #[test]
 fn root_finders() {
-    try_bytes("root_finders", bodies::root_finders, 2000);
+    try_bytes("root_finders", continuum_fuzzing::root_finders, 2000);
 }

@@ -1,9 +1,7 @@
 //! The engine on the GPU beyond what all engines have in common (tests/engines.rs asks it that).
 #![cfg(feature = "gpu")]
 
-mod common;
-
-use common::{Random, gpu};
+use continuum_testing::{Random, gpu};
 use parry_continuum::Chain;
 use parry_continuum::gpu::{Discs, GpuExhaustive};
 use parry_continuum::parry::math::{Pose, Vector};

@@ -2,12 +2,10 @@
 //! problems of the kinds that break distance code.
 #![cfg(feature = "gpu")]
 
-mod common;
-
-use common::gpu::problem_of;
-use common::kernels::Input;
-use common::problems::{Family, Problem};
-use common::{Case, Random, distance_cases, gpu};
+use continuum_testing::gpu::problem_of;
+use continuum_testing::kernels::Input;
+use continuum_testing::problems::{Family, Problem};
+use continuum_testing::{Case, Random, distance_cases, gpu};
 use parry_continuum::distance::*;
 use parry_continuum::gpu::{Discs, Gpu, GpuPairs, Pair, PairProblem, Precision};
 use parry_continuum::parry::math::Vector;
@@ -39,7 +37,7 @@ fn twin(pair: Pair, problem: &PairProblem) -> Closest<f64> {
 
 /// The size of what the pair takes, for the unit of its error.
 fn extent(pair: Pair, problem: &PairProblem) -> f64 {
-    let vector = common::precision::vector::<f64>;
+    let vector = continuum_testing::precision::vector::<f64>;
     let [a, b, c] = problem.triangle.map(vector);
     let (start, end) = (vector(problem.start), vector(problem.end));
     let (points, length): (&[Vector], f64) = match pair {
@@ -52,7 +50,7 @@ fn extent(pair: Pair, problem: &PairProblem) -> f64 {
         Pair::PointModifiedCylinder => (&[start, end, a], problem.radius),
         Pair::TriangleCapsule | Pair::TriangleModifiedCylinder => (&[start, end, a, b, c], problem.radius),
     };
-    common::precision::extent(points, length)
+    continuum_testing::precision::extent(points, length)
 }
 
 /// The worst error against the twin, in units of the extent, and how many problems touch.
@@ -67,7 +65,7 @@ fn worst(gpu: &Gpu, pair: Pair, problems: &[PairProblem]) -> (f64, usize) {
         let error = (answer.distance - expected.distance).abs();
         // Written so that NaN fails; all points of a problem may be one.
         assert!(error <= 16.0 * unit, "{pair:?}: {error}, {answer:?} for {expected:?}, {problem:?}");
-        let vector = common::precision::vector::<f64>;
+        let vector = continuum_testing::precision::vector::<f64>;
         let gap = (vector(answer.point1) - vector(answer.point2)).length();
         let magnitude = vector(answer.point1).length() + vector(answer.point2).length();
         let slack = 16.0 * unit + 8.0 * f64::EPSILON * magnitude;

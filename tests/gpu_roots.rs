@@ -2,12 +2,10 @@
 //! III give the distances of the library.
 #![cfg(feature = "gpu")]
 
-mod common;
-
-use common::{Random, gpu};
+use continuum_testing::{Random, gpu};
 use parry_continuum::distance::{Vec3, point_triangle, segment_segment};
 use parry_continuum::gpu::{Finder, Form, GpuForms, GpuRoots, Precision};
-use parry_continuum::roots::Complex;
+use polynomial_roots::Complex;
 
 const DEGREES: [usize; 5] = [2, 3, 4, 6, 15];
 

@@ -1,22 +1,20 @@
 //! The example program `gpu_speed`, rehearsed on whatever GPU there is.
 #![cfg(feature = "gpu")]
 
-mod common;
-mod programs_common;
-
-use common::gpu;
+use continuum_testing::gpu;
+use continuum_testing::programs::*;
 use parry_continuum::gpu::Precision;
-use programs_common::*;
 
 #[test]
 fn the_speed_of_the_gpu_is_measured_and_written() {
+    let gpu_speed = &example(env!("CARGO_MANIFEST_DIR"), "gpu_speed", "gpu");
     let _ = std::fs::remove_dir_all(place("gpu_speed"));
     let arguments = ["--largest", "1000", "--problems", "20", "--enough", "0", "--out", "gpu_speed"];
     if gpu::open(Precision::F32).is_none() {
-        refuse("gpu_speed", &arguments, "adapter");
+        refuse(gpu_speed, &arguments, "adapter");
         return;
     }
-    succeed("gpu_speed", &arguments);
+    succeed(gpu_speed, &arguments);
     let page = read("gpu_speed/GPU_SPEED.md");
     assert_finite(&page);
     let precisions = if gpu::open(Precision::F64).is_some() { 2 } else { 1 };
@@ -41,7 +39,7 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     let adapter = gpu::open(Precision::F32).unwrap().adapter();
     if adapter.is_software {
         assert!(page.contains("This is a GPU in software"), "{page}");
-        refuse("gpu_speed", &arguments, "choose another --out");
+        refuse(gpu_speed, &arguments, "choose another --out");
     }
-    refuse("gpu_speed", &["--tflops", "1"], "66.9,33.5");
+    refuse(gpu_speed, &["--tflops", "1"], "66.9,33.5");
 }

@@ -1,10 +1,8 @@
 //! Every kernel is one text for scalars and for packs of them: run on two problems at once, it answers each as if
 //! the other were not there. A branch, or a select that mixes lanes, would show.
 
-mod common;
-
-use common::distance_cases;
-use common::kernels::{Input, KERNELS};
+use continuum_testing::distance_cases;
+use continuum_testing::kernels::{Input, KERNELS};
 use parry_continuum::distance::{Mask, Scalar, Vec3};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 

@@ -1,11 +1,9 @@
 //! What must not change, or must change in a known way, when a problem is rewritten. No reference is needed.
 
-mod common;
-
-use common::Random;
-use common::kernels::{Input, KERNELS};
-use common::precision::{extent, vector};
-use common::problems::{Family, Problem};
+use continuum_testing::Random;
+use continuum_testing::kernels::{Input, KERNELS};
+use continuum_testing::precision::{extent, vector};
+use continuum_testing::problems::{Family, Problem};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 

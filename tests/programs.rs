@@ -1,8 +1,21 @@
 //! The example programs as a user meets them: bad input gives one line and an error code, good input a picture.
 
-mod programs_common;
+use continuum_testing::programs::{self, colours, file, place, read, room};
+use std::path::PathBuf;
 
-use programs_common::*;
+fn example(name: &str) -> PathBuf {
+    programs::example(env!("CARGO_MANIFEST_DIR"), name, if cfg!(feature = "gpu") { "gpu" } else { "" })
+}
+
+/// The output of an example that succeeds.
+fn succeed(name: &str, arguments: &[&str]) -> String {
+    programs::succeed(example(name), arguments)
+}
+
+/// An example must refuse these arguments with one line that says this.
+fn refuse(name: &str, arguments: &[&str], expected: &str) {
+    programs::refuse(example(name), arguments, expected);
+}
 
 #[test]
 fn programs_answer_bad_input_with_one_line_and_an_error_code() {
@@ -82,7 +95,7 @@ fn the_robot_is_pushed_recorded_and_filmed() {
     let last = &whole[steps - 1];
     assert!(last[2] > 20.0 && last[3] == 0.5 && last[4] == 5.0, "{last:?}");
     let links = rows("pushed/links.csv");
-    assert_eq!(links.len() as f64, whole.iter().map(|row| row[4]).sum());
+    assert_eq!(links.len() as f64, whole.iter().map(|row| row[4]).sum::<f64>());
     for (row, of_links) in whole.iter().zip(links.chunk_by(|a, b| a[0] == b[0])) {
         let nearest = of_links.iter().map(|link| link[2]).fold(f64::INFINITY, f64::min);
         assert!(row[0] == of_links[0][0] && row[5] == nearest && nearest > 0.0, "{row:?}");

@@ -4,10 +4,8 @@
 //! The expected distance is the textbook's height above a plane, taken in double-double arithmetic from the very
 //! numbers that the kernel gets; so is the proof that the sample projects inside the face.
 
-mod common;
-
-use common::Random;
-use common::precision::{Precision, extent, vector};
+use continuum_testing::Random;
+use continuum_testing::precision::{Precision, extent, vector};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 

@@ -1,10 +1,8 @@
 //! Links far longer than thick beside triangles stretched along them: a bound of the search that is tilted by rounding
 //! would rule out the nearest.
 
-mod common;
-
-use common::Random;
-use common::precision::{Precision, extent};
+use continuum_testing::Random;
+use continuum_testing::precision::{Precision, extent};
 use parry_continuum::distance::triangle_modified_cylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::QueryDispatcher;

@@ -1,9 +1,9 @@
 //! A robot of 30 links in the ventricle: Figure 9 and Table IV, latency, batches, moving anatomy.
 
-use crate::scene::subdivide::{in_four, shuffled};
-use crate::scene::{ctr, ventricle};
 use crate::timed::{Job, Timed, medians, milliseconds};
 use crate::{Opened, text};
+use continuum_scene::subdivide::{in_four, shuffled};
+use continuum_scene::{ctr, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::gpu::{Discs, GpuExhaustive};
 use parry_continuum::parry::math::{Pose, Vector};

@@ -8,17 +8,14 @@
 //! The program needs nothing but itself: built here, it can be carried to the machine with the GPU. Meshes grow to ten
 //! million triangles, which takes minutes and 16 GB; `--largest 100000` is a rehearsal.
 
-#[path = "../scene/mod.rs"]
-mod scene;
-
 mod chains;
 mod forms;
 mod roots;
 mod timed;
 
 use clap::Parser;
+use continuum_scene::command;
 use parry_continuum::gpu::{Gpu, GpuError, Precision};
-use scene::command;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;

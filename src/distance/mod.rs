@@ -38,9 +38,7 @@ mod vec3;
 pub(crate) use face::Face;
 #[cfg(feature = "gpu")]
 pub(crate) use frame::Frame;
-pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
-pub(crate) use segment_disc::Line;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 #[doc(hidden)] // for the comparison of instruction sets
@@ -52,7 +50,7 @@ pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
 pub use point_triangle::point_triangle;
 pub use scalar::{Mask, Scalar};
-pub use segment_disc::{segment_disc, segment_disc_by};
+pub use segment_disc::{LineDisc, segment_disc, segment_disc_by};
 pub use segment_segment::segment_segment;
 pub use segment_triangle::segment_triangle;
 pub use triangle_disc::{triangle_disc, triangle_disc_by};

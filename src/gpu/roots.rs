@@ -4,20 +4,20 @@ use super::batch::Batch;
 use super::opened::Gpu;
 use super::{GpuError, shaders};
 use crate::proximity::DeviceFailure;
-use crate::roots::Complex;
 use parry3d_f64::math::Real;
+use polynomial_roots::Complex;
 use std::time::Duration;
 
-/// A method of [`roots`](crate::roots).
+/// A method of `polynomial-roots`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Finder {
-    /// [`ClosedForm`](crate::roots::ClosedForm), up to degree 4.
+    /// [`ClosedForm`](polynomial_roots::ClosedForm), up to degree 4.
     ClosedForm,
-    /// [`Bairstow`](crate::roots::Bairstow).
+    /// [`Bairstow`](polynomial_roots::Bairstow).
     Bairstow,
-    /// [`Companion`](crate::roots::Companion).
+    /// [`Companion`](polynomial_roots::Companion).
     Companion,
-    /// [`JenkinsTraub`](crate::roots::JenkinsTraub).
+    /// [`JenkinsTraub`](polynomial_roots::JenkinsTraub).
     JenkinsTraub,
 }
 
@@ -28,7 +28,7 @@ impl Finder {
 
 /// The roots of many polynomials at once, a GPU thread each, for coefficients of comparable size.
 ///
-/// The approximations come as they are: unlike [`roots`](crate::roots) on the CPU, nothing is cut into pieces,
+/// The approximations come as they are: unlike `polynomial-roots` on the CPU, nothing is cut into pieces,
 /// tested or polished afterwards. In double precision, where shading languages have no cosine or cube root, the
 /// closed form starts these in single precision and refines them.
 pub struct GpuRoots {

@@ -1,8 +1,8 @@
 //! The reference cases, asked of every engine.
 
-use crate::common::{Case, distance_cases, read_lines};
 use crate::scenes::{extent, mesh_of};
 use crate::{UNIT, check_agreement, engines};
+use continuum_testing::{Case, distance_cases, read_lines};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::{Cap, Chain};
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! What lies far out, be it a vertex, a triangle or the robot, changes neither answers nor their price.
 
 use super::{UNIT, engines};
-use crate::common::Random;
+use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::QueryDispatcher;
 use parry_continuum::parry::shape::{Ball, TriMesh};

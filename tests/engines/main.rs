@@ -1,13 +1,11 @@
 //! Every engine gives the same answers, on pleasant and on nasty meshes.
 
 mod cases;
-#[path = "../common/mod.rs"]
-mod common;
 mod far_parts;
 mod patches;
 mod scenes;
 
-use common::Random;
+use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -25,8 +23,8 @@ fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
         ("search", Box::new(BvhSearch::new(mesh).unwrap())),
     ];
     #[cfg(feature = "gpu")]
-    for (name, precision) in common::gpu::PRECISIONS {
-        if let Some(gpu) = common::gpu::open(precision) {
+    for (name, precision) in continuum_testing::gpu::PRECISIONS {
+        if let Some(gpu) = continuum_testing::gpu::open(precision) {
             engines.push((name, Box::new(parry_continuum::gpu::GpuExhaustive::on(gpu, mesh).unwrap())));
         }
     }

@@ -1,7 +1,7 @@
 //! Patches of wall that a link sees from nearly straight above.
 
-use crate::common::Random;
 use crate::engines;
+use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,6 +1,6 @@
 //! Meshes and robots for the engines.
 
-use crate::common::Random;
+use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::parry::shape::TriMesh;
