@@ -52,10 +52,6 @@ impl Mesh {
         self.vertices.copy_from_slice(vertices);
     }
 
-    pub(crate) fn indices(&self) -> &[[u32; 3]] {
-        &self.indices
-    }
-
     /// How many triangles there are.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()
