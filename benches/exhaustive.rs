@@ -8,7 +8,7 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{Exhaustive, Precision, Proximity};
+use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -74,7 +74,7 @@ fn exhaustive(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn engine<T: Precision>(mesh: &TriMesh, culling: bool) -> Exhaustive<T> {
+fn engine<T: SearchPrecision>(mesh: &TriMesh, culling: bool) -> Exhaustive<T> {
     let mut engine = Exhaustive::new(mesh).expect("a valid mesh");
     engine.set_culling(culling);
     engine

@@ -39,7 +39,6 @@ pub(crate) use face::Face;
 #[cfg(feature = "gpu")]
 pub(crate) use frame::Frame;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
-pub(crate) use triangle_disc::pack_from_centre as pack_disc;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 #[doc(hidden)] // for the comparison of instruction sets

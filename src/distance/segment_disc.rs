@@ -34,7 +34,6 @@
 //! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
 //! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
 
-use super::lanes::{Lane, Pack};
 use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
@@ -68,21 +67,6 @@ impl<T: Scalar> DiscSolver<T> for Convex {
         let line = LineDisc::new(ends, normal);
         let (s, pierces) = line.nearest_to_disc(radius);
         line.closest_at(s, pierces, normal, radius)
-    }
-
-    #[allow(private_bounds, private_interfaces)] // as in the trait
-    #[inline(always)]
-    fn segment_discs<L: Pack<Element = T>>(
-        _: L::Token,
-        ends: [Vec3<L>; 2],
-        normal: Vec3<L>,
-        radius: L,
-        _: L::Mask,
-    ) -> Closest<L>
-    where
-        T: Lane,
-    {
-        <Self as DiscSolver<L>>::segment_disc(ends, normal, radius)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Every engine gives the same answers, on pleasant and on nasty meshes.
 
 mod cases;
+mod far_parts;
 mod patches;
 mod scenes;
 
@@ -159,18 +160,76 @@ fn a_batch_is_its_robots_one_by_one() {
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
     let robots: Vec<_> =
         (0..5).map(|i| (random_robot(&mut random, 1.0, Vector::ZERO, i % 3), random.pose(0.3))).collect();
+    let robots: Vec<_> = robots.iter().map(|(robot, pose)| (robot, *pose)).collect();
     for (name, mut engine) in engines(&mesh) {
-        let mut batch = vec![Vec::new(); 9];
-        engine.per_link_batch(&robots, &mut batch).unwrap();
-        assert_eq!(batch.len(), robots.len());
-        for ((robot, pose), answers) in robots.iter().zip(&batch) {
+        let (mut per_link, mut minimum, mut clears) = (vec![Vec::new(); 9], Vec::new(), vec![true; 9]);
+        engine.per_link_batch(&robots, &mut per_link).unwrap();
+        engine.minimum_batch(&robots, &mut minimum).unwrap();
+        // A margin that some keep and others do not.
+        let mut distances: Vec<_> = minimum.iter().map(|answer| answer.distance).collect();
+        distances.sort_by(f64::total_cmp);
+        let margin = distances[2];
+        engine.clears_batch(&robots, margin, &mut clears).unwrap();
+        assert_eq!([per_link.len(), minimum.len(), clears.len()], [robots.len(); 3]);
+        assert!(clears.contains(&true) && clears.contains(&false), "{name}: {clears:?}");
+        for (number, (robot, pose)) in robots.iter().enumerate() {
             let mut alone = Vec::new();
             engine.per_link(robot, pose, &mut alone).unwrap();
             let distances =
                 |answers: &[LinkProximity]| answers.iter().map(|a| a.distance).collect::<Vec<_>>();
-            assert_eq!(distances(&alone), distances(answers), "{name}");
+            assert_eq!(distances(&alone), distances(&per_link[number]), "{name}");
+            let least = engine.minimum(robot, pose).unwrap().distance;
+            assert_eq!(least, minimum[number].distance, "{name}");
+            assert_eq!(clears[number], least > margin, "{name}");
         }
     }
+}
+
+#[test]
+fn the_first_bad_robot_of_a_batch_is_reported_and_nothing_answered() {
+    let mut random = Random::new(14);
+    let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
+    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
+    let bad = [Pose::from_translation(Vector::X * 1e200), Pose::from_translation(Vector::splat(f64::NAN))];
+    let mut robots = vec![(&robot, Pose::IDENTITY); 40];
+    (robots[13].1, robots[29].1) = (bad[0], bad[1]);
+    let expected = Err(ProximityError::OutOfRange { link: 0, limit: 1e150 });
+    for (name, mut engine) in engines(&mesh) {
+        let (mut per_link, mut minimum, mut clears) = (Vec::new(), Vec::new(), Vec::new());
+        engine.per_link_batch(&robots[..9], &mut per_link).unwrap();
+        engine.minimum_batch(&robots[..9], &mut minimum).unwrap();
+        engine.clears_batch(&robots[..9], 0.0, &mut clears).unwrap();
+        assert_eq!(engine.per_link_batch(&robots, &mut per_link), expected, "{name}");
+        assert_eq!(engine.minimum_batch(&robots, &mut minimum), expected.map(|()| ()), "{name}");
+        assert_eq!(engine.clears_batch(&robots, 0.0, &mut clears), expected, "{name}");
+        assert_eq!([per_link.len(), minimum.len(), clears.len()], [0; 3], "{name}");
+        clears.push(true);
+        let margin = engine.clears_batch(&robots[..9], -1.0, &mut clears);
+        assert_eq!((margin, clears.len()), (Err(ProximityError::BadMargin { margin: -1.0 }), 0), "{name}");
+    }
+}
+
+/// A clone has the mesh as it was, whatever becomes of the other's.
+#[test]
+fn clones_share_the_mesh_until_one_moves_it() {
+    let mut random = Random::new(15);
+    let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
+    let moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
+    let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
+    fn check(mut engine: impl Proximity + Clone + std::fmt::Debug + Send, robot: &Chain, moved: &[Vector]) {
+        let mut other = engine.clone();
+        let before = engine.minimum(robot, &Pose::IDENTITY).unwrap().distance;
+        engine.set_vertices(moved).unwrap();
+        let after = engine.minimum(robot, &Pose::IDENTITY).unwrap().distance;
+        assert_ne!(before, after);
+        assert_eq!(other.minimum(robot, &Pose::IDENTITY).unwrap().distance, before);
+        other.set_vertices(moved).unwrap();
+        assert_eq!(other.minimum(robot, &Pose::IDENTITY).unwrap().distance, after);
+        assert!(format!("{engine:?}").contains("triangles"));
+    }
+    check(BvhSearch::new(&mesh).unwrap(), &robot, &moved);
+    check(Exhaustive::<f32>::new(&mesh).unwrap(), &robot, &moved);
+    check(Exhaustive::<f64>::new(&mesh).unwrap(), &robot, &moved);
 }
 
 #[test]

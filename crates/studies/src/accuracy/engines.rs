@@ -6,7 +6,9 @@ use continuum_testing::precision::vector;
 use fearless_simd::Level;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Certificate, Exhaustive, LinkProximity, Precision, Proximity};
+use parry_continuum::proximity::{
+    BvhSearch, Certificate, Exhaustive, LinkProximity, Proximity, SearchPrecision,
+};
 use parry_continuum::{Chain, ModifiedCylinder};
 use std::collections::BTreeMap;
 
@@ -86,7 +88,7 @@ pub fn measure(problems: &[Problem<f64>], levels: &[(&'static str, Level)]) -> E
     errors
 }
 
-fn exhaustive<T: Precision>(scene: &Scene, level: Level, name: &str, errors: &mut Errors) {
+fn exhaustive<T: SearchPrecision>(scene: &Scene, level: Level, name: &str, errors: &mut Errors) {
     for culling in [true, false] {
         if let Ok(mut engine) = Exhaustive::<T>::new(&scene.mesh) {
             engine.set_level(level);

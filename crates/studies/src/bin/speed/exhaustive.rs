@@ -12,7 +12,7 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Exhaustive, Precision, Proximity};
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::LazyLock;
@@ -99,7 +99,7 @@ fn instruction_sets(
 }
 
 /// Seconds a pair.
-fn without_culling<T: Precision>(
+fn without_culling<T: SearchPrecision>(
     mesh: &TriMesh,
     robot: &Chain,
     level: Level,
@@ -115,7 +115,7 @@ fn without_culling<T: Precision>(
     Ok(time / (mesh.num_triangles() * robot.links().len()) as f64)
 }
 
-fn rows<T: Precision + Send>(
+fn rows<T: SearchPrecision + Send>(
     order: &str,
     precision: &str,
     mesh: &TriMesh,
@@ -179,7 +179,7 @@ fn rows<T: Precision + Send>(
             goals.note("exhaustive Z* against K, with culling", Goal::AtMost(1.05), ours[1] / ours[0]);
             goals.note("exhaustive Z against K, with culling", Goal::AtMost(1.2), ours[2] / ours[0]);
             for work in [k.work(), z_star.work(), z.work()] {
-                let share = |count: u64| 100.0 * count as f64 / work.pairs as f64;
+                let share = |count: u64| 100.0 * count as f64 / work.visited as f64;
                 let _ =
                     write!(shares, " {:.2} %, {:.4} % |", share(work.axis_distances), share(work.measured));
             }

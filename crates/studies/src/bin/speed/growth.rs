@@ -7,7 +7,7 @@ use continuum_scene::timing::medians;
 use continuum_scene::ventricle;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Exhaustive, Precision, Proximity};
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
 use plotters::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
@@ -61,7 +61,7 @@ pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
     Ok(table(&all)? + &threads)
 }
 
-fn exhaustive<T: Precision>(mesh: &TriMesh) -> Result<Exhaustive<T>, String> {
+fn exhaustive<T: SearchPrecision>(mesh: &TriMesh) -> Result<Exhaustive<T>, String> {
     Exhaustive::new(mesh).map_err(|error| error.to_string())
 }
 

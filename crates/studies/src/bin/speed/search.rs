@@ -7,7 +7,7 @@ use continuum_scene::timing::{self, medians};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query::{self, ClosestPoints};
 use parry_continuum::parry::shape::{Cylinder, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Proximity, Visits};
+use parry_continuum::proximity::{BvhSearch, Proximity, Work};
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::hint::black_box;
@@ -151,19 +151,19 @@ fn row(
     let frames = cavity::frames(60);
     let mut work = format!("| {scene} | {triangles} |");
     for forget in [true, false] {
-        let before = warm.visits();
+        let before = warm.work();
         for pose in &frames {
             if forget {
                 warm.forget();
             }
             warm.per_link(&robot, pose, &mut warm_out).map_err(text)?;
         }
-        let each = |count: fn(&Visits) -> u64| {
+        let each = |count: fn(&Work) -> u64| {
             let links = frames.len() * robot.links().len();
-            (count(&warm.visits()) - count(&before)) as f64 / links as f64
+            (count(&warm.work()) - count(&before)) as f64 / links as f64
         };
-        let (nodes, leaves) = (each(|visits| visits.nodes), each(|visits| visits.leaves));
-        let _ = write!(work, " {nodes:.1} | {leaves:.1} | {:.1} |", each(|visits| visits.measured));
+        let (nodes, leaves) = (each(|work| work.nodes), each(|work| work.visited) / 16.0);
+        let _ = write!(work, " {nodes:.1} | {leaves:.1} | {:.1} |", each(|work| work.measured));
     }
     work.push('\n');
     Ok((row, work))

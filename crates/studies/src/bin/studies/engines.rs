@@ -10,7 +10,7 @@ use parry_continuum::Chain;
 use parry_continuum::distance::{Convex, DiscSolver};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{Exhaustive, Precision, Proximity};
+use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use polynomial_roots::{ClosedForm, Companion};
 use std::fmt::Write;
 use std::time::Instant;
@@ -46,7 +46,7 @@ type Measured = [(f64, f64); COUNT];
 /// The distances of a robot's links.
 type Engine<'a> = Box<dyn FnMut(&Chain, &Pose) -> Result<Vec<f64>, String> + 'a>;
 
-fn measure<T: Precision + Number>(mesh: &TriMesh) -> Result<Measured, String> {
+fn measure<T: SearchPrecision + Number>(mesh: &TriMesh) -> Result<Measured, String> {
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let (points, radii) = (&line.points, &line.radii);
     let text = |error: parry_continuum::RobotError| error.to_string();
@@ -92,7 +92,7 @@ fn measure<T: Precision + Number>(mesh: &TriMesh) -> Result<Measured, String> {
 }
 
 /// The library's engine, without culling.
-fn packed<T: Precision>(mesh: &TriMesh) -> Result<Engine<'static>, String> {
+fn packed<T: SearchPrecision>(mesh: &TriMesh) -> Result<Engine<'static>, String> {
     let mut engine = Exhaustive::<T>::new(mesh).map_err(|error| error.to_string())?;
     engine.set_culling(false);
     let mut answer = Vec::new();

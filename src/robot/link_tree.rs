@@ -1,57 +1,56 @@
-//! Capsules around runs of a chain's links, so that a query can pass over many links at once.
+//! A binary tree over a chain's links with a capsule around each node, so that a query can leave out many links at once.
 //!
-//! The runs are those of halving the chain again and again. In the order of the list a run stands before its
-//! halves, and knows how many entries to pass over to leave it.
+//! The tree halves the chain again and again and stands in depth-first order: behind a node come its children, and each
+//! node knows how many entries to skip to leave its subtree.
 
 use super::ModifiedCylinder;
-use super::scale::to_unit;
+use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// An entry of the list.
+/// A node of the tree.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Run {
+pub(crate) enum LinkNode {
     /// Two or more links.
-    Links {
+    Inner {
         /// Holds them all.
-        envelope: Envelope,
-        /// How many entries follow that belong to this run.
-        inner: usize,
+        bound: BoundingCapsule,
+        /// How many nodes follow that belong to the subtree.
+        below: usize,
     },
     /// One link, by its number.
-    Link(usize),
+    Leaf(usize),
 }
 
-/// A capsule.
+/// A capsule around links.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Envelope {
+pub(crate) struct BoundingCapsule {
     pub start: Vector,
     pub end: Vector,
     pub radius: Real,
 }
 
-/// The list of runs of a chain.
-pub(super) fn runs(links: &[ModifiedCylinder]) -> Vec<Run> {
-    let mut runs = Vec::with_capacity(2 * links.len());
-    append(links, 0, &mut runs);
-    runs
+/// Writes the tree over `links` to `nodes`, whose memory is used again.
+pub(super) fn build(links: &[ModifiedCylinder], nodes: &mut Vec<LinkNode>) {
+    nodes.clear();
+    append(links, 0, nodes);
 }
 
-fn append(links: &[ModifiedCylinder], first: usize, runs: &mut Vec<Run>) {
+fn append(links: &[ModifiedCylinder], first: usize, nodes: &mut Vec<LinkNode>) {
     let [start, .., end] = links else {
-        runs.extend((!links.is_empty()).then_some(Run::Link(first)));
+        nodes.extend((!links.is_empty()).then_some(LinkNode::Leaf(first)));
         return;
     };
-    let place = runs.len();
-    let envelope = Envelope::around(start.start(), end.end(), links);
-    runs.push(Run::Links { envelope, inner: 0 });
+    let place = nodes.len();
+    let bound = BoundingCapsule::around(start.start(), end.end(), links);
+    nodes.push(LinkNode::Inner { bound, below: 0 });
     let (low, high) = links.split_at(links.len() / 2);
-    append(low, first, runs);
-    append(high, first + low.len(), runs);
-    let inner = runs.len() - place - 1;
-    runs[place] = Run::Links { envelope, inner };
+    append(low, first, nodes);
+    append(high, first + low.len(), nodes);
+    let below = nodes.len() - place - 1;
+    nodes[place] = LinkNode::Inner { bound, below };
 }
 
-impl Envelope {
+impl BoundingCapsule {
     /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the balls around
     /// the link's ends.
     fn around(start: Vector, end: Vector, links: &[ModifiedCylinder]) -> Self {
@@ -60,7 +59,7 @@ impl Envelope {
         let reach = balls()
             .fold(0.0, |reach: Real, (point, radius)| reach.max(point.abs().max_element()).max(radius));
         // Near one, because the squares of tiny lengths vanish.
-        let scale = to_unit(reach);
+        let scale = reach.power_of_two_to_unity();
         let (from, to) = (start * scale, end * scale);
         let radius = balls().fold(0.0, |largest: Real, (point, radius)| {
             largest.max(distance_to_segment(point * scale, from, to) + radius * scale)

@@ -1,13 +1,11 @@
-//! A mesh in blocks of 16 triangles, each coordinate in a row of its own, for exhaustive search.
+//! A mesh in blocks of 16 triangles, each with the sphere around it.
 
-use super::coarse::CoarseFrame;
-use super::packed::BLOCK;
-use super::scan::Scan;
-use super::share::each;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
-use fearless_simd::Level;
-use parry3d_f64::math::Vector;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::parallel::each;
+use crate::proximity::search_frame::SearchFrame;
+use crate::proximity::triangle_block::{BLOCK, load, load_vertices, place_triangle, store};
 
 /// Rows of a block that bound its triangles: a sphere's centre and radius.
 const SPHERE_ROWS: usize = 4;
@@ -17,38 +15,38 @@ const FACE_ROWS: usize = 15;
 const SHARE: usize = 64;
 
 /// The triangles of a mesh, near one, with what is computed once for each.
-pub(super) struct SoaMesh<E> {
-    pub frame: CoarseFrame,
+#[derive(Clone)]
+pub(super) struct Blocks<E> {
+    pub frame: SearchFrame,
     spheres: Vec<E>,
     faces: Vec<E>,
 }
 
-impl<E: Scan> SoaMesh<E> {
-    pub(super) fn new(level: Level, vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
-        let mut mesh = Self { frame: CoarseFrame::new(vertices), spheres: Vec::new(), faces: Vec::new() };
-        mesh.update(level, vertices, indices);
-        mesh
+impl<E: Lane> Blocks<E> {
+    /// The mesh's triangles; `prepare` is [`prepare`] for an instruction set.
+    pub(super) fn new(mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) -> Self {
+        let mut blocks = Self { frame: SearchFrame::new(mesh), spheres: Vec::new(), faces: Vec::new() };
+        blocks.refill(mesh, prepare);
+        blocks
     }
 
-    /// Takes over moved vertices.
-    pub(super) fn update(&mut self, level: Level, vertices: &[Vector], indices: &[[u32; 3]]) {
-        self.frame = CoarseFrame::new(vertices);
-        let blocks = indices.len().div_ceil(BLOCK);
+    /// Takes over where the triangles are.
+    pub(super) fn refill(&mut self, mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) {
+        self.frame = SearchFrame::new(mesh);
+        let blocks = mesh.len().div_ceil(BLOCK);
         self.spheres.resize(blocks * BLOCK * SPHERE_ROWS, E::default());
         self.faces.resize(blocks * BLOCK * FACE_ROWS, E::default());
         let frame = &self.frame;
         let faces = self.faces.chunks_mut(SHARE * BLOCK * FACE_ROWS);
         let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE * BLOCK * SPHERE_ROWS)).collect();
         each(&mut shares, |share, (faces, spheres)| {
-            fill(frame, vertices, indices, share * SHARE, faces);
-            E::prepare(level, faces, spheres);
+            fill(frame, mesh, share * SHARE, faces);
+            prepare(faces, spheres);
         });
     }
-}
 
-impl<E: Lane> SoaMesh<E> {
     /// How many blocks there are.
-    pub(super) fn blocks(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.spheres.len() / (BLOCK * SPHERE_ROWS)
     }
 
@@ -74,34 +72,12 @@ impl<E: Lane> SoaMesh<E> {
 }
 
 /// Writes the corners of the triangles into blocks, the first of which has the number `first`.
-fn fill<E: Lane>(
-    frame: &CoarseFrame,
-    vertices: &[Vector],
-    indices: &[[u32; 3]],
-    first: usize,
-    faces: &mut [E],
-) {
+fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]) {
     for (block, rows) in faces.chunks_exact_mut(BLOCK * FACE_ROWS).enumerate() {
         for lane in 0..BLOCK {
             // The last block is filled up with its last triangle.
-            let triangle = indices[((first + block) * BLOCK + lane).min(indices.len() - 1)];
-            place_triangle(frame, vertices, triangle, rows, lane);
-        }
-    }
-}
-
-/// Writes the corners of a triangle into its lane of a block.
-pub(super) fn place_triangle<E: Lane>(
-    frame: &CoarseFrame,
-    vertices: &[Vector],
-    triangle: [u32; 3],
-    rows: &mut [E],
-    lane: usize,
-) {
-    for (corner, index) in triangle.into_iter().enumerate() {
-        let point: [E; 3] = frame.point(vertices[index as usize]).into();
-        for (axis, value) in point.into_iter().enumerate() {
-            rows[(3 * corner + axis) * BLOCK + lane] = value;
+            let triangle = ((first + block) * BLOCK + lane).min(mesh.len() - 1);
+            place_triangle(frame, mesh, triangle as u32, rows, lane);
         }
     }
 }
@@ -132,25 +108,4 @@ pub(super) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], sphere
             (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF)).store(&mut sphere[3 * BLOCK + lane..]);
         }
     }
-}
-
-/// Three coordinates from the rows `row` to `row + 2`.
-#[inline(always)]
-pub(super) fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
-    let rows = &rows[row * BLOCK + lane..];
-    Vec3::new(L::load(token, rows), L::load(token, &rows[BLOCK..]), L::load(token, &rows[2 * BLOCK..]))
-}
-
-/// Three vertices from the first nine rows.
-#[inline(always)]
-pub(super) fn load_vertices<L: Pack>(token: L::Token, rows: &[L::Element], lane: usize) -> [Vec3<L>; 3] {
-    [load(token, rows, 0, lane), load(token, rows, 3, lane), load(token, rows, 6, lane)]
-}
-
-#[inline(always)]
-fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usize, lane: usize) {
-    let rows = &mut rows[row * BLOCK + lane..];
-    vector.x.store(rows);
-    vector.y.store(&mut rows[BLOCK..]);
-    vector.z.store(&mut rows[2 * BLOCK..]);
 }

@@ -1,7 +1,6 @@
 //! The closest triangle of a mesh, by the mesh's own bounding volume hierarchy.
 
-use super::probe::Probe;
-use crate::distance::Closest;
+use crate::proximity::{Best, Nearest, PlacedLink};
 use parry3d_f64::math::Real;
 use parry3d_f64::partitioning::BvhLeafCost;
 use parry3d_f64::shape::TriMesh;
@@ -9,59 +8,50 @@ use std::cell::Cell;
 
 /// A triangle that the search visited has a vertex that is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TriangleNotFinite;
-
-/// A triangle and its closest points, in the probe's units.
-#[derive(Clone, Copy)]
-pub(crate) struct Found {
-    pub triangle: u32,
-    pub closest: Closest<f64>,
-}
+pub(super) struct TriangleNotFinite;
 
 /// How far a search goes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Until {
+pub(super) enum Until {
     /// The nearest triangle is known.
     Nearest,
     /// Some triangle is nearer than the bound.
     FirstWithinBound,
 }
 
-/// The triangle nearest to the probe among those strictly nearer than `bound`, which is in the probe's units.
+/// The triangle nearest to the link among those strictly nearer than `bound`.
 ///
 /// Nearer boxes go first, and boxes no nearer than the best triangle so far are left out.
-pub(crate) fn search(
+pub(super) fn search(
     mesh: &TriMesh,
-    probe: &Probe,
+    link: &PlacedLink,
     bound: Real,
     until: Until,
-) -> Result<Option<Found>, TriangleNotFinite> {
+) -> Result<Option<Nearest>, TriangleNotFinite> {
     let all_finite = Cell::new(true);
     let found = mesh.bvh().find_best(
         bound,
-        |node, _| probe.distance_to_box(node.mins(), node.maxs()),
-        |triangle, best| {
+        |node, _| link.distance_to_box(node.mins(), node.maxs()),
+        |triangle, bound| {
             let vertices = mesh.triangle(triangle).vertices().to_owned();
             if !vertices.iter().all(|vertex| vertex.is_finite()) {
                 all_finite.set(false);
                 return None;
             }
-            let closest = probe.nearer_than(best, vertices)?;
+            let mut best = Best::within(bound);
+            best.measure(link, triangle, vertices);
+            let nearest = best.nearest()?;
             // A cost of 0 makes the hierarchy leave out everything else.
-            let cost = if until == Until::FirstWithinBound { 0.0 } else { closest.distance };
-            Some(Candidate { cost, closest })
+            let cost = if until == Until::FirstWithinBound { 0.0 } else { nearest.distance };
+            Some(Candidate { cost, nearest })
         },
     );
-    if all_finite.get() {
-        Ok(found.map(|(triangle, candidate)| Found { triangle, closest: candidate.closest }))
-    } else {
-        Err(TriangleNotFinite)
-    }
+    if all_finite.get() { Ok(found.map(|(_, candidate)| candidate.nearest)) } else { Err(TriangleNotFinite) }
 }
 
 struct Candidate {
     cost: Real,
-    closest: Closest<f64>,
+    nearest: Nearest,
 }
 
 impl BvhLeafCost for Candidate {
