@@ -1,21 +1,16 @@
 //! Every engine gives the same answers, on pleasant and on nasty meshes.
 
-mod cases;
-mod far_parts;
-mod patches;
-mod scenes;
-
+use crate::scenes::{bent_towards, extent, mesh_of, nasty_mesh, random_robot};
 use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::*;
-use scenes::{bent_towards, extent, mesh_of, nasty_mesh, random_robot};
 
-const UNIT: f64 = f64::EPSILON / 2.0;
+pub const UNIT: f64 = f64::EPSILON / 2.0;
 
 /// Every engine for a mesh, with a name.
-fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
+pub fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
     #[allow(unused_mut)]
     let mut engines: Vec<(&'static str, Box<dyn Proximity>)> = vec![
         ("exhaustive f64", Box::new(Exhaustive::<f64>::new(mesh).unwrap())),
@@ -32,7 +27,7 @@ fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
 }
 
 /// All engines, all methods: the same distances, and witnesses that realise them.
-fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f64) -> Vec<f64> {
+pub fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f64) -> Vec<f64> {
     let unit = UNIT * (extent(mesh, robot) + magnitude);
     let mut reference: Vec<f64> = Vec::new();
     for (name, mut engine) in engines(mesh) {

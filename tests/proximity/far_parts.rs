@@ -1,6 +1,6 @@
 //! What lies far out, be it a vertex, a triangle or the robot, changes neither answers nor their price.
 
-use super::{UNIT, engines};
+use crate::agreement::{UNIT, engines};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::QueryDispatcher;

@@ -1,6 +1,6 @@
 //! Patches of wall that a link sees from nearly straight above.
 
-use crate::engines;
+use crate::agreement::engines;
 use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};

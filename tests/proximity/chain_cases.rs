@@ -1,7 +1,7 @@
 //! The reference cases, asked of every engine.
 
+use crate::agreement::{UNIT, check_agreement, engines};
 use crate::scenes::{extent, mesh_of};
-use crate::{UNIT, check_agreement, engines};
 use continuum_testing::{Case, distance_cases, read_lines};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::{Cap, Chain};

@@ -35,7 +35,7 @@ impl Case {
 }
 
 fn cases() -> Vec<Case> {
-    include_str!("data/algorithm1.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    include_str!("../data/algorithm1.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
 fn scaled(radii: &[Real], scale: Real) -> Vec<Real> {

@@ -316,7 +316,7 @@ fn every_numbered_case_is_visited() {
             View::new(&input).count(|file, name| count(1, file, name));
         }
     }
-    for robot in continuum_testing::read_lines::<Robot>(include_str!("data/algorithm1.jsonl")) {
+    for robot in continuum_testing::read_lines::<Robot>(include_str!("../data/algorithm1.jsonl")) {
         count_caps(&robot, |file, name| count(0, file, name));
     }
     for ((file, case), [reference, seeded]) in &census {

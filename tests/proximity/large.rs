@@ -1,5 +1,5 @@
 //! Meshes of ten million triangles and chains of ten thousand links, answered and proven. Slow and large, so run it by
-//! name: `cargo test --release --test large -- --ignored --nocapture --test-threads 1` (some 8 GB).
+//! name: `cargo test --release --test proximity -- large --ignored --nocapture --test-threads 1` (some 8 GB).
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
