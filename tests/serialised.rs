@@ -1,16 +1,20 @@
 //! Links, chains and answers come back as they were, and what no constructor would make does not come back.
 
 mod common;
-mod host_common;
+#[path = "host/draw.rs"]
+mod draw;
+#[path = "host/scene.rs"]
+#[allow(dead_code, reason = "one robot of it is used here")]
+mod scene;
 
 use common::Random;
-use host_common::Draw;
-use host_common::scene::tube;
+use draw::Draw;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
+use scene::tube;
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
 
 #[test]

@@ -1,11 +1,8 @@
 //! The elastic robot of the example `rapier_ventricle` bends as beam theory says, pulled or pressed against a wall.
 
-#[path = "../examples/rapier_ventricle/rod.rs"]
-mod rod;
-
+use crate::rod::{RestShape, Rod};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use rapier3d_f64::prelude::*;
-use rod::{RestShape, Rod};
 
 /// Bending stiffness in mN mm^2, length in mm.
 const EI: Real = 5e5;
@@ -21,7 +18,7 @@ fn straight(length: Real) -> RestShape {
 /// around them, so they add up by the trapezoidal rule: F L^3 / 3 EI times 1 + 1 / 2 n^2.
 #[test]
 fn a_pulled_tip_moves_as_far_as_that_of_a_beam() {
-    let mut world = rod::world(2.0).unwrap();
+    let mut world = crate::rod::world(2.0).unwrap();
     let mut robot = Rod::new(&mut world, Pose::IDENTITY);
     robot.set_rest_shape(&mut world, &straight(LENGTH)).unwrap();
     let force = 10.0;
@@ -43,7 +40,7 @@ fn a_pulled_tip_moves_as_far_as_that_of_a_beam() {
 
 /// The contact forces on a robot that is moved sideways by its base against the edge of a wall.
 fn pressed(edge: Real, aside: Real) -> Vec<Real> {
-    let mut world = rod::world(2.0).unwrap();
+    let mut world = crate::rod::world(2.0).unwrap();
     let wall = [(-9.0, edge), (9.0, edge), (9.0, 60.0), (-9.0, 60.0)].map(|(y, z)| Vector::new(1.0, y, z));
     let wall = ColliderBuilder::trimesh(wall.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
     world.insert(RigidBodyBuilder::fixed(), wall.friction(0.0));
@@ -72,7 +69,7 @@ fn a_wall_holds_it_with_the_force_of_a_bent_beam() {
 /// A rest shape that grows and bends is followed; without forces nothing else happens.
 #[test]
 fn it_follows_its_rest_shape() {
-    let mut world = rod::world(2.0).unwrap();
+    let mut world = crate::rod::world(2.0).unwrap();
     let mut robot = Rod::new(&mut world, Pose::IDENTITY);
     for step in 1..=200 {
         let (count, bend) = (2 + step / 25, 0.001 * step as Real);

@@ -1,9 +1,7 @@
 //! Fast links do not pass through a wall.
 
-mod rapier_common;
-
+use crate::drop::{Drop, attitudes, links, mesh, world};
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use rapier_common::{Drop, attitudes, links, mesh, world};
 use rapier3d_f64::prelude::*;
 
 /// Thrown at a floor without thickness, a hundred times its radius in a step. Returns whether it got through.

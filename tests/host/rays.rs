@@ -1,8 +1,8 @@
 //! Ray queries.
 
 use crate::common::Random;
-use crate::host_common::{Draw, U, extent, largest, surface_point};
-use crate::ray_near;
+use crate::draw::{Draw, U, extent, largest, surface_point};
+use crate::point_ray::ray_near;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
 use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape};

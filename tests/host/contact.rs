@@ -1,10 +1,7 @@
 //! Contacts: exact while apart, and otherwise the least translation that separates.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{Draw, U, extent};
+use crate::common::Random;
+use crate::draw::{Draw, U, extent};
 use parry_continuum::distance::{Vec3, segment_triangle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{Contact, PointQuery, QueryDispatcher};

@@ -1,11 +1,8 @@
 //! Contact manifolds are found through every composite in both orders, and refused where a pair is.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::Draw;
-use host_common::scene::{floor_field, floor_mesh, heap, tube};
+use crate::common::Random;
+use crate::draw::Draw;
+use crate::scene::{floor_field, floor_mesh, heap, tube};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::details::NormalConstraints;
 use parry_continuum::parry::query::*;
@@ -115,7 +112,7 @@ fn every_other_shape_answers_or_is_refused() {
     ];
     let mut answered = BTreeSet::new();
     let mut random = Random::new(73);
-    for caps in host_common::CAPS {
+    for caps in crate::draw::CAPS {
         let link = ModifiedCylinder::new(Vector::new(0.0, -0.5, 0.0), Vector::Y, 0.25, caps).unwrap();
         let chain = Chain::from_centreline(&[-Vector::Y, 0.1 * Vector::Y, Vector::Y], &[0.25; 2]).unwrap();
         for robot in [&link as &dyn Shape, &chain] {

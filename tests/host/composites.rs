@@ -1,8 +1,8 @@
 //! Queries on composites are the best of those on their parts.
 
-use crate::ROUNDING;
 use crate::common::Random;
-use crate::host_common::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
+use crate::dispatcher::ROUNDING;
+use crate::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
 use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
 use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastOptions};
 use parry_continuum::parry::shape::{Shape, SharedShape, Voxels};

@@ -1,18 +1,10 @@
 //! The dispatcher answers every query for links and chains, in both orders, through every composite, and
 //! never lets a pair that it cannot answer read as a free one.
 
-mod casts;
-#[path = "../common/mod.rs"]
-mod common;
-mod composites;
-#[path = "../host_common/mod.rs"]
-mod host_common;
-mod inner;
-
-use common::Random;
-use host_common::scene::{floor_mesh, heap, tube};
-use host_common::{Draw, U};
-use inner::ask_everything;
+use crate::common::Random;
+use crate::draw::{Draw, U};
+use crate::inner::ask_everything;
+use crate::scene::{floor_mesh, heap, tube};
 use parry_continuum::distance::{Vec3, triangle_modified_cylinder};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastOptions};
@@ -99,7 +91,7 @@ impl Scene {
 }
 
 /// Rounding of a few poses on coordinates of up to about 8.
-const ROUNDING: Real = 256.0 * U;
+pub const ROUNDING: Real = 256.0 * U;
 
 #[test]
 fn robots_and_surfaces_get_the_kernels_answers_in_both_orders() {
@@ -277,7 +269,7 @@ fn a_change_of_unit_changes_no_bit() {
         for k in [-300, -20, 300] {
             let unit = Real::powi(2.0, k);
             let scale = Vector::splat(unit);
-            let (link, triangle) = (host_common::scaled(&link, unit), triangle.scaled(scale));
+            let (link, triangle) = (crate::draw::scaled(&link, unit), triangle.scaled(scale));
             let mesh = TriMesh::new(triangle.vertices().to_vec(), vec![[0, 1, 2]]).unwrap();
             let pose = Pose::from_parts(pose.translation * unit, pose.rotation);
             assert_eq!(dispatcher.distance(&pose, &link, &triangle).unwrap().distance, expected * unit);

@@ -1,7 +1,7 @@
 //! Robots and surroundings for the dispatcher's tests, and the parts that composites fall into.
 
-use super::Draw;
 use crate::common::Random;
+use crate::draw::Draw;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{
     Ball, Compound, Cuboid, HeightField, Polyline, Segment, Shape, SharedShape, TriMesh, Triangle,

@@ -1,8 +1,6 @@
 //! What the tests of `host` share: random links, and membership in a link by a formula of its own.
 #![allow(dead_code)]
 
-pub mod scene;
-
 use crate::common::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{Cap, ModifiedCylinder};

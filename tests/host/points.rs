@@ -1,8 +1,8 @@
 //! Point queries.
 
 use crate::common::Random;
-use crate::host_common::{Draw, U, extent, largest, violation};
-use crate::{point_near, reach};
+use crate::draw::{Draw, U, extent, largest, violation};
+use crate::point_ray::{point_near, reach};
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::PointQuery;
 use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape};

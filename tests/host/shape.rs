@@ -1,11 +1,8 @@
 //! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the
 //! true shape.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{CAPS, Draw, U, surface_point, violation};
+use crate::common::Random;
+use crate::draw::{CAPS, Draw, U, surface_point, violation};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{self, PointQuery};
 use parry_continuum::parry::shape::{

@@ -1,11 +1,8 @@
 //! A triangle that goes through the inside of a link is at distance 0, not at a rounding of it, and every
 //! query says so.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::Draw;
+use crate::common::Random;
+use crate::draw::Draw;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query::{ClosestPoints, PointQuery, QueryDispatcher};
 use parry_continuum::parry::shape::{Shape, TriMesh, Triangle};
@@ -22,7 +19,7 @@ fn an_overlap_is_an_overlap_to_every_query() {
         if link.distance_to_local_point(inside, false) > -1e-9 {
             continue;
         }
-        flat_caps += usize::from(link.caps() != host_common::CAPS[1]);
+        flat_caps += usize::from(link.caps() != crate::draw::CAPS[1]);
         // The point is a convex combination of the corners.
         let (a, b) = (inside + random.vector(2.0), inside + random.vector(2.0));
         let mut weight = || random.between(0.05, 1.0);

@@ -1,16 +1,12 @@
 //! A chain as one collider: moved through the ventricle it raises its events at the steps that the exact
 //! clearance says, and it makes no contacts with itself.
 
-mod rapier_common;
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
+use crate::scene::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use parry_continuum::{Chain, rapier};
 use rapier3d_f64::prelude::*;
-use scene::{ctr, ventricle};
 use std::sync::Mutex;
 
 /// The events of a step.
@@ -103,8 +99,8 @@ fn a_chain_has_no_contacts_with_itself() {
     let points = [Vector::ZERO, Vector::X, Vector::new(1.5, 0.0, 0.8), Vector::new(0.9, 0.0, 1.5), Vector::Z];
     let robot = Chain::from_centreline(&points, &[0.3; 4]).unwrap();
     let pose = Pose::from_translation(Vector::new(0.0, 0.4, 0.0));
-    let ground = rapier_common::mesh(1.0, |_, _| 0.0);
-    let mut drop = rapier_common::Drop::new(rapier_common::world(1.0), ground, SharedShape::new(robot), pose);
+    let ground = crate::drop::mesh(1.0, |_, _| 0.0);
+    let mut drop = crate::drop::Drop::new(crate::drop::world(1.0), ground, SharedShape::new(robot), pose);
     for _ in 0..200 {
         drop.world.step();
         assert!(drop.world.contact_pairs_with(drop.collider).count() <= 1);
@@ -116,7 +112,7 @@ fn a_chain_has_no_contacts_with_itself() {
 /// One body per link, held by joints without contacts: a straight robot in free space stays as it is.
 #[test]
 fn neighbouring_links_do_not_push_each_other() {
-    let mut world = rapier_common::world(1.0);
+    let mut world = crate::drop::world(1.0);
     world.gravity = Vector::ZERO;
     let points: Vec<_> = (0..8).map(|k| Vector::X * (0.8 * k as Real)).collect();
     let robot = Chain::from_centreline(&points, &[0.3; 7]).unwrap();

@@ -1,10 +1,8 @@
 //! A robot of half a millimetre behaves the same in metres, in millimetres and in micrometres.
 
-mod rapier_common;
-
+use crate::drop::{Drop, attitudes, bump, links, mesh, scaled, world};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use rapier_common::{Drop, attitudes, bump, links, mesh, scaled, world};
 use rapier3d_f64::prelude::*;
 
 const STEPS: usize = 400;

@@ -1,11 +1,8 @@
 //! The contact points of a link and a triangle: on both surfaces, as far apart as they say, as near as the
 //! exact distance, under the same names from step to step, and with the normals that a mesh or a chain allows.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{CAPS, Draw, U, scaled};
+use crate::common::Random;
+use crate::draw::{CAPS, Draw, U, scaled};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, PointQuery, QueryDispatcher,

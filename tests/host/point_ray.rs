@@ -1,23 +1,16 @@
 //! Point and ray queries on a link are exact: certified by separating planes, checked against each other and
 //! against parry, and unchanged by the unit of length.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../host_common/mod.rs"]
-mod host_common;
-mod points;
-mod rays;
-
-use common::Random;
-use host_common::{CAPS, Draw, scaled, surface_point};
+use crate::common::Random;
+use crate::draw::{CAPS, Draw, scaled, surface_point};
+use crate::rays::assert_hit;
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
 use parry_continuum::parry::shape::SupportMap;
-use rays::assert_hit;
 
 /// A point around, inside or on a link, at times on its axis line or very far away.
-fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
+pub fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let surface = surface_point(random, link);
     let t = random.between(-0.5, 1.5);
     let on_axis = link.start() * (1.0 - t) + link.end() * t;
@@ -31,14 +24,14 @@ fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     }
 }
 
-/// How far `link` reaches along `direction`, by the support map that `tests/host_shape.rs` checks.
-fn reach(link: &ModifiedCylinder, direction: Vector, from: Vector) -> Real {
+/// How far `link` reaches along `direction`, by the support map that `tests/host/shape.rs` checks.
+pub fn reach(link: &ModifiedCylinder, direction: Vector, from: Vector) -> Real {
     (link.local_support_point(direction) - from).dot(direction)
 }
 
 /// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far
 /// away, its direction of any length.
-fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
+pub fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
     let origin = point_near(random, link);
     let target = surface_point(random, link);
     let axis = link.end() - link.start();

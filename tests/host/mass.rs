@@ -1,10 +1,7 @@
 //! A link's mass properties are those of its slices added up, and parry's where parry has the shape.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{CAPS, Draw};
+use crate::common::Random;
+use crate::draw::{CAPS, Draw};
 use parry_continuum::parry::mass_properties::MassProperties;
 use parry_continuum::parry::math::{Matrix, Pose, Real, Rotation, Vector};
 use parry_continuum::parry::shape::{Ball, Capsule, Cylinder, Shape};

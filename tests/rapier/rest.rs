@@ -1,11 +1,9 @@
 //! Links that are dropped come to rest: at the right height, asleep, without rolling off, sinking, trembling or
 //! gaining energy, and at least as well as parry's own shapes.
 
-mod rapier_common;
-
+use crate::drop::{Drop, attitudes, box_ground, bump, field, links, mesh, world};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::{Cap, ModifiedCylinder};
-use rapier_common::{Drop, attitudes, box_ground, bump, field, links, mesh, world};
 use rapier3d_f64::prelude::*;
 
 type Ground = (&'static str, fn(Real) -> ColliderBuilder);

@@ -2,8 +2,8 @@
 
 use crate::common::Random;
 use crate::composites::composites;
-use crate::host_common::Draw;
-use crate::host_common::scene::parts;
+use crate::draw::Draw;
+use crate::scene::parts;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastOptions};
 use parry_continuum::parry::shape::{HeightField, Shape};

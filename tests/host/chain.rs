@@ -1,10 +1,7 @@
 //! A chain is to parry the union of its links where that is what counts, and a compound of them elsewhere.
 
-mod common;
-mod host_common;
-
-use common::Random;
-use host_common::{Draw, U, surface_point};
+use crate::common::Random;
+use crate::draw::{Draw, U, surface_point};
 use parry_continuum::parry::mass_properties::MassProperties;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};

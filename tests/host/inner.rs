@@ -2,7 +2,7 @@
 
 use crate::common::Random;
 use crate::composites::composites;
-use crate::host_common::scene::{floor_field, floor_mesh, tube};
+use crate::scene::{floor_field, floor_mesh, tube};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,

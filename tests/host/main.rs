@@ -1,0 +1,20 @@
+//! What parry sees of links and chains: shapes, points, rays, masses, the dispatcher and contact manifolds.
+
+mod casts;
+mod chain;
+#[path = "../common/mod.rs"]
+mod common;
+mod composites;
+mod contact;
+mod dispatcher;
+mod draw;
+mod inner;
+mod link_manifold;
+mod manifolds;
+mod mass;
+mod overlap;
+mod point_ray;
+mod points;
+mod rays;
+mod scene;
+mod shape;

@@ -1,0 +1,13 @@
+//! Links and chains in rapier worlds.
+
+mod beam;
+mod chain;
+mod drop;
+mod fast;
+mod rest;
+#[path = "../../examples/rapier_ventricle/rod.rs"]
+mod rod;
+#[path = "../../examples/scene/mod.rs"]
+mod scene;
+mod setup;
+mod units;
