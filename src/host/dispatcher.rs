@@ -1,8 +1,9 @@
 //! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
 
 use super::field::{self, FieldPair};
+use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
-use super::robot_pair::{RobotPair, links_of};
+use super::robot_pair::RobotPair;
 use super::watched::Watched;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -10,7 +11,7 @@ use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
-use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+use parry3d_f64::shape::Shape;
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
@@ -52,6 +53,7 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 #[derive(Clone, Debug)]
 pub struct ContinuumDispatcher<L = DefaultQueryDispatcher>(pub L);
 
+/// For parry's own dispatcher alone, which is no `Default` itself.
 impl Default for ContinuumDispatcher {
     fn default() -> Self {
         Self(DefaultQueryDispatcher)
@@ -199,8 +201,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match as_link_and_triangle(g1, g2)? {
-                Some((s1, s2)) => {
+            Parts::None => match LinkTriangle::of(g1, g2)? {
+                Some(pair) => {
+                    let (s1, s2) = pair.support_maps();
                     let hit =
                         details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
                     Ok(hit)
@@ -268,7 +271,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 )?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match as_link_and_triangle(g1, g2)? {
+            Parts::None => match LinkTriangle::of(g1, g2)?.map(|pair| pair.support_maps()) {
                 Some((s1, s2)) => Watched::ask(self, |watched| {
                     let mode = if stop_at_penetration {
                         details::NonlinearShapeCastMode::StopAtPenetration
@@ -302,23 +305,4 @@ pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
 /// A number that distances or times can be compared with.
 pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
-}
-
-/// The support maps of a link and a triangle in either order, if the shapes are that; refused if the triangle
-/// is not finite.
-pub(super) fn as_link_and_triangle<'a>(
-    g1: &'a dyn Shape,
-    g2: &'a dyn Shape,
-) -> Result<Option<(&'a dyn SupportMap, &'a dyn SupportMap)>, Unsupported> {
-    let is_finite = |triangle: &Triangle| triangle.vertices().iter().all(|vertex| vertex.is_finite());
-    let triangle = match (links_of(g1), links_of(g2)) {
-        (Some(_), None) => g2.as_triangle(),
-        (None, Some(_)) => g1.as_triangle(),
-        _ => None,
-    };
-    match triangle {
-        Some(triangle) if !is_finite(triangle) => Err(Unsupported),
-        Some(_) => Ok(g1.as_support_map().zip(g2.as_support_map())),
-        None => Ok(None),
-    }
 }

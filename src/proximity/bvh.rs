@@ -2,8 +2,8 @@
 
 use super::descent::{Descent, Scratch, SearchMesh, Visits};
 use super::placed::Placed;
+use super::probe::Found;
 use super::probe::{Probe, check_margin, check_moved, check_vertices};
-use super::search::Found;
 use super::walk::Walk;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;

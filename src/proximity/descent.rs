@@ -8,8 +8,8 @@
 
 use super::coarse::CoarseLink;
 use super::packed::{BLOCK, PackedLink};
+use super::probe::Found;
 use super::probe::Probe;
-use super::search::Found;
 use super::soa::load_vertices;
 use super::tree::{Child, Leaf, Tree, WIDTH};
 use crate::distance::Face;

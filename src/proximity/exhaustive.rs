@@ -1,9 +1,9 @@
 //! Proximity by looking at every triangle, as the paper does on parallel hardware.
 
 use super::coarse::CoarseLink;
+use super::probe::Found;
 use super::probe::{Probe, check_margin, check_moved, check_vertices, place};
 use super::scan::{Findings, Job, Scan, SharedBound, Work};
-use super::search::Found;
 use super::soa::SoaMesh;
 use super::{LinkProximity, MeshError, Proximity, ProximityError};
 use crate::Chain;

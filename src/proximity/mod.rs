@@ -12,7 +12,6 @@ mod placed;
 mod probe;
 mod report;
 mod scan;
-mod search;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
 mod share;
@@ -22,10 +21,9 @@ mod walk;
 
 #[cfg(feature = "gpu")]
 pub(crate) use coarse::{CoarseFrame, CoarseLink};
-pub(crate) use probe::Probe;
+pub(crate) use probe::{Found, Probe};
 #[cfg(feature = "gpu")]
 pub(crate) use probe::{check_margin, check_moved, check_vertices, place};
-pub(crate) use search::{Found, Until, search};
 #[cfg(feature = "gpu")]
 pub(crate) use share::each;
 

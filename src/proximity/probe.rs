@@ -1,6 +1,5 @@
 //! One link, placed in the mesh's frame and ready to meet triangles.
 
-use super::search::Found;
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{Axial, Closest, Convex, DiscSolver, Face, Link, Scalar, Vec3};
 use crate::robot::{COORDINATE_LIMIT, Cap, Envelope, ModifiedCylinder};
@@ -8,6 +7,13 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// What rounding can add to a bound: all scaled numbers are below 2.
 pub(super) const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// A triangle and its closest points, in the probe's units.
+#[derive(Clone, Copy)]
+pub(crate) struct Found {
+    pub triangle: u32,
+    pub closest: Closest<f64>,
+}
 
 /// A link against which triangles of one mesh are measured.
 ///

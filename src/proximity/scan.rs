@@ -2,8 +2,8 @@
 
 use super::coarse::CoarseLink;
 use super::packed::{BLOCK, PackedLink};
+use super::probe::Found;
 use super::probe::Probe;
-use super::search::Found;
 use super::soa::{self, SoaMesh};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Closest, Convex, DiscSolver, Scalar};

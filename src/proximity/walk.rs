@@ -3,8 +3,8 @@
 use super::LinkProximity;
 use super::descent::Descent;
 use super::placed::Placed;
+use super::probe::Found;
 use super::probe::{Probe, beyond};
-use super::search::Found;
 use crate::robot::{Run, distance_to_segment};
 use fearless_simd::Simd;
 use parry3d_f64::math::Real;

@@ -9,6 +9,7 @@ mod contact;
 mod dispatcher;
 mod draw;
 mod inner;
+mod joints;
 mod link_manifold;
 mod manifolds;
 mod mass;

@@ -5,8 +5,8 @@
 //! manifold of a link and a triangle keeps what the host has stored with it, and is found again by their ids;
 //! so nothing is lost when the robot changes its shape. Pairs that do not meet leave no manifold behind.
 
-use super::joint::Joints;
-use super::link_manifold;
+use super::link_triangle::LinkTriangle;
+use super::link_triangle_manifold;
 use super::robot_pair::links_of;
 use parry3d_f64::bounding_volume::BoundingVolume;
 use parry3d_f64::math::{Pose, Real};
@@ -44,22 +44,22 @@ where
     let name = |manifold: &ContactManifold<M, C>| (manifold.subshape1, manifold.subshape2);
     let mut before: HashMap<_, _> = manifolds.drain(..).map(|manifold| (name(&manifold), manifold)).collect();
     for (index, link) in links.iter().enumerate() {
-        let joints = Joints::of(links, index);
-        let joints = joints.as_ref().map(|joints| joints as &dyn NormalConstraints);
         let bounds = link.aabb(&robot_pose).loosened(prediction);
         for id in mesh.bvh().intersect_aabb(&bounds) {
             let triangle = mesh.triangle(id);
             let normals = mesh.triangle_normal_constraints(id);
             let normals = normals.as_ref().map(|normals| normals as &dyn NormalConstraints);
-            let (ids, shapes, constraints): (_, (&dyn Shape, &dyn Shape), _) = if robot_is_first {
-                ((index as u32, id), (link, &triangle), (joints, normals))
+            let (ids, constraints) = if robot_is_first {
+                ((index as u32, id), (None, normals))
             } else {
-                ((id, index as u32), (&triangle, link), (normals, joints))
+                ((id, index as u32), (normals, None))
             };
             let mut manifold =
                 before.remove(&ids).unwrap_or_else(|| ContactManifold::with_data(ids.0, ids.1, M::default()));
-            if let Err(refused) = link_manifold::update(pos12, shapes, constraints, prediction, &mut manifold)
-            {
+            let updated = LinkTriangle::new(link, &triangle, robot_is_first).and_then(|pair| {
+                link_triangle_manifold::update(pos12, &pair, constraints, prediction, &mut manifold)
+            });
+            if let Err(refused) = updated {
                 manifolds.clear();
                 return Err(refused);
             }

@@ -22,7 +22,47 @@ use super::separation;
 use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
-use parry3d_f64::shape::SupportMap;
+use parry3d_f64::query::Unsupported;
+use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+
+/// A link and a finite triangle, in either order.
+pub(super) struct LinkTriangle<'a> {
+    pub link: &'a ModifiedCylinder,
+    pub triangle: &'a Triangle,
+    pub link_is_first: bool,
+}
+
+impl<'a> LinkTriangle<'a> {
+    /// The pair, if the shapes are one.
+    ///
+    /// # Errors
+    /// [`Unsupported`] if the triangle is not finite.
+    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
+        let (first, second) = (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>());
+        let (link, triangle, link_is_first) = match (first, second) {
+            (Some(link), None) => (link, g2.as_triangle(), true),
+            (None, Some(link)) => (link, g1.as_triangle(), false),
+            _ => return Ok(None),
+        };
+        triangle.map(|triangle| Self::new(link, triangle, link_is_first)).transpose()
+    }
+
+    /// # Errors
+    /// [`Unsupported`] if the triangle is not finite.
+    pub fn new(
+        link: &'a ModifiedCylinder,
+        triangle: &'a Triangle,
+        link_is_first: bool,
+    ) -> Result<Self, Unsupported> {
+        let is_finite = triangle.vertices().iter().all(|vertex| vertex.is_finite());
+        if is_finite { Ok(Self { link, triangle, link_is_first }) } else { Err(Unsupported) }
+    }
+
+    /// The support maps in the pair's order.
+    pub fn support_maps(&self) -> (&'a dyn SupportMap, &'a dyn SupportMap) {
+        if self.link_is_first { (self.link, self.triangle) } else { (self.triangle, self.link) }
+    }
+}
 
 /// Where a link and a triangle meet, in the frame of both.
 pub(super) struct LinkContact {
@@ -34,6 +74,14 @@ pub(super) struct LinkContact {
     pub on_triangle: Vector,
     /// Unit vector from the link to the triangle.
     pub normal: Vector,
+}
+
+/// Distance and closest points of a link and a triangle in one frame, the link's first.
+pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
+    let flat = link.caps().map(|cap| cap == Cap::Flat);
+    let (start, end) = (to_vec3(link.start()), to_vec3(link.end()));
+    let closest = triangle_modified_cylinder(triangle.map(to_vec3), start, end, link.radius(), flat);
+    (closest.distance, to_vector(closest.point2), to_vector(closest.point1))
 }
 
 /// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave the range
@@ -77,7 +125,7 @@ impl Local {
 
     /// The contact, in local units.
     pub fn contact(&self) -> LinkContact {
-        let (distance, on_link, on_triangle) = self.closest(self.triangle);
+        let (distance, on_link, on_triangle) = closest(&self.link, self.triangle);
         let radius = self.link.radius();
         let axis_distance = segment_triangle(
             [to_vec3(self.link.start()), to_vec3(self.link.end())],
@@ -104,16 +152,9 @@ impl Local {
         separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
         let (gap, normal) = best;
         let distance = gap.min(0.0);
-        let (_, on_link, on_moved) = self.closest(self.triangle.map(|vertex| vertex - normal * distance));
+        let (_, on_link, on_moved) =
+            closest(&self.link, self.triangle.map(|vertex| vertex - normal * distance));
         LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal }
-    }
-
-    /// Distance and closest points of the link and a triangle.
-    fn closest(&self, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
-        let (link, flat) = (&self.link, self.link.caps().map(|cap| cap == Cap::Flat));
-        let (start, end) = (to_vec3(link.start()), to_vec3(link.end()));
-        let closest = triangle_modified_cylinder(triangle.map(to_vec3), start, end, link.radius(), flat);
-        (closest.distance, to_vector(closest.point2), to_vector(closest.point1))
     }
 
     /// The largest gap and its direction, among the features' normals and `more`, as they are and made

@@ -1,7 +1,7 @@
 //! The closest triangle of a mesh, by the mesh's own bounding volume hierarchy.
 
-use super::probe::Probe;
 use crate::distance::Closest;
+use crate::proximity::{Found, Probe};
 use parry3d_f64::math::Real;
 use parry3d_f64::partitioning::BvhLeafCost;
 use parry3d_f64::shape::TriMesh;
@@ -9,18 +9,11 @@ use std::cell::Cell;
 
 /// A triangle that the search visited has a vertex that is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TriangleNotFinite;
-
-/// A triangle and its closest points, in the probe's units.
-#[derive(Clone, Copy)]
-pub(crate) struct Found {
-    pub triangle: u32,
-    pub closest: Closest<f64>,
-}
+pub(super) struct TriangleNotFinite;
 
 /// How far a search goes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Until {
+pub(super) enum Until {
     /// The nearest triangle is known.
     Nearest,
     /// Some triangle is nearer than the bound.
@@ -30,7 +23,7 @@ pub(crate) enum Until {
 /// The triangle nearest to the probe among those strictly nearer than `bound`, which is in the probe's units.
 ///
 /// Nearer boxes go first, and boxes no nearer than the best triangle so far are left out.
-pub(crate) fn search(
+pub(super) fn search(
     mesh: &TriMesh,
     probe: &Probe,
     bound: Real,
