@@ -1,8 +1,10 @@
 //! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
 
 use super::field::{self, FieldPair};
+use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
+use super::robot_halfspace::RobotHalfSpace;
 use super::robot_pair::RobotPair;
 use super::watched::Watched;
 use crate::robot::COORDINATE_LIMIT;
@@ -71,6 +73,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.intersection_test();
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.intersection_test();
+        }
         // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
         if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
             return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
@@ -98,6 +103,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.distance();
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.distance();
+        }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => {
                 let answer = Watched::ask(self, |watched| {
@@ -123,6 +131,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         check_margin(prediction)?;
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.contact(prediction);
+        }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.contact(prediction);
         }
         match Parts::of(g1, g2) {
@@ -155,6 +166,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.closest_points(max_dist);
+        }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 // The search wants parts strictly nearer than its bound.
@@ -168,7 +182,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist),
+            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist.max(0.0)),
         }
     }
 
@@ -185,6 +199,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(options.target_distance)?;
         if !local_vel12.is_finite() {
             return Err(Unsupported);
+        }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.cast_shapes(local_vel12, options);
         }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
@@ -226,6 +243,10 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         for motion in [motion1, motion2] {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
+        }
+        let times = (start_time, end_time);
+        if let Some(hit) = link_cast::cast((motion1, g1), (motion2, g2), times, stop_at_penetration) {
+            return hit;
         }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
@@ -271,35 +292,24 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 )?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match LinkTriangle::of(g1, g2)?.map(|pair| pair.support_maps()) {
-                Some((s1, s2)) => Watched::ask(self, |watched| {
-                    let mode = if stop_at_penetration {
-                        details::NonlinearShapeCastMode::StopAtPenetration
-                    } else {
-                        details::NonlinearShapeCastMode::directional_toi(g1, g2)
-                    };
-                    details::cast_shapes_nonlinear_support_map_support_map(
-                        watched, motion1, s1, g1, motion2, s2, g2, start_time, end_time, mode,
-                    )
-                }),
-                None => self.0.cast_shapes_nonlinear(
-                    motion1,
-                    g1,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                ),
-            },
+            Parts::None => self.0.cast_shapes_nonlinear(
+                motion1,
+                g1,
+                motion2,
+                g2,
+                start_time,
+                end_time,
+                stop_at_penetration,
+            ),
         }
     }
 }
 
-/// A pose that every shape can be moved by.
+/// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
     let largest = pose.translation.abs().max_element();
-    if pose.is_finite() && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
+    let is_rigid = pose.is_finite() && pose.rotation.is_normalized();
+    if is_rigid && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
 }
 
 /// A number that distances or times can be compared with.

@@ -4,6 +4,7 @@
 //! this folder, by parry's routines for the shapes that it knows, because they keep the manifolds of a pair from
 //! one step to the next. What is left is
 //! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
+//! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
 //! - a link against another convex shape, answered by `L`: parry clips the polygons that stand for the link's
 //!   surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
 //!   small link does not rest on a stale one, it is told each time that the shapes have changed.
@@ -13,7 +14,7 @@ use super::joint::Side;
 use super::link_triangle::LinkTriangle;
 use super::robot_pair::links_of;
 use super::watched::Watched;
-use super::{joint, link_triangle_manifold, robot_mesh_manifold};
+use super::{joint, link_halfspace_manifold, link_triangle_manifold, robot_mesh_manifold};
 use crate::Chain;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
@@ -67,6 +68,9 @@ where
         let constraints = (normal_constraints1, normal_constraints2);
         if let Some(pair) = LinkTriangle::of(g1, g2)? {
             return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);
+        }
+        if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
+            return Ok(());
         }
         if links_of(g1).or(links_of(g2)).is_some() {
             manifold.mark_shapes_deformed();

@@ -3,6 +3,7 @@
 
 mod axial;
 mod chain;
+mod closing;
 mod crest;
 mod dispatcher;
 mod ellipse;
@@ -10,6 +11,8 @@ mod feature;
 mod field;
 mod footing;
 mod joint;
+mod link_cast;
+mod link_halfspace_manifold;
 mod link_triangle;
 mod link_triangle_manifold;
 mod manifold;
@@ -22,6 +25,7 @@ mod point;
 pub mod rapier;
 mod ray;
 mod rim;
+mod robot_halfspace;
 mod robot_mesh_manifold;
 mod robot_pair;
 mod separation;

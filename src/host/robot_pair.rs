@@ -242,7 +242,7 @@ fn within(margin: Real) -> Result<Real, Unsupported> {
 }
 
 /// The largest coordinate, if all are within the range that is answered.
-fn in_range(point: Vector) -> Result<Real, Unsupported> {
+pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
     let largest = point.abs().max_element();
     // Written so that NaN is out of range too.
     if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
