@@ -245,8 +245,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             check_pose(&motion.position_at_time(end_time))?;
         }
         let times = (start_time, end_time);
-        if let Some(hit) = link_cast::cast((motion1, g1), (motion2, g2), times, stop_at_penetration) {
-            return hit;
+        let moving = ((motion1, g1), (motion2, g2));
+        if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
+            return Ok(hit);
         }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
