@@ -132,7 +132,7 @@ fn every_route_to_the_discs_gives_the_same_answers() {
         let Some(gpu) = gpu::open(precision) else { continue };
         let mut engine = GpuExhaustive::on(gpu, &mesh).unwrap();
         for discs in [Discs::Convex, Discs::ClosedForm, Discs::Companion] {
-            engine.compute_every_pair(discs).unwrap();
+            engine.compute_every_pair(&discs.route(precision)).unwrap();
             let mut answers = Vec::new();
             engine.per_link_batch(&robots, &mut answers).unwrap();
             for (answers, expected) in answers.iter().zip(&expected) {

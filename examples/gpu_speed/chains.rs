@@ -88,7 +88,7 @@ pub fn chapter(
                     (Discs::ClosedForm, "quartic, closed form"),
                     (Discs::Companion, "quartic, companion"),
                 ] {
-                    engine.compute_every_pair(discs).map_err(text)?;
+                    engine.compute_every_pair(&discs.route(opened.gpu.precision())).map_err(text)?;
                     let timed = all_models(&mut engine, &models, enough)?;
                     let name = format!("{name} | {route}");
                     pages.every_pair.push_str(&row(&name, size, opened.tflops, &timed)?);

@@ -40,6 +40,8 @@ pub(crate) use face::Face;
 pub(crate) use frame::Frame;
 pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
+#[cfg(feature = "gpu")]
+pub(crate) use scalar::CBRT_BITS_F32;
 pub(crate) use segment_disc::Line;
 pub(crate) use triangle_disc::pack_from_centre as pack_disc;
 pub(crate) use triangle_modified_cylinder::Axial;

@@ -1,20 +1,25 @@
 //! Exhaustive proximity on the GPU.
 
+use super::candidates::Candidate;
 use super::device::Adapter;
-use super::link::PlacedLink;
+use super::link::DeviceLink;
 use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
-use super::opened::{Discs, Gpu};
-use super::query::{Candidate, Query};
+use super::opened::Gpu;
+use super::plan::Tuning;
+use super::query::Query;
+use super::shaders::CONVEX;
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_margin,
-    check_moved, check_vertices, place,
+    CoarseFrame, DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError,
+    check_margin, check_moved, check_vertices, place,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::ops::Range;
 use std::time::Duration;
+use wgpu::ComputePipeline;
 
 /// Proximity queries that visit every triangle, on the GPU.
 ///
@@ -38,20 +43,23 @@ use std::time::Duration;
 /// ```
 pub struct GpuExhaustive {
     gpu: Gpu,
-    mesh: DeviceMesh,
     vertices: Vec<Vector>,
     indices: Vec<[u32; 3]>,
     /// The largest coordinate of the mesh.
     reach: Real,
-    /// What every pair costs; None with culling.
-    every_pair: Option<Discs>,
+    frame: CoarseFrame,
+    tuning: Tuning,
+    /// None after a failure: what is left on the device then is not known, so that it is made anew.
+    on_device: Option<DeviceMesh>,
+    /// The kernel without culling, where that is wanted.
+    every_pair: Option<ComputePipeline>,
     answered_on_cpu: u64,
     query: Query,
     /// The robot that is being placed.
     probes: Vec<Probe>,
     /// Every link of the query, and its place among `placed` unless it is too far out for the device.
     links: Vec<(Probe, Option<usize>)>,
-    placed: Vec<PlacedLink>,
+    placed: Vec<DeviceLink>,
 }
 
 // A planner may own an engine on a thread of its own.
@@ -59,6 +67,17 @@ const _: () = {
     const fn is_send<T: Send>() {}
     is_send::<GpuExhaustive>();
 };
+
+impl std::fmt::Debug for GpuExhaustive {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GpuExhaustive")
+            .field("gpu", &self.gpu)
+            .field("vertices", &self.vertices.len())
+            .field("triangles", &self.indices.len())
+            .field("answered_on_cpu", &self.answered_on_cpu)
+            .finish_non_exhaustive()
+    }
+}
 
 impl GpuExhaustive {
     /// An engine for `mesh` on the fastest GPU of this machine, searching in this precision.
@@ -75,32 +94,35 @@ impl GpuExhaustive {
     /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit into the GPU's
     /// memory; or the GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
-        Self::in_parts(gpu, mesh, usize::MAX)
+        Self::tuned(gpu, mesh, Tuning::default())
     }
 
-    /// As [`GpuExhaustive::on`], with at most `most` triangles in a buffer.
-    pub(super) fn in_parts(gpu: &Gpu, mesh: &TriMesh, most: usize) -> Result<Self, GpuError> {
+    pub(super) fn tuned(gpu: &Gpu, mesh: &TriMesh, tuning: Tuning) -> Result<Self, GpuError> {
         if mesh.indices().is_empty() {
             return Err(MeshError::Empty.into());
         }
         let reach = check_vertices(mesh.vertices())?;
-        let device_mesh = match DeviceMesh::new(&gpu.0, mesh.vertices(), mesh.indices(), most) {
-            Ok(mesh) => mesh,
+        let mut watch = gpu.0.device.failures.watch();
+        let on_device = DeviceMesh::new(&gpu.0, mesh.vertices().len(), mesh.indices(), tuning.part);
+        match watch.check() {
+            Ok(()) => {}
             Err(DeviceFailure::OutOfMemory) => {
                 let adapter = gpu.adapter().to_string();
                 return Err(GpuError::MeshTooLarge { adapter, triangles: mesh.indices().len() });
             }
             Err(failure) => return Err(failure.into()),
-        };
+        }
         Ok(Self {
             gpu: gpu.clone(),
-            mesh: device_mesh,
             vertices: mesh.vertices().to_vec(),
             indices: mesh.indices().to_vec(),
             reach,
+            frame: CoarseFrame::new(mesh.vertices()),
+            tuning,
+            on_device: Some(on_device),
             every_pair: None,
             answered_on_cpu: 0,
-            query: Query::default(),
+            query: Query::new(tuning, watch),
             probes: Vec::new(),
             links: Vec::new(),
             placed: Vec::new(),
@@ -124,16 +146,17 @@ impl GpuExhaustive {
             self.every_pair = None;
             return Ok(());
         }
-        self.compute_every_pair(Discs::Convex)
+        self.compute_every_pair(CONVEX)
     }
 
-    /// As `set_culling(false)`, with the discs by the paper's routes or by ours. The answers are the same.
+    /// As `set_culling(false)`, by another route from a segment to a disc: WGSL with the function
+    /// `segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius: real) -> Closest` for a
+    /// disc around the origin with a unit normal. The answers are the same if what it finds is never too near.
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
-    pub fn compute_every_pair(&mut self, discs: Discs) -> Result<(), GpuError> {
-        self.gpu.0.every_pair(discs)?;
-        self.every_pair = Some(discs);
+    pub fn compute_every_pair(&mut self, route: &str) -> Result<(), GpuError> {
+        self.every_pair = Some(self.gpu.0.every_pair(route)?);
         Ok(())
     }
 
@@ -150,8 +173,8 @@ impl GpuExhaustive {
     }
 
     #[cfg(test)]
-    pub(super) fn mesh(&self) -> &DeviceMesh {
-        &self.mesh
+    pub(super) fn on_device(&self) -> Option<&DeviceMesh> {
+        self.on_device.as_ref()
     }
 
     /// Makes ready for the links of new robots.
@@ -165,7 +188,7 @@ impl GpuExhaustive {
         place(robot.links(), pose, self.reach, &mut self.probes)?;
         for probe in &self.probes {
             let bound = margin.map(|margin| probe.beyond(margin));
-            let placed = PlacedLink::new(probe, &self.mesh.frame, bound, self.gpu.precision());
+            let placed = DeviceLink::new(probe, &self.frame, bound, self.gpu.precision());
             self.links.push((*probe, placed.is_some().then_some(self.placed.len())));
             self.placed.extend(placed);
         }
@@ -174,15 +197,23 @@ impl GpuExhaustive {
 
     /// Has the device find the candidates of all links.
     fn search(&mut self) -> Result<(), DeviceFailure> {
+        if self.placed.is_empty() {
+            return Ok(());
+        }
         let gpu = &*self.gpu.0;
-        // Compiled when culling was switched off.
-        let every_pair = self.every_pair.and_then(|discs| gpu.every_pair(discs).ok());
-        let nearest = every_pair.unwrap_or(&gpu.nearest);
-        self.query.run(gpu, &self.mesh, &self.placed, nearest)
+        let mut mesh = self
+            .on_device
+            .take()
+            .unwrap_or_else(|| DeviceMesh::new(gpu, self.vertices.len(), &self.indices, self.tuning.part));
+        mesh.update(gpu, &self.frame, &self.vertices);
+        let nearest = self.every_pair.as_ref().unwrap_or(&gpu.nearest);
+        self.query.run(gpu, &mesh, &self.placed, nearest)?;
+        self.on_device = Some(mesh);
+        Ok(())
     }
 
     /// What the device knows of a link: its candidates, if it could tell all that matter.
-    fn candidates(&self, link: usize) -> Option<(&PlacedLink, &[Candidate])> {
+    fn candidates(&self, link: usize) -> Option<(&DeviceLink, &[Candidate])> {
         let place = self.links[link].1?;
         let placed = &self.placed[place];
         let (candidates, too_many) = self.query.candidates(place);
@@ -222,6 +253,45 @@ impl GpuExhaustive {
     fn at_least(&self, link: usize) -> Real {
         self.candidates(link).map_or(0.0, |(placed, candidates)| placed.at_least(least_distance(candidates)))
     }
+
+    /// The nearest link and triangle of one robot among those of the query.
+    fn least(&mut self, links: Range<usize>) -> LinkProximity {
+        let first = links.start;
+        // The likeliest link first: its distance rules out most others.
+        let likeliest =
+            links.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(first);
+        let mut best = (first, self.first_triangle(&self.links[first].0));
+        for link in std::iter::once(likeliest).chain(links.filter(|&link| link != likeliest)) {
+            let bound = best.1.closest.distance;
+            if self.at_least(link) < bound
+                && let Some(found) = self.nearest(link, bound)
+            {
+                best = (link, found);
+            }
+        }
+        self.links[best.0].0.report(best.0 - first, &best.1)
+    }
+
+    /// Whether one robot among those of the query keeps its distance.
+    fn keeps(&mut self, mut links: Range<usize>, margin: Real) -> bool {
+        let bound = self.links[links.start].0.beyond(margin);
+        links.all(|link| self.nearest(link, bound).is_none())
+    }
+
+    /// Places all robots; says where the links of each begin and end.
+    fn place_all(
+        &mut self,
+        robots: &[(Chain, Pose)],
+        margin: Option<Real>,
+    ) -> Result<Vec<usize>, ProximityError> {
+        self.clear();
+        let mut ends = vec![0];
+        for (robot, pose) in robots {
+            self.place(robot, pose, margin)?;
+            ends.push(self.links.len());
+        }
+        Ok(ends)
+    }
 }
 
 impl Proximity for GpuExhaustive {
@@ -246,20 +316,7 @@ impl Proximity for GpuExhaustive {
         self.clear();
         self.place(robot, pose, None)?;
         self.search()?;
-        // The likeliest link first: its distance rules out most others.
-        let links = 0..self.links.len();
-        let likeliest =
-            links.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(0);
-        let mut best = (0, self.first_triangle(&self.links[0].0));
-        for link in std::iter::once(likeliest).chain(links.filter(|&link| link != likeliest)) {
-            let bound = best.1.closest.distance;
-            if self.at_least(link) < bound
-                && let Some(found) = self.nearest(link, bound)
-            {
-                best = (link, found);
-            }
-        }
-        Ok(self.links[best.0].0.report(best.0, &best.1))
+        Ok(self.least(0..self.links.len()))
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
@@ -267,8 +324,7 @@ impl Proximity for GpuExhaustive {
         self.clear();
         self.place(robot, pose, Some(margin))?;
         self.search()?;
-        let bound = self.links[0].0.beyond(margin);
-        Ok((0..self.links.len()).all(|link| self.nearest(link, bound).is_none()))
+        Ok(self.keeps(0..self.links.len(), margin))
     }
 
     fn per_link_batch(
@@ -276,19 +332,21 @@ impl Proximity for GpuExhaustive {
         robots: &[(Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
     ) -> Result<(), ProximityError> {
-        self.clear();
-        for (robot, pose) in robots {
-            self.place(robot, pose, None)?;
-        }
-        self.search()?;
-        out.resize_with(robots.len(), Vec::new);
-        let mut first = 0;
-        for ((robot, _), answers) in robots.iter().zip(out) {
-            answers.clear();
-            for link in 0..robot.links().len() {
-                answers.push(self.answer(link, first + link));
+        let placed =
+            self.place_all(robots, None).and_then(|ends| self.search().map(|()| ends).map_err(Into::into));
+        let ends = match placed {
+            Ok(ends) => ends,
+            Err(error) => {
+                out.clear();
+                return Err(error);
             }
-            first += robot.links().len();
+        };
+        out.resize_with(robots.len(), Vec::new);
+        for (ends, answers) in ends.windows(2).zip(out) {
+            answers.clear();
+            for link in ends[0]..ends[1] {
+                answers.push(self.answer(link - ends[0], link));
+            }
         }
         Ok(())
     }
@@ -296,6 +354,10 @@ impl Proximity for GpuExhaustive {
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.reach = check_moved(vertices, self.vertices.len())?;
         self.vertices.copy_from_slice(vertices);
-        Ok(self.mesh.update(&self.gpu.0, vertices)?)
+        self.frame = CoarseFrame::new(vertices);
+        if let Some(mesh) = &mut self.on_device {
+            mesh.outdate();
+        }
+        Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! Branches against clamps on the GPU, for comparison with the paper's Tables II and III.
 
-use super::batch::Batch;
+use super::GpuError;
+use super::batch::{Batch, BatchKernel};
 use super::opened::Gpu;
-use super::{GpuError, shaders};
+use super::shaders::shared;
 use crate::distance::Vec3;
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
@@ -26,9 +27,20 @@ impl Form {
     /// Every form.
     pub const ALL: [Self; 4] =
         [Self::ClampedSegments, Self::TreeSegments, Self::ClampedTriangle, Self::TreeTriangle];
+
+    /// The form's function, of the points a, b, c and d.
+    fn call(self) -> &'static str {
+        match self {
+            Self::ClampedSegments => "clamped_segments(two_segments(a, b, c, d))",
+            Self::TreeSegments => "tree_segments(two_segments(a, b, c, d))",
+            Self::ClampedTriangle => "clamped_triangle(a, b, c, d)",
+            Self::TreeTriangle => "tree_triangle(a, b, c, d)",
+        }
+    }
 }
 
 /// One form for many problems at once, a GPU thread each.
+#[derive(Debug)]
 pub struct GpuForms(Batch);
 
 impl GpuForms {
@@ -37,8 +49,7 @@ impl GpuForms {
     /// # Errors
     /// The driver does not compile the kernel.
     pub fn new(gpu: &Gpu, form: Form) -> Result<Self, GpuError> {
-        let constants = [("FORM", f64::from(form as u32))];
-        Ok(Self(Batch::new(gpu, shaders::FORMS, shaders::QUARTIC, &constants, 12, 1)?))
+        Ok(Self(Batch::new(gpu, &kernel(&text(form)))?))
     }
 
     /// The squared distances between the segments of the first and the last two points, or between the first point and
@@ -49,11 +60,32 @@ impl GpuForms {
     pub fn solve(&mut self, points: &[[Vec3<Real>; 4]], out: &mut Vec<Real>) -> Result<(), DeviceFailure> {
         out.clear();
         let numbers = points.iter().flatten().flat_map(|&point| <[Real; 3]>::from(point));
-        self.0.run(numbers, &mut |answers| out.extend(answers))
+        self.0.run(numbers, |answer| out.extend(answer))
     }
 
     /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
     pub fn device_time(&self) -> Option<Duration> {
-        self.0.device_time
+        self.0.device_time()
     }
+}
+
+/// The kernel of a form with this text.
+pub(super) fn kernel(text: &str) -> BatchKernel<'_> {
+    BatchKernel::new("forms", text, 12, 1)
+}
+
+/// The text of a form's kernel.
+pub(super) fn text(form: Form) -> String {
+    let solve = format!(
+        "fn solve(problem: u32, answer: u32) {{
+    let a = form_point(problem);
+    let b = form_point(problem + 3u);
+    let c = form_point(problem + 6u);
+    let d = form_point(problem + 9u);
+    answers[answer] = {};
+}}
+",
+        form.call()
+    );
+    [shared!("vec3", "forms"), &solve].concat()
 }

@@ -1,6 +1,6 @@
 //! Triangles measured on the CPU in double precision: the device's candidates, or all.
 
-use super::query::Candidate;
+use super::candidates::Candidate;
 use crate::proximity::{Found, Probe, each};
 use parry3d_f64::math::{Real, Vector};
 

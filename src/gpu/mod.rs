@@ -13,6 +13,7 @@
 
 mod batch;
 mod buffers;
+mod candidates;
 mod clock;
 mod device;
 mod engine;
@@ -27,18 +28,21 @@ mod pairs;
 mod plan;
 mod precision;
 mod query;
+mod record;
 mod roots;
 mod self_test;
+#[cfg(test)]
+mod shader_tests;
 mod shaders;
 #[cfg(test)]
 mod tests;
 
-pub use crate::proximity::DeviceFailure;
+pub use batch::{Batch, BatchKernel};
 pub use device::Adapter;
 pub use engine::GpuExhaustive;
 pub use error::GpuError;
 pub use forms::{Form, GpuForms};
-pub use opened::{Discs, Gpu};
-pub use pairs::{GpuPairs, Pair, PairProblem};
+pub use opened::Gpu;
+pub use pairs::{Discs, GpuPairs, Pair, PairProblem};
 pub use precision::Precision;
 pub use roots::{Finder, GpuRoots};

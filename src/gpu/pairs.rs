@@ -1,8 +1,10 @@
 //! Single pairs of the narrow phase on the GPU.
 
-use super::batch::Batch;
-use super::opened::{Discs, Gpu};
-use super::{GpuError, shaders};
+use super::batch::{Batch, BatchKernel};
+use super::opened::Gpu;
+use super::roots::{Finder, approximate};
+use super::shaders::{CONVEX, NARROW_PHASE, shared};
+use super::{GpuError, Precision};
 use crate::distance::{Closest, Frame, Vec3};
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
@@ -47,6 +49,50 @@ impl Pair {
         Self::TriangleCapsule,
         Self::TriangleModifiedCylinder,
     ];
+
+    /// The pair's function, of a problem `p` as shared/pairs.wgsl loads it.
+    fn call(self) -> &'static str {
+        match self {
+            Self::SegmentSegment => "segment_segment(p.start, p.end, p.a, p.b)",
+            Self::PointTriangle => "point_triangle(p.end, p.a, p.b, p.c)",
+            Self::SegmentTriangle => "segment_triangle(p.start, p.end, p.a, p.b, p.c)",
+            Self::PointDisc => "point_disc(p.a, p.end, p.disc_normal, p.radius)",
+            Self::SegmentDisc => "segment_disc(p.a, p.b, p.end, p.disc_normal, p.radius)",
+            Self::PlaneDisc => "plane_disc(p.a, p.plane_normal, p.end, p.disc_normal, p.radius)",
+            Self::TriangleDisc => "triangle_disc(p.a, p.b, p.c, p.end, p.disc_normal, p.radius)",
+            Self::PointModifiedCylinder => {
+                "point_modified_cylinder(p.a, p.start, p.end, p.radius, p.flat_start, p.flat_end)"
+            }
+            Self::TriangleCapsule => "triangle_capsule(p.a, p.b, p.c, p.start, p.end, p.radius)",
+            Self::TriangleModifiedCylinder => {
+                "triangle_modified_cylinder(p.a, p.b, p.c, p.start, p.end, p.radius, p.flat_start, p.flat_end)"
+            }
+        }
+    }
+}
+
+/// A route to the disc of a flat cap: the paper's are there for comparison.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Discs {
+    /// This crate's, without roots of a polynomial.
+    #[default]
+    Convex,
+    /// The paper's quartic in closed form.
+    ClosedForm,
+    /// The paper's quartic by the companion matrix.
+    Companion,
+}
+
+impl Discs {
+    /// The route in WGSL, as [`GpuExhaustive::compute_every_pair`](super::GpuExhaustive::compute_every_pair) takes it.
+    pub fn route(self, precision: Precision) -> String {
+        let finder = match self {
+            Self::Convex => return CONVEX.into(),
+            Self::ClosedForm => Finder::ClosedForm,
+            Self::Companion => Finder::Companion,
+        };
+        approximate(finder, precision, 4) + shared!("segment_disc_quartic")
+    }
 }
 
 /// A triangle, a plane through its first vertex, a link, and a disc around the link's end. A pair takes its part.
@@ -86,7 +132,7 @@ impl PairProblem {
         }
     }
 
-    /// What pairs.wgsl reads, in the frame.
+    /// What shared/pairs.wgsl loads, in the frame.
     fn numbers(&self, frame: &Frame<Real>) -> [Real; 24] {
         let point = |point: Vec3<Real>| -> [Real; 3] { frame.point(point).into() };
         let [a, b, c] = self.triangle.map(point);
@@ -104,6 +150,7 @@ impl PairProblem {
 }
 
 /// The closest points of many pairs at once, a GPU thread each.
+#[derive(Debug)]
 pub struct GpuPairs {
     pair: Pair,
     batch: Batch,
@@ -123,10 +170,8 @@ impl GpuPairs {
     /// # Errors
     /// The driver does not compile the kernel.
     pub fn with_discs(gpu: &Gpu, pair: Pair, discs: Discs) -> Result<Self, GpuError> {
-        let kernel = if discs == Discs::Convex { shaders::PAIRS } else { shaders::PAIRS_BY_QUARTIC };
-        let mut constants = vec![("PAIR", f64::from(pair as u32))];
-        constants.extend(discs.constant());
-        Ok(Self { pair, batch: Batch::new(gpu, kernel, shaders::QUARTIC, &constants, 24, 7)? })
+        let text = text(pair, discs, gpu.precision());
+        Ok(Self { pair, batch: Batch::new(gpu, &kernel(&text))? })
     }
 
     /// The closest points of every problem, in their order, computed in the GPU's precision. `out` is cleared first.
@@ -141,19 +186,35 @@ impl GpuPairs {
         out.clear();
         let pair = self.pair;
         let numbers = problems.iter().flat_map(|problem| problem.numbers(&problem.frame(pair)));
-        self.batch.run(numbers, &mut |answers| {
-            while let Some(distance) = answers.next() {
-                let mut next = || answers.next().unwrap_or_default();
-                let point1 = Vec3::new(next(), next(), next());
-                let point2 = Vec3::new(next(), next(), next());
-                let Some(problem) = problems.get(out.len()) else { return };
-                out.push(problem.frame(pair).answer(Closest { distance, point1, point2 }));
+        self.batch.run(numbers, |answer| {
+            if let &[distance, x1, y1, z1, x2, y2, z2] = answer {
+                let (point1, point2) = (Vec3::new(x1, y1, z1), Vec3::new(x2, y2, z2));
+                let frame = problems[out.len()].frame(pair);
+                out.push(frame.answer(Closest { distance, point1, point2 }));
             }
         })
     }
 
     /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
     pub fn device_time(&self) -> Option<Duration> {
-        self.batch.device_time
+        self.batch.device_time()
     }
+}
+
+/// The kernel of a pair with this text.
+pub(super) fn kernel(text: &str) -> BatchKernel<'_> {
+    BatchKernel::new("pairs", text, 24, 7)
+}
+
+/// The text of a pair's kernel.
+pub(super) fn text(pair: Pair, discs: Discs, precision: Precision) -> String {
+    let solve = format!(
+        "fn solve(problem: u32, answer: u32) {{
+    let p = load_problem(problem);
+    store_closest(answer, {});
+}}
+",
+        pair.call()
+    );
+    [NARROW_PHASE, &discs.route(precision), shared!("pairs"), &solve].concat()
 }

@@ -1,111 +1,137 @@
-//! The shaders' text. A kernel's is put together here from the functions that it needs; `naga` checks every one on
-//! machines without a GPU, so this file needs nothing but the text.
+//! The text of the shaders. A kernel's is put together here: what the host knows too, its constants and records, is
+//! declared once, in Rust.
 //!
 //! A function has the name of its twin in `distance`, `roots` or `proximity` (with the name of the twin's file before
 //! it where that is needed) and does the same in the same order. `real` is `f32` or `f64`.
 
-macro_rules! text {
-    ($($file:literal),*) => { concat!($(include_str!(concat!("shaders/", $file, ".wgsl"))),*) };
+use super::link::{FAR, LinkRecord};
+use super::plan::{CAPACITY, MOST_LINKS, Round, SAMPLES, SLOT, THREADS};
+use super::record::Record;
+use super::{Precision, batch};
+use crate::distance::{CBRT_BITS_F32, Scalar};
+use std::fmt::Display;
+
+macro_rules! shared {
+    ($($file:literal),* $(,)?) => { concat!($(include_str!(concat!("shaders/shared/", $file, ".wgsl"))),*) };
 }
 
-/// What `real` is.
-pub const REAL_F32: &str = text!("real_f32");
-/// What `real` is.
-pub const REAL_F64: &str = text!("real_f64");
+pub(super) use shared;
 
-/// A kernel: its entry point's name, and its text but for what `real` is and how many coefficients a polynomial has.
-#[derive(Clone, Copy, Debug)]
-pub struct Kernel {
+macro_rules! kernel {
+    ($file:literal) => {
+        include_str!(concat!("shaders/kernels/", $file, ".wgsl"))
+    };
+}
+
+/// The narrow phase, but for a route from a segment to a disc.
+pub(super) const NARROW_PHASE: &str = shared!(
+    "vec3",
+    "closest",
+    "segment_segment",
+    "face",
+    "point_triangle",
+    "segment_triangle",
+    "point_disc",
+    "segment_disc",
+    "plane_disc",
+    "triangle_disc",
+    "point_modified_cylinder",
+    "bounds",
+    "triangle_modified_cylinder",
+);
+
+/// This crate's route from a segment to a disc.
+pub(super) const CONVEX: &str = shared!("convex");
+
+/// Vectors of four numbers that a triangle takes in memory (shared/face_record.wgsl).
+pub(super) const FACE_VECTORS: u32 = 4;
+
+/// A kernel: the name of its entry point, and its whole text in one precision.
+#[derive(Clone, Debug)]
+pub(super) struct EntryPoint {
     pub name: &'static str,
-    pub text: &'static str,
+    pub text: String,
 }
 
-/// The coefficients of the quartic of segment-disc.
-pub const QUARTIC: u32 = 5;
+impl EntryPoint {
+    /// Computes what is known of each triangle, whenever the vertices move.
+    pub(super) fn prepare(precision: Precision) -> Self {
+        let text = scalar(precision)
+            + &constants(&[("THREADS", THREADS), ("FACE_VECTORS", FACE_VECTORS)])
+            + shared!("vec3", "face", "face_record")
+            + kernel!("prepare");
+        Self { name: "prepare", text }
+    }
 
-impl Kernel {
-    /// The whole text.
-    pub fn source(&self, real: &str, coefficients: u32) -> String {
-        format!("{real}const COEFFICIENTS = {coefficients}u;\n{}", self.text)
+    pub(super) fn sample(precision: Precision) -> Self {
+        Self::of_query("sample", kernel!("sample"), precision, CONVEX)
+    }
+
+    /// `route` is that from a segment to a disc.
+    pub(super) fn nearest(precision: Precision, route: &str) -> Self {
+        Self::of_query("nearest", kernel!("nearest"), precision, route)
+    }
+
+    pub(super) fn reduce(precision: Precision) -> Self {
+        Self::of_query("reduce", kernel!("reduce"), precision, CONVEX)
+    }
+
+    pub(super) fn collect(precision: Precision) -> Self {
+        Self::of_query("collect", kernel!("collect"), precision, CONVEX)
+    }
+
+    fn of_query(name: &'static str, kernel: &str, precision: Precision, route: &str) -> Self {
+        let sizes = [
+            ("THREADS", THREADS),
+            ("MOST_LINKS", MOST_LINKS),
+            ("SAMPLES", SAMPLES),
+            ("CAPACITY", CAPACITY),
+            ("SLOT", SLOT),
+            ("FACE_VECTORS", FACE_VECTORS),
+        ];
+        let text = scalar(precision)
+            + &constants(&sizes)
+            + &constant("FAR", format_args!("{FAR:e}f"))
+            + &Round::wgsl()
+            + &LinkRecord::wgsl()
+            + NARROW_PHASE
+            + route
+            + shared!("face_record", "query")
+            + kernel;
+        Self { name, text }
+    }
+
+    /// Runs `fn solve(problem: u32, answer: u32)` of a text over many problems of so many numbers, with answers of so
+    /// many, the submission's included.
+    pub(super) fn batch(precision: Precision, text: &str, problem: u32, answer: u32) -> Self {
+        let sizes = [("THREADS", batch::THREADS), ("PROBLEM", problem), ("ANSWER", answer)];
+        let text = scalar(precision) + &constants(&sizes) + &batch::Head::wgsl() + text + kernel!("batch");
+        Self { name: "batch", text }
     }
 }
 
-macro_rules! kernel {
-    ($name:literal: $($file:literal),*) => { Kernel { name: $name, text: text!($($file),*) } };
+/// What `real` is, and what follows from that.
+fn scalar(precision: Precision) -> String {
+    match precision {
+        Precision::F32 => scalar_of::<f32>("f32", f32::MIN_POSITIVE.into()) + shared!("scalar_f32"),
+        Precision::F64 => scalar_of::<f64>("f64", f64::MIN_POSITIVE) + shared!("scalar_f64"),
+    }
 }
 
-/// The narrow phase from link to triangle, which every kernel of a query needs, with the kernel's own files.
-macro_rules! query_kernel {
-    ($name:literal) => { query_kernel!($name, "segment_disc") };
-    ($name:literal, $($segment_disc:literal),*) => {
-        kernel!($name: "vec3", "closest", "segment_segment", "face", "segment_triangle", "point_disc", "line_disc",
-            $($segment_disc,)* "plane_disc", "triangle_disc", "point_modified_cylinder", "bounds",
-            "triangle_modified_cylinder", "query", $name)
-    };
+fn scalar_of<T: Scalar>(real: &str, smallest_normal: f64) -> String {
+    format!("alias real = {real};\n")
+        + &constant("UNIT_ROUNDOFF", format_args!("real({:e})", T::UNIT_ROUNDOFF))
+        // A device may take what is smaller for 0, and its inverse may overflow.
+        + &constant("SMALLEST_NORMAL", format_args!("real({smallest_normal:e})"))
+        + &constant("FACE_PASSES", format_args!("{}u", T::FACE_PASSES))
+        + &constant("HALLEY_STEPS", format_args!("{}u", T::HALLEY_STEPS))
+        + &constant("CBRT_BITS", format_args!("{CBRT_BITS_F32}u"))
 }
 
-macro_rules! pairs_kernel {
-    ($($segment_disc:literal),*) => {
-        kernel!("pairs": "vec3", "closest", "segment_segment", "face", "point_triangle", "segment_triangle",
-            "point_disc", "line_disc", $($segment_disc,)* "plane_disc", "triangle_disc", "point_modified_cylinder",
-            "bounds", "triangle_modified_cylinder", "pairs")
-    };
+fn constants(values: &[(&str, u32)]) -> String {
+    values.iter().map(|(name, value)| constant(name, format_args!("{value}u"))).collect()
 }
 
-pub const PREPARE: Kernel = kernel!("prepare": "vec3", "face", "prepare");
-pub const SAMPLE: Kernel = query_kernel!("sample");
-pub const NEAREST: Kernel = query_kernel!("nearest");
-/// As [`NEAREST`], with the discs by the paper's quartic.
-pub const NEAREST_BY_QUARTIC: Kernel =
-    query_kernel!("nearest", "roots", "closed_form", "companion", "segment_disc_quartic");
-pub const REDUCE: Kernel = query_kernel!("reduce");
-pub const COLLECT: Kernel = query_kernel!("collect");
-pub const SELF_TEST: Kernel = kernel!("self_test": "self_test");
-pub const PAIRS: Kernel = pairs_kernel!("segment_disc", "segment_disc_pair");
-/// As [`PAIRS`], with the discs by the paper's quartic.
-pub const PAIRS_BY_QUARTIC: Kernel =
-    pairs_kernel!("roots", "closed_form", "companion", "segment_disc_quartic", "segment_disc_pair");
-pub const FORMS: Kernel = kernel!("forms": "vec3", "forms");
-
-/// A kernel that finds roots by the method of this name, with the method's own files.
-macro_rules! roots_kernel {
-    ($method:literal: $($file:literal),*) => {
-        Kernel {
-            name: "find_roots",
-            text: concat!(
-                text!("vec3", "roots", $($file,)* $method),
-                "fn approximate(monic: ptr<function, Coefficients>, degree: u32) {\n    ",
-                $method,
-                "(monic, degree);\n}\n",
-                text!("find_roots")
-            ),
-        }
-    };
+fn constant(name: &str, value: impl Display) -> String {
+    format!("const {name} = {value};\n")
 }
-
-/// In the order of `Finder`.
-pub const FIND_ROOTS: [Kernel; 4] = [
-    roots_kernel!("closed_form":),
-    roots_kernel!("bairstow": "division", "direction"),
-    roots_kernel!("companion":),
-    roots_kernel!("jenkins_traub": "division", "direction"),
-];
-
-/// Every kernel.
-#[allow(dead_code, reason = "the tests go through all of them")]
-pub const KERNELS: &[&Kernel] = &[
-    &PREPARE,
-    &SAMPLE,
-    &NEAREST,
-    &NEAREST_BY_QUARTIC,
-    &REDUCE,
-    &COLLECT,
-    &SELF_TEST,
-    &PAIRS,
-    &PAIRS_BY_QUARTIC,
-    &FORMS,
-    &FIND_ROOTS[0],
-    &FIND_ROOTS[1],
-    &FIND_ROOTS[2],
-    &FIND_ROOTS[3],
-];

@@ -4,29 +4,8 @@
 // between workgroups is an f32 that is not negative, kept as its bits, which are ordered as the number is. So the
 // least one is found by integer arithmetic: whatever the order, the answer is the same.
 
-// A workgroup takes so many links at most; the host says how many.
-const MOST_LINKS = 32u;
-// So many candidates of a link and a part of the mesh come back.
-const CAPACITY = 64u;
-// More than any distance near one.
-const FAR: f32 = 0x1p100f;
-
-struct Round {
-    // The first link of this round, and how many there are.
-    first_link: u32,
-    links: u32,
-    // How many links a workgroup takes, and how many triangles each of its threads.
-    links_at_once: u32,
-    triangles_at_once: u32,
-    // The triangles of this part, its first block of all blocks, and how many blocks all parts have.
-    triangles: u32,
-    first_block: u32,
-    blocks: u32,
-    // Where the candidates of the first link and this part go.
-    first_slot: u32,
-}
-
-struct PlacedLink {
+// A link in the frame of the mesh; `link` counts from its start.
+struct DeviceLink {
     start: vec3<real>,
     length: real,
     // What rounding can do to a distance.
@@ -35,35 +14,24 @@ struct PlacedLink {
 }
 
 @group(0) @binding(0) var<uniform> round: Round;
-@group(0) @binding(1) var<storage, read> links: array<vec4<real>>;
+@group(0) @binding(1) var<storage, read> links: array<LinkRecord>;
 // For each link, as the bits of an f32: what a triangle's bound must not exceed to be of interest.
 @group(0) @binding(2) var<storage, read_write> limits: array<atomic<u32>>;
 @group(0) @binding(3) var<storage, read> spheres: array<vec4<real>>;
-@group(0) @binding(4) var<storage, read> faces: array<vec4<real>>;
+@group(0) @binding(4) var<storage, read> faces: array<FaceRecord>;
 // For each link of the round and each block of triangles: the least lower and the least upper bound, as bits.
 @group(0) @binding(5) var<storage, read_write> block_bounds: array<vec2<u32>>;
 
-fn load_link(number: u32) -> PlacedLink {
-    let start = links[4u * number];
-    let end = links[4u * number + 1u];
-    let axis = links[4u * number + 2u];
-    let other = links[4u * number + 3u];
-    let link = Link(end.xyz, axis.xyz, other.x, real(0.0) < other.z, real(0.0) < other.w);
-    return PlacedLink(start.xyz, end.w, other.y, link);
+fn load_link(number: u32) -> DeviceLink {
+    let record = links[number];
+    let flat_start = real(0.0) < record.flat_start;
+    let flat_end = real(0.0) < record.flat_end;
+    let link = Link(record.end, record.axis, record.radius, flat_start, flat_end);
+    return DeviceLink(record.start, record.length, record.error, link);
 }
 
 fn load_face(triangle: u32) -> Face {
-    let first = faces[4u * triangle];
-    let second = faces[4u * triangle + 1u];
-    let third = faces[4u * triangle + 2u];
-    let fourth = faces[4u * triangle + 3u];
-    return face_again(
-        first.xyz,
-        vec3<real>(first.w, second.xy),
-        vec3<real>(second.zw, third.x),
-        third.yzw,
-        fourth.xyz,
-    );
+    return face_unpack(faces[triangle]);
 }
 
 fn load_limit(number: u32) -> f32 {
@@ -75,21 +43,15 @@ fn block_place(link: u32, block: u32) -> u32 {
     return link * round.blocks + round.first_block + block;
 }
 
-// How many blocks this part has.
-fn part_blocks() -> u32 {
-    let size = 256u * round.triangles_at_once;
-    return (round.triangles + size - 1u) / size;
-}
-
 // From the axis point nearest to `point`, to it.
-fn offset_from_axis(placed: PlacedLink, point: vec3<real>) -> vec3<real> {
+fn offset_from_axis(placed: DeviceLink, point: vec3<real>) -> vec3<real> {
     let relative = point - placed.start;
     let t = min(max(dot(relative, placed.link.axis), real(0.0)), placed.length);
     return along(relative, placed.link.axis, -t);
 }
 
 // An upper bound on the distance of what is in a sphere: some point of it is that near.
-fn reach_of_sphere(placed: PlacedLink, sphere: vec4<real>) -> real {
+fn reach_of_sphere(placed: DeviceLink, sphere: vec4<real>) -> real {
     // Any point of a triangle bounds F; beyond a flat cap F bounds the distance alone.
     let flat_cap = placed.link.flat_start || placed.link.flat_end;
     let beyond = select(real(0.0), placed.link.radius, flat_cap);
@@ -97,13 +59,13 @@ fn reach_of_sphere(placed: PlacedLink, sphere: vec4<real>) -> real {
 }
 
 // Whether a sphere comes within `limit` of the axis.
-fn meets_sphere(placed: PlacedLink, sphere: vec4<real>, limit: real) -> bool {
+fn meets_sphere(placed: DeviceLink, sphere: vec4<real>, limit: real) -> bool {
     let reach = limit + sphere.w;
     return norm_squared(offset_from_axis(placed, sphere.xyz)) <= reach * reach;
 }
 
 // Bounds on how near a triangle is: the axis distance twice where no flat cap decides.
-fn near_bounds(placed: PlacedLink, face: Face) -> Bounds {
+fn near_bounds(placed: DeviceLink, face: Face) -> Bounds {
     let seen = face_seen_from(face, placed.start);
     let axial = axial_new(placed.link, seen);
     let axis = sqrt(axial.axis_squared);
@@ -115,7 +77,7 @@ fn near_bounds(placed: PlacedLink, face: Face) -> Bounds {
 }
 
 // The distance with every disc that decides it: the paper's work for a pair.
-fn full_distance(placed: PlacedLink, face: Face) -> real {
+fn full_distance(placed: DeviceLink, face: Face) -> real {
     let seen = face_seen_from(face, placed.start);
     let axial = axial_new(placed.link, seen);
     if (axial_beyond_flat_cap(axial)) {

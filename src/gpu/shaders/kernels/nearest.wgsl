@@ -1,4 +1,5 @@
-// Every triangle against every link: the least bounds of each block of triangles and each link.
+// Every triangle against every link, the least bounds of each block of triangles and each link: the twin of Job::scan
+// in proximity/scan.rs.
 //
 // First pass of two (bounds; then the discs that survive): with culling a triangle that its sphere does not rule
 // out costs the distance from the axis and the cap's bounds. Without, every pair costs its full distance.
@@ -10,7 +11,7 @@ var<workgroup> own_limits: array<f32, MOST_LINKS>;
 var<workgroup> least_lower: array<atomic<u32>, MOST_LINKS>;
 var<workgroup> least_upper: array<atomic<u32>, MOST_LINKS>;
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(THREADS)
 fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let first = workgroup.y * round.links_at_once;
     let count = min(round.links_at_once, round.links - first);
@@ -21,7 +22,7 @@ fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
     }
     workgroupBarrier();
     for (var k = 0u; k < round.triangles_at_once; k++) {
-        let triangle = (workgroup.x * round.triangles_at_once + k) * 256u + lane;
+        let triangle = (workgroup.x * round.triangles_at_once + k) * THREADS + lane;
         if (round.triangles <= triangle) {
             break;
         }

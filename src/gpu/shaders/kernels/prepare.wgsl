@@ -4,20 +4,19 @@
 @group(0) @binding(1) var<storage, read> indices: array<u32>;
 // A sphere's centre and radius.
 @group(0) @binding(2) var<storage, read_write> spheres: array<vec4<real>>;
-// A face's vertices and dual basis in the first 15 of 16 numbers.
-@group(0) @binding(3) var<storage, read_write> faces: array<vec4<real>>;
+@group(0) @binding(3) var<storage, read_write> faces: array<FaceRecord>;
 
 fn vertex(index: u32) -> vec3<real> {
     return vec3<real>(vertices[3u * index], vertices[3u * index + 1u], vertices[3u * index + 2u]);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(THREADS)
 fn prepare(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let triangle = (workgroup.y * workgroups.x + workgroup.x) * 256u + lane;
+    let triangle = (workgroup.y * workgroups.x + workgroup.x) * THREADS + lane;
     if (arrayLength(&spheres) <= triangle) {
         return;
     }
@@ -37,8 +36,5 @@ fn prepare(
     let radius = sqrt(select(around_centroid, around_middle, take_middle));
     // Twice the margin of the twin: square roots of shading languages are less exact.
     spheres[triangle] = vec4<real>(centre, radius * (real(1.0) + real(16.0) * UNIT_ROUNDOFF));
-    faces[4u * triangle] = vec4<real>(face.a, face.b.x);
-    faces[4u * triangle + 1u] = vec4<real>(face.b.yz, face.c.xy);
-    faces[4u * triangle + 2u] = vec4<real>(face.c.z, face.dual1);
-    faces[4u * triangle + 3u] = vec4<real>(face.dual2, real(0.0));
+    faces[triangle] = face_pack(face);
 }

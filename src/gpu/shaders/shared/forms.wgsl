@@ -1,13 +1,6 @@
 // The two distances of the paper's Tables II and III by clamping and by a decision tree, squared: the same products,
 // so that they differ in branching alone. Neither is as exact as the functions of the narrow phase.
 
-// Which form; the order is that of Form in forms.rs.
-override FORM: u32 = 0u;
-
-// Four points a problem.
-@group(0) @binding(0) var<storage, read> problems: array<real>;
-@group(0) @binding(1) var<storage, read_write> answers: array<real>;
-
 // Segment p0 p1 and segment q0 q1: what both forms compute first.
 struct TwoSegments {
     along1: vec3<real>,
@@ -148,39 +141,6 @@ fn tree_triangle(p: vec3<real>, a: vec3<real>, b: vec3<real>, c: vec3<real>) -> 
     return norm_squared(along(along(ap, ab, -(beta * scale)), ac, -(gamma * scale))); // face
 }
 
-fn form_point(problem: u32, place: u32) -> vec3<real> {
-    let at = 12u * problem + 3u * place;
-    return vec3<real>(problems[at], problems[at + 1u], problems[at + 2u]);
-}
-
-@compute @workgroup_size(64)
-fn forms(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let problem = (workgroup.y * workgroups.x + workgroup.x) * 64u + lane;
-    if (arrayLength(&answers) <= problem) {
-        return;
-    }
-    let first = form_point(problem, 0u);
-    let second = form_point(problem, 1u);
-    let third = form_point(problem, 2u);
-    let fourth = form_point(problem, 3u);
-    var squared: real;
-    switch (FORM) {
-        case 0u: {
-            squared = clamped_segments(two_segments(first, second, third, fourth));
-        }
-        case 1u: {
-            squared = tree_segments(two_segments(first, second, third, fourth));
-        }
-        case 2u: {
-            squared = clamped_triangle(first, second, third, fourth);
-        }
-        default: {
-            squared = tree_triangle(first, second, third, fourth);
-        }
-    }
-    answers[problem] = squared;
+fn form_point(place: u32) -> vec3<real> {
+    return vec3<real>(problems[place], problems[place + 1u], problems[place + 2u]);
 }

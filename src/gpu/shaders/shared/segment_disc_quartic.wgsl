@@ -1,7 +1,5 @@
 // Segment against disc by the paper's quartic, recentred: the twin of RecentredQuartic in roots/quartic.rs.
-
-// Which root finder: the closed form, or the companion matrix.
-override COMPANION: bool = false;
+// `approximate` is the root finder, declared beside this text.
 
 // For the disc around the origin with a unit normal.
 fn segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius: real) -> Closest {
@@ -54,11 +52,7 @@ fn quartic_roots(a0: real, a1: real, a2: real, a3: real, a4: real) {
         monic[k] = coefficients[low + k] / coefficients[high];
     }
     monic[degree] = real(1.0);
-    if (COMPANION) {
-        companion(&monic, degree);
-    } else {
-        closed_form(&monic, degree);
-    }
+    approximate(&monic, degree);
 }
 
 // The squared distance of the line's point from the solid disc.

@@ -1,16 +1,18 @@
-// The candidates of each link: the triangles whose distance does not exceed the limit, discs included.
+// The candidates of each link, the triangles whose distance does not exceed the limit, discs included: what
+// Findings of proximity/scan.rs collect.
 //
 // Second pass of two: only blocks and triangles whose lower bound survived the first are looked at, and only those
 // that a flat cap decides cost a disc. They come in any order; the host sorts them.
 
-// For each slot the number of candidates, then the triangles of the first CAPACITY.
+// For each slot: how many blocks have answered, times the submission's number; how many candidates there are; and the
+// triangles of the first CAPACITY.
 @group(0) @binding(6) var<storage, read_write> found: array<atomic<u32>>;
 // Their distances.
 @group(0) @binding(7) var<storage, read_write> distances: array<real>;
 
 var<workgroup> survives: array<u32, MOST_LINKS>;
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(THREADS)
 fn collect(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let first = workgroup.y * round.links_at_once;
     let count = min(round.links_at_once, round.links - first);
@@ -27,7 +29,7 @@ fn collect(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
         let placed = load_link(number);
         let limit = real(load_limit(number));
         for (var k = 0u; k < round.triangles_at_once; k++) {
-            let triangle = (workgroup.x * round.triangles_at_once + k) * 256u + lane;
+            let triangle = (workgroup.x * round.triangles_at_once + k) * THREADS + lane;
             if (round.triangles <= triangle) {
                 break;
             }
@@ -47,11 +49,15 @@ fn collect(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
                 }
             }
             let slot = round.first_slot + first + i;
-            let place = atomicAdd(&found[slot * (CAPACITY + 1u)], 1u);
+            let place = atomicAdd(&found[slot * SLOT + 1u], 1u);
             if (place < CAPACITY) {
-                atomicStore(&found[slot * (CAPACITY + 1u) + 1u + place], triangle);
+                atomicStore(&found[slot * SLOT + 2u + place], triangle);
                 distances[slot * CAPACITY + place] = distance;
             }
         }
+    }
+    // What nobody has written is no answer: the host counts the blocks.
+    if (lane < count) {
+        atomicAdd(&found[(round.first_slot + first + lane) * SLOT], round.submission);
     }
 }

@@ -1,11 +1,8 @@
 // A first limit for each link, from the spheres of a sample of the triangles: Job::first_bounds in proximity/scan.rs.
 
-// At most so many triangles are looked at.
-const SAMPLES = 16384u;
-
 var<workgroup> least: atomic<u32>;
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(THREADS)
 fn sample(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if (lane == 0u) {
         atomicStore(&least, bitcast<u32>(FAR));
@@ -15,7 +12,7 @@ fn sample(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation
     let placed = load_link(number);
     let stride = (round.triangles + SAMPLES - 1u) / SAMPLES;
     var nearest = FAR;
-    for (var triangle = lane * stride; triangle < round.triangles; triangle += 256u * stride) {
+    for (var triangle = lane * stride; triangle < round.triangles; triangle += THREADS * stride) {
         let reach = reach_of_sphere(placed, spheres[triangle]) + real(2.0) * placed.error;
         nearest = min(nearest, from_above(reach));
     }

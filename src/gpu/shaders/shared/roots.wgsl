@@ -1,7 +1,7 @@
 // What the root finders share: where roots go, quadratics, and powers of two. The twins are roots/found.rs,
 // roots/quadratic.rs and roots/real.rs.
 //
-// COEFFICIENTS, one more than the degree, is declared before this text. Coefficients come lowest power first and are
+// COEFFICIENTS, one more than the degree, LARGEST and ROOT_STEPS are declared beside this text. Coefficients come lowest power first and are
 // of comparable size: polynomials are not cut into pieces here.
 
 // There is always room for a quartic.
