@@ -1,17 +1,14 @@
 //! All links against all triangles, on one thread, against a loop of parry's `distance(Cylinder, Triangle)`.
 
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
+use continuum_scene::levels::levels;
+use continuum_scene::subdivide::{in_four, shuffled};
+use continuum_scene::{ctr, timing, ventricle};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{Exhaustive, Precision, Proximity};
-use scene::levels::levels;
-use scene::subdivide::{in_four, shuffled};
-use scene::{timing, ventricle};
+use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -23,7 +20,7 @@ fn exhaustive(criterion: &mut Criterion) {
     let (vertices, indices) = shuffled(in_four(ventricle::mesh(ventricle::DEFAULT_TRIANGLES)), 1);
     let mesh = TriMesh::new(vertices, indices).expect("a valid mesh");
     let base = ventricle::entry();
-    let line = scene::ctr::three_tubes().centreline(&ventricle::goal(), 30);
+    let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let models = [
         ("K", Chain::capsules(&line.points, &line.radii)),
         ("Z*", Chain::from_centreline(&line.points, &line.radii)),
@@ -77,7 +74,7 @@ fn exhaustive(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn engine<T: Precision>(mesh: &TriMesh, culling: bool) -> Exhaustive<T> {
+fn engine<T: SearchPrecision>(mesh: &TriMesh, culling: bool) -> Exhaustive<T> {
     let mut engine = Exhaustive::new(mesh).expect("a valid mesh");
     engine.set_culling(culling);
     engine

@@ -3,16 +3,13 @@
 //! The robot sways into the wall and back while its tubes turn, so that its shape differs at every step. Everything
 //! is kinematic: the bodies cost nothing to move, what is left are the broad and the narrow phase.
 
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
+use continuum_scene::{ctr, ventricle};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use parry_continuum::{Chain, ModifiedCylinder, rapier};
 use rapier3d_f64::prelude::*;
-use scene::{ctr, ventricle};
 use std::hint::black_box;
 
 const LINKS: usize = 30;

@@ -1,14 +1,12 @@
 //! The root finders on random polynomials, and as routes from a segment to a disc beside the convex one.
 
-#[path = "../examples/scene/random.rs"]
-#[allow(dead_code)]
-mod random;
-
+use continuum_studies::Number;
+use continuum_studies::quartic::{QuarticAsPrinted, RecentredQuartic};
+use continuum_testing::Random;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use parry_continuum::distance::{Convex, DiscSolver, Vec3};
-use parry_continuum::roots::*;
-use random::Random;
+use polynomial_roots::*;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -51,7 +49,7 @@ fn finders(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn route<S: DiscSolver<T>, T: Real>(group: &mut BenchmarkGroup<WallTime>, name: &str) {
+fn route<S: DiscSolver<T>, T: Number>(group: &mut BenchmarkGroup<WallTime>, name: &str) {
     let mut random = Random::new(1);
     let vec3 = |p: [f64; 3]| Vec3::from(p.map(T::of));
     let problems: Vec<_> = (0..COUNT)

@@ -1,14 +1,11 @@
 //! Per-link closest pairs by search, against parry on the same mesh and links, in one run.
 
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
+use continuum_scene::{cavity, timing};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Cylinder, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Proximity};
-use scene::{cavity, timing};
 use std::hint::black_box;
 use std::time::Duration;
 

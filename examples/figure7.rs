@@ -4,17 +4,14 @@
 //! right only while segments are longer than the radius and the radius does not change; otherwise caps stick out.
 //! Algorithm 1 (`Chain::from_centreline`) places round caps only where they stay inside.
 
-#[path = "scene/mod.rs"]
-mod scene;
-
 use clap::Parser;
+use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_scene::command;
+use continuum_scene::picture::{Camera, Picture, Solid};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::SharedShape;
 use parry_continuum::{Cap, Chain, ModifiedCylinder, RobotError};
 use rayon::prelude::*;
-use scene::canvas::{Align, Canvas, Colour, hex, mix};
-use scene::command;
-use scene::picture::{Camera, Picture, Solid};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -6,18 +6,15 @@
 //! the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
 //! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
-#[path = "scene/mod.rs"]
-mod scene;
-
 use clap::{Parser, ValueEnum};
+use continuum_scene::anatomy::{Anatomy, no_goal, show};
+use continuum_scene::ctr::{Centreline, Joints, Robot, three_tubes};
+use continuum_scene::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, simplify};
-use scene::anatomy::{Anatomy, no_goal, show};
-use scene::ctr::{Centreline, Joints, Robot, three_tubes};
-use scene::{command, figure, steer, timing, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;

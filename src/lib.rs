@@ -61,7 +61,6 @@ pub mod gpu;
 mod host;
 pub mod proximity;
 mod robot;
-pub mod roots;
 
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]

@@ -1,11 +1,8 @@
 //! The elastic robot of the example `rapier_ventricle` bends as beam theory says, pulled or pressed against a wall.
 
-#[path = "../examples/rapier_ventricle/rod.rs"]
-mod rod;
-
+use continuum_scene::rod::{self, RestShape, Rod};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use rapier3d_f64::prelude::*;
-use rod::{RestShape, Rod};
 
 /// Bending stiffness in mN mm^2, length in mm.
 const EI: Real = 5e5;

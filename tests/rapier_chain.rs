@@ -2,15 +2,12 @@
 //! clearance says, and it makes no contacts with itself.
 
 mod rapier_common;
-#[path = "../examples/scene/mod.rs"]
-mod scene;
-
+use continuum_scene::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use parry_continuum::{Chain, rapier};
 use rapier3d_f64::prelude::*;
-use scene::{ctr, ventricle};
 use std::sync::Mutex;
 
 /// The events of a step.

@@ -2,9 +2,9 @@
 //! wire shows where the wall has bent the robot away from it.
 
 use super::record::Moment;
-use super::scene::canvas::{Align, Canvas, Colour, hex, mix};
-use super::scene::colour_map::ColourMap;
-use super::scene::picture::{Camera, Picture, SKY, Skin, Solid};
+use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_scene::colour_map::ColourMap;
+use continuum_scene::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};

@@ -10,11 +10,11 @@
 mod film;
 mod plan;
 mod record;
-mod rod;
-#[path = "../scene/mod.rs"]
-mod scene;
-
 use clap::Parser;
+use continuum_scene::anatomy::{Anatomy, no_goal};
+use continuum_scene::ctr::three_tubes;
+use continuum_scene::rod::{self, Rod};
+use continuum_scene::{command, steer, ventricle};
 use film::Studio;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real};
@@ -23,10 +23,6 @@ use parry_continuum::proximity::{BvhSearch, Proximity};
 use plan::Plan;
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, TriMeshFlags};
 use record::{Moment, Recorder};
-use rod::Rod;
-use scene::anatomy::{Anatomy, no_goal};
-use scene::ctr::three_tubes;
-use scene::{command, steer, ventricle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};

@@ -159,9 +159,14 @@ lanes!(F32s, F32Mask, f32, f32s, mask32s, u32, 23, 127, CBRT_BITS_F32);
 lanes!(F64s, F64Mask, f64, f64s, mask64s, u64, 52, 1023, CBRT_BITS_F64);
 
 /// A precision in which packs exist.
-pub(crate) trait Lane: Scalar<Mask = bool> + Default + Into<f64> + Send + Sync + 'static {
+pub(crate) trait Lane:
+    Scalar<Mask = bool> + Default + PartialOrd + Into<f64> + Send + Sync + 'static
+{
     /// The pack of an instruction set.
     type Pack<S: Simd>: Pack<Element = Self, Token = S>;
+
+    /// Lengths up to here have finite products in the bounds and distances of a search.
+    const FARTHEST: f64;
 
     /// The nearest number of this precision.
     fn round(value: f64) -> Self;
@@ -169,6 +174,7 @@ pub(crate) trait Lane: Scalar<Mask = bool> + Default + Into<f64> + Send + Sync +
 
 impl Lane for f32 {
     type Pack<S: Simd> = F32s<S>;
+    const FARTHEST: f64 = 1.0e6;
 
     #[inline(always)]
     fn round(value: f64) -> Self {
@@ -178,6 +184,7 @@ impl Lane for f32 {
 
 impl Lane for f64 {
     type Pack<S: Simd> = F64s<S>;
+    const FARTHEST: f64 = 1.0e30;
 
     #[inline(always)]
     fn round(value: f64) -> Self {

@@ -36,14 +36,9 @@ mod triangle_modified_cylinder;
 mod vec3;
 
 pub(crate) use face::Face;
-#[cfg(feature = "gpu")]
-pub(crate) use frame::Frame;
-pub(crate) use point_disc::from_centre as disc_point;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
 #[cfg(feature = "gpu")]
 pub(crate) use scalar::CBRT_BITS_F32;
-pub(crate) use segment_disc::Line;
-pub(crate) use triangle_disc::pack_from_centre as pack_disc;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 #[doc(hidden)] // for the comparison of instruction sets
@@ -55,7 +50,7 @@ pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
 pub use point_triangle::point_triangle;
 pub use scalar::{Mask, Scalar};
-pub use segment_disc::{segment_disc, segment_disc_by};
+pub use segment_disc::{LineDisc, segment_disc, segment_disc_by};
 pub use segment_segment::segment_segment;
 pub use segment_triangle::segment_triangle;
 pub use triangle_disc::{triangle_disc, triangle_disc_by};

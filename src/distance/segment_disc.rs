@@ -34,7 +34,6 @@
 //! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is as small as its
 //! own rounding, at the cusp, a step could otherwise leave for the far end of the interval.
 
-use super::lanes::{Lane, Pack};
 use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
 /// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the given centre,
@@ -65,29 +64,17 @@ pub fn segment_disc_by<S: DiscSolver<T>, T: Scalar>(
 impl<T: Scalar> DiscSolver<T> for Convex {
     #[inline(always)]
     fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
-        let line = Line::new(ends, normal);
+        let line = LineDisc::new(ends, normal);
         let (s, pierces) = line.nearest_to_disc(radius);
         line.closest_at(s, pierces, normal, radius)
     }
-
-    #[allow(private_bounds, private_interfaces)] // as in the trait
-    #[inline(always)]
-    fn segment_discs<L: Pack<Element = T>>(
-        _: L::Token,
-        ends: [Vec3<L>; 2],
-        normal: Vec3<L>,
-        radius: L,
-        _: L::Mask,
-    ) -> Closest<L>
-    where
-        T: Lane,
-    {
-        <Self as DiscSolver<L>>::segment_disc(ends, normal, radius)
-    }
 }
 
-/// A line seen from a disc around the origin: the quantities of the head of this file.
-pub(crate) struct Line<T: Scalar> {
+/// A line seen from a disc around the origin, as a [`DiscSolver`] may see it.
+///
+/// The point s = 0 is the foot of the disc's centre, B the line's unit direction, turned so that N >= 0.
+#[derive(Clone, Copy, Debug)]
+pub struct LineDisc<T: Scalar> {
     /// Unit direction of the segment.
     direction: Vec3<T>,
     /// The end nearer to the foot of the disc's centre, from which positions along the direction count.
@@ -98,18 +85,23 @@ pub(crate) struct Line<T: Scalar> {
     far_at: T,
     /// -1 where s runs against the direction.
     sign: T,
+    /// How far the foot is above or below the disc's plane.
     pub h: T,
+    /// |<B, n>|, n being the disc's normal.
     pub lambda: T,
+    /// The squared length of B's part in the disc's plane.
     pub m: T,
+    /// N = <q, P>, q and P being the parts of the foot and of B in the disc's plane.
     pub n: T,
     tau: T,
     /// |q|^2
     pub q: T,
 }
 
-impl<T: Scalar> Line<T> {
+impl<T: Scalar> LineDisc<T> {
+    /// The line through `start` and `end`, and the disc with the unit vector `normal`.
     #[inline(always)]
-    pub(crate) fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
+    pub fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
         let edge = end - start;
         let direction = edge.normalised();
         let length = edge.dot(direction);
@@ -148,9 +140,9 @@ impl<T: Scalar> Line<T> {
         }
     }
 
-    /// The distance from the disc's axis, and w, at s.
+    /// The distance from the disc's axis at s, and w = N + m s.
     #[inline(always)]
-    pub(crate) fn radial_at(&self, s: T) -> (T, T) {
+    pub fn radial_at(&self, s: T) -> (T, T) {
         let w = self.m.mul_add(s, self.n);
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
@@ -205,7 +197,7 @@ impl<T: Scalar> Line<T> {
     /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets the disc
     /// there and the segment gets that far, that point is common, whatever rounding says of its height.
     #[inline(always)]
-    pub(crate) fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
+    pub fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
         let along = s.mul_add(self.sign, self.foot);
         let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));

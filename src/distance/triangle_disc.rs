@@ -10,7 +10,6 @@
 //!
 //! The face's candidate is the distance between two actual points, the disc's and its foot on the triangle.
 
-use super::lanes::{Lane, Pack};
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
 /// The distance between a triangle and a solid disc with the given centre, normal (of any length but 0) and
@@ -50,29 +49,7 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     let edges = S::segment_disc([a, b], normal, radius)
         .nearer(S::segment_disc([b, c], normal, radius))
         .nearer(S::segment_disc([c, a], normal, radius));
-    with_edges(edges, face, normal, radius)
-}
-
-/// As [`from_centre`] for a pack, of which only the lanes `wanted` count.
-#[inline(always)]
-pub(crate) fn pack_from_centre<S: DiscSolver<T>, T: Lane, L: Pack<Element = T>>(
-    token: L::Token,
-    face: &Face<L>,
-    normal: Vec3<L>,
-    radius: L,
-    wanted: L::Mask,
-) -> Closest<L> {
-    let [a, b, c] = face.vertices;
-    let edges = S::segment_discs::<L>(token, [a, b], normal, radius, wanted)
-        .nearer(S::segment_discs::<L>(token, [b, c], normal, radius, wanted))
-        .nearer(S::segment_discs::<L>(token, [c, a], normal, radius, wanted));
-    with_edges(edges, face, normal, radius)
-}
-
-/// The nearer of what the edges have found and the face, cases 2 and 3.
-#[inline(always)]
-fn with_edges<T: Scalar>(edges: Closest<T>, face: &Face<T>, normal: Vec3<T>, radius: T) -> Closest<T> {
-    let [a, ..] = face.vertices;
+    // Cases 2 and 3.
     let plane_normal = face.normal();
     let nearest = plane_disc::from_centre(plane_normal.dot(a), plane_normal, normal, radius);
     let projection = face.project(nearest.point);

@@ -127,6 +127,12 @@ impl<T: Scalar> Axial<T> {
         bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius, behind)
     }
 
+    /// The answer, discs included.
+    #[inline(always)]
+    pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
+        self.with_caps_by::<Convex>(link, face)
+    }
+
     /// The answer, discs included, by the route `S`.
     #[inline(always)]
     pub(crate) fn with_caps_by<S: DiscSolver<T>>(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {

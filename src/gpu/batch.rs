@@ -4,7 +4,7 @@ use super::clock::{Clock, READINGS};
 use super::failures::Watch;
 use super::opened::Gpu;
 use super::record::{Record, record};
-use super::shaders::EntryPoint;
+use super::wgsl::Shader;
 use super::{GpuError, Precision};
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
@@ -44,8 +44,9 @@ impl<'a> BatchKernel<'a> {
         Self { name, text, problem, answer }
     }
 
-    pub(super) fn entry_point(&self, precision: Precision) -> EntryPoint {
-        EntryPoint::batch(precision, self.text, self.problem(), self.answer())
+    /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
+    pub fn shader(&self, precision: Precision) -> Shader {
+        Shader::batch(precision, self.text, self.problem(), self.answer())
     }
 
     /// Numbers of a problem.
@@ -105,7 +106,7 @@ impl Batch {
         let layout = device.layout(&[None, Some(false), Some(true)]);
         Ok(Self {
             watch: device.failures.watch(),
-            kernel: device.compile(kernel.name, &kernel.entry_point(device.precision), &layout, &[])?,
+            kernel: device.compile(kernel.name, &kernel.shader(device.precision), &layout, &[])?,
             layout,
             problem: kernel.problem().into(),
             answer: kernel.answer().into(),

@@ -2,7 +2,7 @@
 
 use super::failures::{Failures, Watch};
 use super::record::Record;
-use super::shaders::EntryPoint;
+use super::wgsl::Shader;
 use super::{GpuError, Precision};
 use crate::proximity::DeviceFailure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -93,7 +93,7 @@ impl Device {
     pub(super) fn compile(
         &self,
         name: &str,
-        kernel: &EntryPoint,
+        kernel: &Shader,
         layout: &wgpu::BindGroupLayout,
         constants: &[(&str, f64)],
     ) -> Result<wgpu::ComputePipeline, GpuError> {
@@ -112,7 +112,7 @@ impl Device {
             label: Some(name),
             layout: Some(&layout),
             module: &module,
-            entry_point: Some(kernel.name),
+            entry_point: Some(kernel.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants,
                 zero_initialize_workgroup_memory: false,

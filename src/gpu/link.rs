@@ -2,8 +2,11 @@ use super::Precision;
 use super::record::record;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::proximity::{CoarseFrame, CoarseLink, Probe};
+use crate::proximity::{PlacedLink, SearchFrame, SearchLink};
 use parry3d_f64::math::Real;
+
+/// Shaders pass bounds on in single precision, so that links farther out are none for double precision either.
+const FARTHEST: Real = <f32 as Lane>::FARTHEST;
 
 /// More than any distance near one.
 pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
@@ -23,40 +26,42 @@ record! {
     }
 }
 
-/// A link as the GPU sees it, and the way from what the GPU finds to the probe's units.
+/// A link as the GPU sees it, and the way from what the GPU finds to the mesh's unit.
+#[derive(Debug)]
 pub(super) struct DeviceLink {
     pub record: LinkRecord,
     /// What a triangle's distance from the axis must not exceed to be of interest.
     pub limit: f32,
-    coarse: Coarse,
+    searched: Searched,
 }
 
 /// A link in the precision of the search.
-enum Coarse {
-    Single(CoarseLink<f32>),
-    Double(CoarseLink<f64>),
+#[derive(Debug)]
+enum Searched {
+    Single(SearchLink<f32>),
+    Double(SearchLink<f64>),
 }
 
 impl DeviceLink {
-    /// The link of a probe; only triangles nearer than `bound`, in the probe's units, are of interest. None where it
-    /// lies too far out for the search.
+    /// A link of which only triangles at most `bound` away are of interest, if there is a bound. None where it lies too
+    /// far out for the search.
     pub(super) fn new(
-        probe: &Probe,
-        frame: &CoarseFrame,
+        link: &PlacedLink,
+        frame: &SearchFrame,
         bound: Option<Real>,
         precision: Precision,
     ) -> Option<Self> {
         Some(match precision {
-            Precision::F32 => Self::of(CoarseLink::new(probe, frame)?, bound, Coarse::Single),
-            Precision::F64 => Self::of(CoarseLink::new(probe, frame)?, bound, Coarse::Double),
+            Precision::F32 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Single)?,
+            Precision::F64 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Double)?,
         })
     }
 
     fn of<E: Lane>(
-        link: CoarseLink<E>,
+        link: SearchLink<E>,
         bound: Option<Real>,
-        coarse: impl FnOnce(CoarseLink<E>) -> Coarse,
-    ) -> Self {
+        searched: impl FnOnce(SearchLink<E>) -> Searched,
+    ) -> Option<Self> {
         let number = |value: E| -> Real { value.into() };
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
         let [flat_start, flat_end] = link.flat.map(|flat| if flat { 1.0 } else { 0.0 });
@@ -72,7 +77,8 @@ impl DeviceLink {
             flat_start,
             flat_end,
         };
-        Self { record, limit, coarse: coarse(link) }
+        let reach = record.start.iter().chain(&record.end).fold(record.radius, |reach, x| reach.max(x.abs()));
+        (reach <= FARTHEST).then(|| Self { record, limit, searched: searched(link) })
     }
 
     /// Whether only triangles within a margin are of interest.
@@ -80,11 +86,11 @@ impl DeviceLink {
         self.limit < FAR
     }
 
-    /// What a triangle is at least from the link, in the probe's units, by the distance that the GPU computed.
+    /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU computed.
     pub(super) fn at_least(&self, distance: Real) -> Real {
-        match &self.coarse {
-            Coarse::Single(link) => link.at_least(distance),
-            Coarse::Double(link) => link.at_least(distance),
+        match &self.searched {
+            Searched::Single(link) => link.at_least(distance),
+            Searched::Double(link) => link.at_least(distance),
         }
     }
 

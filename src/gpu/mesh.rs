@@ -2,10 +2,10 @@
 
 use super::opened::Opened;
 use super::plan::THREADS;
-use super::shaders::FACE_VECTORS;
+use super::wgsl::FACE_VECTORS;
 use crate::distance::Vec3;
-use crate::proximity::CoarseFrame;
-use parry3d_f64::math::{Real, Vector};
+use crate::proximity::{Mesh, SearchFrame};
+use parry3d_f64::math::Real;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Numbers of a triangle's sphere, and of its face.
@@ -34,14 +34,14 @@ pub(super) struct Part {
 }
 
 impl DeviceMesh {
-    /// Room for a mesh of so many vertices, in parts of at most `most` triangles, or as many as a buffer takes. Whether
-    /// the device has that room, its failures tell.
-    pub(super) fn new(gpu: &Opened, vertices: usize, indices: &[[u32; 3]], most: usize) -> Self {
+    /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether the device has that
+    /// room, its failures tell.
+    pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
         let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision.size())) as usize;
-        let mut places = vec![u32::MAX; vertices];
+        let mut places = vec![u32::MAX; mesh.vertices().len()];
         let mut parts = Vec::new();
         let mut first = 0;
-        for part in indices.chunks(most.min(fit).max(1)) {
+        for part in mesh.indices().chunks(most.min(fit).max(1)) {
             parts.push(Part::new(gpu, first, part, &mut places));
             first += part.len() as u32;
         }
@@ -55,7 +55,7 @@ impl DeviceMesh {
 
     /// Sends the vertices where that is called for: only they travel, the rest is computed on the device. Whether they
     /// arrive, the query that follows tells.
-    pub(super) fn update(&mut self, gpu: &Opened, frame: &CoarseFrame, vertices: &[Vector]) {
+    pub(super) fn update(&mut self, gpu: &Opened, frame: &SearchFrame, mesh: &Mesh) {
         if std::mem::replace(&mut self.is_current, true) {
             return;
         }
@@ -67,7 +67,7 @@ impl DeviceMesh {
         for part in &self.parts {
             bytes.clear();
             for &vertex in &part.vertices {
-                let Vec3 { x, y, z } = frame.point::<Real>(vertices[vertex as usize]);
+                let Vec3 { x, y, z } = frame.point::<Real>(mesh.vertices()[vertex as usize]);
                 for coordinate in [x, y, z] {
                     precision.write(coordinate, &mut bytes);
                 }

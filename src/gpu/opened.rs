@@ -1,6 +1,6 @@
 use super::device::{Adapter, Device};
 use super::self_test;
-use super::shaders::{CONVEX, EntryPoint};
+use super::wgsl::{CONVEX, Shader};
 use super::{GpuError, Precision};
 use std::sync::Arc;
 use wgpu::{BindGroupLayout, ComputePipeline};
@@ -62,14 +62,14 @@ impl Opened {
         let prepare_layout = device.layout(&[read, read, write, write]);
         let query_layout = device.layout(&[None, read, write, read, read, write, write, write]);
         let precision = device.precision;
-        let prepare = EntryPoint::prepare(precision);
-        let query = |kernel: EntryPoint| device.compile(kernel.name, &kernel, &query_layout, &[]);
+        let prepare = Shader::prepare(precision);
+        let query = |kernel: Shader| device.compile(kernel.entry_point, &kernel, &query_layout, &[]);
         Ok(Self {
-            prepare: device.compile(prepare.name, &prepare, &prepare_layout, &[])?,
-            sample: query(EntryPoint::sample(precision))?,
-            nearest: query(EntryPoint::nearest(precision, CONVEX))?,
-            reduce: query(EntryPoint::reduce(precision))?,
-            collect: query(EntryPoint::collect(precision))?,
+            prepare: device.compile(prepare.entry_point, &prepare, &prepare_layout, &[])?,
+            sample: query(Shader::sample(precision))?,
+            nearest: query(Shader::nearest(precision, CONVEX))?,
+            reduce: query(Shader::reduce(precision))?,
+            collect: query(Shader::collect(precision))?,
             prepare_layout,
             query_layout,
             device,
@@ -78,7 +78,7 @@ impl Opened {
 
     /// The kernel that computes every pair in full, by this route from a segment to a disc.
     pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, GpuError> {
-        let kernel = EntryPoint::nearest(self.device.precision, route);
+        let kernel = Shader::nearest(self.device.precision, route);
         self.device.compile("nearest, every pair", &kernel, &self.query_layout, &[("CULLING", 0.0)])
     }
 }

@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 4.0;
 
 /// The quotient of two numbers, and the square root of the first.
 pub(super) const KERNEL: BatchKernel =
-    BatchKernel::new("self_test", include_str!("shaders/shared/self_test.wgsl"), 2, 2);
+    BatchKernel::new("self_test", include_str!("shaders/kernels/self_test.wgsl"), 2, 2);
 
 /// Compares the device's quotients and square roots with the CPU's.
 ///

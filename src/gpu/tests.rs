@@ -3,16 +3,19 @@
 
 use super::batch::{Batch, BatchKernel};
 use super::device::{Adapter, Device};
+use super::link::LinkRecord;
 use super::opened::{Gpu, Opened};
-use super::plan::{Plan, Tuning};
+use super::plan::{Plan, Round, Tuning};
+use super::record::Record;
 use super::self_test::{self, OPERANDS};
-use super::shaders::EntryPoint;
+use super::wgsl::{CONVEX, FACE_VECTORS, Shader};
 use super::{GpuError, GpuExhaustive, Precision};
 use crate::Chain;
 use crate::proximity::{DeviceFailure, Exhaustive, LinkProximity, Proximity, ProximityError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::{Ball, TriMesh};
 use std::sync::OnceLock;
+use wgpu::naga;
 
 /// The GPU of this machine in single precision, if there is one.
 fn gpu() -> Option<&'static Gpu> {
@@ -90,6 +93,7 @@ fn a_batch_takes_many_rounds_and_submissions() {
     assert!((plan.links_per_round as usize) < plan.links_per_submission, "{plan:?}");
     assert!(plan.links_at_once > 1 && plan.triangles_at_once > 1, "{plan:?}");
     let (mut one, mut other) = (Vec::new(), Vec::new());
+    let robots: Vec<_> = robots.iter().map(|(robot, pose)| (robot, *pose)).collect();
     engine.per_link_batch(&robots, &mut one).unwrap();
     Exhaustive::<f64>::new(&mesh).unwrap().per_link_batch(&robots, &mut other).unwrap();
     assert_eq!(one.len(), other.len());
@@ -201,7 +205,7 @@ fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     engine.on_device().unwrap().parts[0].vertex_buffer.destroy();
     engine.set_vertices(&moved).unwrap();
     let mut out = vec![Vec::new()];
-    let failed = engine.per_link_batch(&[(robot.clone(), pose)], &mut out);
+    let failed = engine.per_link_batch(&[(&robot, pose)], &mut out);
     assert_eq!(failed, Err(ProximityError::Device(DeviceFailure::Refused)));
     assert!(out.is_empty());
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected);
@@ -222,7 +226,7 @@ fn what_was_not_written_is_no_answer() {
     // Through the wall.
     let robot = Chain::capsules(&[Vector::ZERO, Vector::X * 20.0], &[0.5]).unwrap();
     let mut gpu = Gpu::open(Precision::F32).unwrap();
-    let idle = EntryPoint { name: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
+    let idle = Shader { entry_point: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
     let layout = gpu.0.query_layout.clone();
     let idle = gpu.0.device.compile("idle", &idle, &layout, &[]).unwrap();
     let opened: &mut Opened = std::sync::Arc::get_mut(&mut gpu.0).unwrap();
@@ -250,7 +254,7 @@ fn an_earlier_answer_is_no_answer() {
     batch.run([1.0, 2.0, 3.0], |answer| answers.extend(answer)).unwrap();
     batch.run([4.0, 5.0, 6.0], |answer| answers.extend(answer)).unwrap();
     assert_eq!(answers, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-    let idle = EntryPoint { name: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
+    let idle = Shader { entry_point: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
     batch.kernel = gpu.0.device.compile("idle", &idle, &batch.layout, &[]).unwrap();
     assert_eq!(batch.run([7.0, 8.0, 9.0], |_| panic!("an answer")), Err(DeviceFailure::Unanswered));
 }
@@ -273,7 +277,7 @@ fn a_shader_that_does_not_compile_is_an_error() {
     let Some(gpu) = gpu() else { return };
     let device = &gpu.0.device;
     let layout = device.layout(&[Some(false), Some(true)]);
-    let kernel = EntryPoint { name: "nonsense", text: "@compute fn nonsense() { return 1; }".into() };
+    let kernel = Shader { entry_point: "nonsense", text: "@compute fn nonsense() { return 1; }".into() };
     match device.compile("nonsense", &kernel, &layout, &[]) {
         Err(GpuError::Shader { kernel, .. }) if kernel == "nonsense" => {}
         other => panic!("{other:?}"),
@@ -307,4 +311,24 @@ fn single_precision_does_not_pass_for_double() {
         assert!(error.to_string().contains("use Precision::F32"), "{error}");
     }
     assert_eq!(adapter.to_string(), "a (b, in software)");
+}
+
+/// What Rust says of a record's size, WGSL says too.
+#[test]
+fn records_are_as_large_as_shaders_see_them() {
+    for precision in [Precision::F32, Precision::F64] {
+        let kernel = Shader::nearest(precision, CONVEX);
+        let module = naga::front::wgsl::parse_str(&kernel.text).unwrap();
+        let mut layouter = naga::proc::Layouter::default();
+        layouter.update(module.to_ctx()).unwrap();
+        for (name, size) in [
+            (Round::NAME, Round::size(precision)),
+            (LinkRecord::NAME, LinkRecord::size(precision)),
+            ("FaceRecord", u64::from(FACE_VECTORS) * 4 * precision.size()),
+        ] {
+            let is_it = |ty: &naga::Type| ty.name.as_deref() == Some(name);
+            let (handle, _) = module.types.iter().find(|(_, ty)| is_it(ty)).expect(name);
+            assert_eq!(u64::from(layouter[handle].size), size, "{name} {precision:?}");
+        }
+    }
 }

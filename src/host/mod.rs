@@ -14,6 +14,7 @@ mod link_manifold;
 mod manifold;
 mod mass;
 mod mesh_manifold;
+mod mesh_search;
 mod parts;
 mod point;
 #[cfg(feature = "rapier")]

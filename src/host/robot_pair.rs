@@ -5,8 +5,9 @@
 //! end.
 
 use super::link_contact::{self, LinkContact};
-use crate::distance::{Scalar, Vec3, triangle_modified_cylinder};
-use crate::proximity::{Found, Probe, Until, search};
+use super::mesh_search::{Until, search};
+use crate::distance::{Vec3, triangle_modified_cylinder};
+use crate::proximity::{Nearest, PlacedLink};
 use crate::robot::COORDINATE_LIMIT;
 use crate::{Cap, Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -40,7 +41,7 @@ pub(super) struct RobotPair<'a> {
 }
 
 /// The closest points of a robot and a surface, in the frame that the pair is measured in.
-struct Nearest {
+struct NearestPair {
     link: usize,
     triangle: u32,
     distance: Real,
@@ -105,16 +106,16 @@ impl<'a> RobotPair<'a> {
     }
 
     /// The closest link and triangle at most `margin` apart.
-    fn nearest(&self, margin: Real, until: Until) -> Result<Option<Nearest>, Unsupported> {
+    fn nearest(&self, margin: Real, until: Until) -> Result<Option<NearestPair>, Unsupported> {
         match self.surface {
             Surface::Triangle(_) => self.nearest_to_triangle(margin),
             Surface::Mesh(mesh) => self.nearest_in_mesh(mesh, margin, until),
         }
     }
 
-    fn nearest_to_triangle(&self, margin: Real) -> Result<Option<Nearest>, Unsupported> {
+    fn nearest_to_triangle(&self, margin: Real) -> Result<Option<NearestPair>, Unsupported> {
         let triangle = self.triangle(0)?;
-        let mut best: Option<Nearest> = None;
+        let mut best: Option<NearestPair> = None;
         for (index, link) in self.links.iter().enumerate() {
             let link = self.placed(link)?;
             let flat = link.caps().map(|cap| cap == Cap::Flat);
@@ -122,7 +123,7 @@ impl<'a> RobotPair<'a> {
             let closest = triangle_modified_cylinder(triangle.map(to_vec3), start, end, link.radius(), flat);
             let is_nearer = best.as_ref().is_none_or(|best| closest.distance < best.distance);
             if closest.distance <= margin && is_nearer {
-                best = Some(Nearest {
+                best = Some(NearestPair {
                     link: index,
                     triangle: 0,
                     distance: closest.distance,
@@ -139,39 +140,28 @@ impl<'a> RobotPair<'a> {
         mesh: &TriMesh,
         margin: Real,
         until: Until,
-    ) -> Result<Option<Nearest>, Unsupported> {
+    ) -> Result<Option<NearestPair>, Unsupported> {
         let (bounds, pose) = (mesh.bvh().root_aabb(), self.robot_pose());
-        let mut reach = in_range(bounds.mins)?.max(in_range(bounds.maxs)?);
-        for link in self.links {
-            let link = self.placed(link)?;
-            reach = reach.max(in_range(link.start())?).max(in_range(link.end())?).max(link.radius());
-        }
-        let scale = reach.power_of_two_to_unity();
-
-        let mut best: Option<(usize, Probe, Found)> = None;
-        for (index, link) in self.links.iter().enumerate() {
-            let probe = Probe::new(link, &pose, scale);
-            // The search wants triangles strictly nearer than its bound. All probes have the same scale.
-            let bound = match &best {
-                Some((_, _, found)) => found.closest.distance,
-                None => probe.scaled(margin).next_up(),
-            };
-            if let Some(found) = search(mesh, &probe, bound, until).map_err(|_| Unsupported)? {
-                best = Some((index, probe, found));
+        in_range(bounds.mins).and(in_range(bounds.maxs))?;
+        let mut best: Option<(usize, Nearest)> = None;
+        for (number, link) in self.links.iter().enumerate() {
+            self.placed(link)?;
+            // The search wants triangles strictly nearer than its bound.
+            let bound = best.map_or(margin.next_up(), |(_, nearest)| nearest.distance);
+            let placed = PlacedLink::new(link, &pose);
+            if let Some(nearest) = search(mesh, &placed, bound, until).map_err(|_| Unsupported)? {
+                best = Some((number, nearest));
                 if until == Until::FirstWithinBound {
                     break;
                 }
             }
         }
-        Ok(best.map(|(link, probe, found)| {
-            let answer = probe.report(link, &found);
-            Nearest {
-                link,
-                triangle: answer.triangle,
-                distance: answer.distance,
-                on_robot: answer.on_robot,
-                on_surface: answer.on_mesh,
-            }
+        Ok(best.map(|(link, nearest)| NearestPair {
+            link,
+            triangle: nearest.triangle,
+            distance: nearest.distance,
+            on_robot: nearest.on_robot,
+            on_surface: nearest.on_mesh,
         }))
     }
 

@@ -7,10 +7,10 @@
 //! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
 //! normals of the features (faces, edges, axis) are tried as well.
 
-use super::probe::check_vertex;
+use super::checks::{check_ends, check_vertex};
 use super::{LinkProximity, MeshError, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
-use crate::robot::{COORDINATE_LIMIT, Cap, Chain, ModifiedCylinder, distance_to_segment, has_direction};
+use crate::robot::{Chain, ModifiedCylinder, distance_to_segment, has_direction};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -40,7 +40,7 @@ impl Certificate {
         for (vertex, point) in triangle.into_iter().enumerate() {
             check_vertex(vertex, point)?;
         }
-        Ok(Placed::new(link, pose, 0)?.bounds(triangle))
+        Ok(CertifiedLink::new(link, pose, 0)?.bounds(triangle))
     }
 }
 
@@ -104,10 +104,10 @@ impl LinkProximity {
         Ok(all)
     }
 
-    fn placed(&self, robot: &Chain, pose: &Pose) -> Result<Placed, ProximityError> {
+    fn placed(&self, robot: &Chain, pose: &Pose) -> Result<CertifiedLink, ProximityError> {
         let (link, links) = (self.link as usize, robot.links());
         let found = links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })?;
-        Placed::new(found, pose, link)
+        CertifiedLink::new(found, pose, link)
     }
 }
 
@@ -127,24 +127,22 @@ type Point = Vec3<DoubleDouble>;
 const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
 
 /// A link in the mesh's frame.
-struct Placed {
+struct CertifiedLink {
     start: Vector,
     end: Vector,
     radius: Real,
     flat: [bool; 2],
 }
 
-impl Placed {
+impl CertifiedLink {
     /// `number` is the link's position in its chain.
     fn new(link: &ModifiedCylinder, pose: &Pose, number: usize) -> Result<Self, ProximityError> {
         if !pose.is_finite() {
             return Err(ProximityError::PoseNotFinite);
         }
         let (start, end) = (pose * link.start(), pose * link.end());
-        if !start.is_finite() || !end.is_finite() || largest([start, end]) > COORDINATE_LIMIT {
-            return Err(ProximityError::OutOfRange { link: number, limit: COORDINATE_LIMIT });
-        }
-        let flat = link.caps().map(|cap| cap == Cap::Flat && has_direction(start, end, link.radius()));
+        check_ends(number, [start, end])?;
+        let flat = link.flat().map(|flat| flat && has_direction(start, end, link.radius()));
         Ok(Self { start, end, radius: link.radius(), flat })
     }
 

@@ -7,6 +7,10 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// `pose` is the robot's in the mesh's frame, and answers are in that frame too. Distances are to the mesh's
 /// surface and unsigned: a link that touches nothing may be on either side of it. All engines give the same
 /// distances; where several triangles are equally close they may name different ones.
+///
+/// The batches take many robots, such as a planner's samples, and answer in their order on all cores.
+///
+/// A query that returns an error leaves `out` empty.
 pub trait Proximity {
     /// The closest triangle of every link, in link order. `out` is cleared first.
     ///
@@ -32,26 +36,40 @@ pub trait Proximity {
     /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError>;
 
-    /// [`Proximity::per_link`] for many robots, such as a planner's samples, in their order.
-    /// `out` gets one entry per robot; its inner vectors are used again.
+    /// [`Proximity::per_link`] for many robots. `out` gets one entry per robot; its inner vectors are used again.
     ///
     /// # Errors
     /// Those of the first robot that has one.
     fn per_link_batch(
         &mut self,
-        robots: &[(Chain, Pose)],
+        robots: &[(&Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
-    ) -> Result<(), ProximityError> {
-        out.resize_with(robots.len(), Vec::new);
-        for ((robot, pose), answers) in robots.iter().zip(out) {
-            self.per_link(robot, pose, answers)?;
-        }
-        Ok(())
-    }
+    ) -> Result<(), ProximityError>;
+
+    /// [`Proximity::minimum`] for many robots. `out` gets one entry per robot.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    fn minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError>;
+
+    /// [`Proximity::clears`] for many robots. `out` gets one entry per robot.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    fn clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<bool>,
+    ) -> Result<(), ProximityError>;
 
     /// Moves the mesh's vertices; the triangles stay as they are.
     ///
     /// # Errors
-    /// The number of vertices differs or one of them is not finite. The engine then keeps the old ones.
+    /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
 }

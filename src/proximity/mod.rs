@@ -1,40 +1,53 @@
 //! Robot against mesh: the closest triangle of every link, by search or exhaustively.
+//!
+//! The way of a query, from top to bottom:
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `engine` | what every engine answers: the trait [`Proximity`] |
+//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `traverse` finds the nearest triangle of a link, `queries` goes through a robot's links, `engine` is [`BvhSearch`] |
+//! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `engine` is [`Exhaustive`] |
+//! | `link_lanes` | a link against a pack of triangles, in the precision of the search |
+//! | `search_frame` | mesh and links near one, in the precision of the search, and what rounding can do there |
+//! | `triangle_block` | how triangles stand in memory, to be loaded in packs |
+//! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
+//! | `mesh` | the mesh as every engine keeps it |
+//! | `certificate` | proofs of an answer |
+//! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
 
-mod bvh;
 mod certificate;
-mod coarse;
-mod descent;
+mod checks;
 mod engine;
+mod error;
 mod exhaustive;
-mod packed;
-mod patch;
+mod link_lanes;
+mod mesh;
+mod parallel;
 mod placed;
-mod probe;
 mod report;
-mod scan;
-mod search;
+mod search_frame;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
-mod share;
-mod soa;
-mod tree;
-mod walk;
+mod triangle_block;
+mod wide_bvh;
 
 #[cfg(feature = "gpu")]
-pub(crate) use coarse::{CoarseFrame, CoarseLink};
-pub(crate) use probe::Probe;
+pub(crate) use checks::check_margin;
 #[cfg(feature = "gpu")]
-pub(crate) use probe::{check_margin, check_moved, check_vertices, place};
-pub(crate) use search::{Found, Until, search};
+pub(crate) use mesh::Mesh;
 #[cfg(feature = "gpu")]
-pub(crate) use share::each;
+pub(crate) use parallel::each;
+#[cfg(feature = "gpu")]
+pub(crate) use placed::PlacedRobot;
+pub(crate) use placed::{Best, Nearest, PlacedLink};
+#[cfg(feature = "gpu")]
+pub(crate) use search_frame::{SearchFrame, SearchLink};
 
-pub use bvh::BvhSearch;
 pub use certificate::Certificate;
-pub use descent::Visits;
 pub use engine::Proximity;
-pub use exhaustive::{Exhaustive, Precision};
 #[cfg(feature = "gpu")]
-pub use report::DeviceFailure;
-pub use report::{LinkProximity, MeshError, ProximityError};
-pub use scan::Work;
+pub use error::DeviceFailure;
+pub use error::{MeshError, ProximityError};
+pub use exhaustive::{Exhaustive, SearchPrecision};
+pub use report::{LinkProximity, Work};
+pub use wide_bvh::BvhSearch;

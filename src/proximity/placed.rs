@@ -1,89 +1,277 @@
-//! A robot at a pose, whose links are placed in the mesh's frame when they are needed.
+//! The robot in the mesh's frame, and how near a triangle is to one of its links: the measurement in double precision
+//! by which every engine answers.
+//!
+//! Each pair of link and triangle is measured in coordinates of its own, from the link's start and multiplied by the
+//! power of two that brings the largest of them near one. So neither far parts of the scene nor its place nor its unit
+//! play a part in the rounding, and nothing overflows or vanishes. Distances and bounds outside of a pair are plain
+//! ones, in the unit of the mesh.
 
-use super::ProximityError;
-use super::coarse::{CoarseFrame, CoarseLink};
-use super::probe::{Probe, scale_for};
-use crate::robot::{Cap, Chain, Envelope, ModifiedCylinder, Run};
+use super::checks::check_pose;
+use super::{LinkProximity, ProximityError};
+use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
+use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// A robot at a pose in the frame of a mesh.
-pub(super) struct Placed<'a> {
+/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2.
+const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// A robot at a pose in the frame of a mesh, whose links are placed when they are needed.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedRobot<'a> {
     robot: &'a Chain,
     pose: &'a Pose,
-    /// The power of two that brings mesh and robot near one: the unit of probes and bounds.
-    scale: Real,
 }
 
-impl<'a> Placed<'a> {
-    /// `mesh_reach` is the largest coordinate of the mesh.
-    ///
+impl<'a> PlacedRobot<'a> {
     /// # Errors
     /// The pose is not finite or moves a link out of range.
-    pub(super) fn new(robot: &'a Chain, pose: &'a Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
-        let envelope = Self::envelope(robot);
-        Ok(Self { robot, pose, scale: scale_for(robot.links(), envelope, pose, mesh_reach)? })
+    pub(crate) fn new(robot: &'a Chain, pose: &'a Pose) -> Result<Self, ProximityError> {
+        check_pose(robot, pose)?;
+        Ok(Self { robot, pose })
     }
 
-    pub(super) fn scale(&self) -> Real {
-        self.scale
+    /// The links in the robot's frame.
+    pub(crate) fn links(&self) -> &'a [ModifiedCylinder] {
+        self.robot.links()
     }
 
-    pub(super) fn links(&self) -> usize {
-        self.robot.links().len()
+    /// A link in the mesh's frame.
+    pub(crate) fn link(&self, link: usize) -> PlacedLink {
+        PlacedLink::new(&self.robot.links()[link], self.pose)
     }
 
-    pub(super) fn link(&self, link: usize) -> &ModifiedCylinder {
-        &self.robot.links()[link]
+    /// All links in the mesh's frame.
+    pub(crate) fn placed_links(&self) -> impl Iterator<Item = PlacedLink> {
+        self.robot.links().iter().map(|link| PlacedLink::new(link, self.pose))
     }
 
-    pub(super) fn runs(&self) -> &'a [Run] {
-        self.robot.runs()
+    pub(super) fn link_tree(&self) -> &'a [LinkNode] {
+        self.robot.link_tree()
+    }
+
+    /// A capsule around links in the mesh's frame.
+    pub(super) fn bound(&self, bound: &BoundingCapsule) -> PlacedLink {
+        PlacedLink::between(self.pose * bound.start, self.pose * bound.end, bound.radius, [false; 2])
     }
 
     pub(super) fn in_robot_frame(&self, point: Vector) -> Vector {
         self.pose.inverse_transform_point(point)
     }
+}
 
-    pub(super) fn probe(&self, link: usize) -> Probe {
-        Probe::new(self.link(link), self.pose, self.scale)
+/// A link in the mesh's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedLink {
+    start: Vector,
+    end: Vector,
+    /// From start to end.
+    along: Vector,
+    /// The unit direction of the axis, or zero without one.
+    axis: Vec3<Real>,
+    radius: Real,
+    flat: [bool; 2],
+    /// The largest coordinate from the start, or the radius.
+    extent: Real,
+}
+
+/// The triangle nearest to a link, in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    pub triangle: u32,
+    pub distance: Real,
+    pub on_robot: Vector,
+    pub on_mesh: Vector,
+}
+
+impl PlacedLink {
+    /// The link at `pose`.
+    pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose) -> Self {
+        Self::between(pose * link.start(), pose * link.end(), link.radius(), link.flat())
     }
 
-    pub(super) fn coarse(&self, link: usize, frame: &CoarseFrame) -> Option<CoarseLink<f32>> {
-        let link = self.link(link);
-        let flat = link.caps().map(|cap| cap == Cap::Flat);
-        self.coarse_between(link.start(), link.end(), link.radius(), flat, frame)
+    fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
+        let along = end - start;
+        let extent = along.abs().max_element().max(radius);
+        Self { start, end, along, axis: Vec3::from(along).normalised(), radius, flat, extent }
     }
 
-    pub(super) fn coarse_envelope(
-        &self,
-        envelope: &Envelope,
-        frame: &CoarseFrame,
-    ) -> Option<CoarseLink<f32>> {
-        self.coarse_between(envelope.start, envelope.end, envelope.radius, [false; 2], frame)
+    pub(super) fn start(&self) -> Vector {
+        self.start
     }
 
-    fn coarse_between(
-        &self,
-        start: Vector,
-        end: Vector,
-        radius: Real,
-        flat: [bool; 2],
-        frame: &CoarseFrame,
-    ) -> Option<CoarseLink<f32>> {
-        CoarseLink::between(self.pose * start, self.pose * end, radius, flat, self.scale, frame)
+    pub(super) fn end(&self) -> Vector {
+        self.end
     }
 
-    fn envelope(robot: &Chain) -> Option<&Envelope> {
-        match robot.runs().first() {
-            Some(Run::Links { envelope, .. }) => Some(envelope),
-            _ => None,
+    pub(super) fn along(&self) -> Vector {
+        self.along
+    }
+
+    pub(super) fn axis(&self) -> Vec3<Real> {
+        self.axis
+    }
+
+    pub(super) fn radius(&self) -> Real {
+        self.radius
+    }
+
+    pub(super) fn flat(&self) -> [bool; 2] {
+        self.flat
+    }
+
+    /// The nearest points of the link and a triangle.
+    pub(crate) fn measure(&self, triangle: u32, corners: [Vector; 3]) -> Nearest {
+        let pair = self.pair(corners);
+        let face = Face::new(pair.triangle);
+        pair.report(self.start, triangle, Axial::new(&pair.link, &face).with_caps(&pair.link, &face))
+    }
+
+    /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
+    fn measure_within(&self, bound: Real, triangle: u32, corners: [Vector; 3]) -> Option<Nearest> {
+        let pair = self.pair(corners);
+        // Bounds are brought into the mesh's unit, and not the other way: whatever is rounded there, the distance is too.
+        if pair.at_least() * pair.unit > bound {
+            return None;
+        }
+        let face = Face::new(pair.triangle);
+        let axial = Axial::new(&pair.link, &face);
+        let closest = if !axial.beyond_flat_cap() {
+            axial.without_caps(&pair.link)
+        } else if axial.cap_bounds(&pair.link, &face).0 * pair.unit > bound {
+            return None;
+        } else {
+            axial.with_caps(&pair.link, &face)
+        };
+        let nearest = pair.report(self.start, triangle, closest);
+        (nearest.distance <= bound).then_some(nearest)
+    }
+
+    fn pair(&self, corners: [Vector; 3]) -> Pair {
+        let offsets = corners.map(|corner| corner - self.start);
+        let [a, b, c] = offsets.map(Vector::abs);
+        let extent = a.max(b).max(c).max_element().max(self.extent);
+        let scale = extent.power_of_two_to_unity();
+        let end = Vec3::from(self.along * scale);
+        // A length whose square vanishes beside the triangle tells no direction.
+        let axis = if gives_direction(end.norm_squared()) { self.axis } else { Vec3::zero(0.0) };
+        Pair {
+            triangle: offsets.map(|offset| Vec3::from(offset * scale)),
+            link: Link { end, axis, radius: self.radius * scale, flat: self.flat },
+            unit: 1.0 / scale,
         }
     }
 
-    /// The capsule around the whole robot, if it has more than one link.
-    pub(super) fn envelope_of_all(&self) -> Option<(Probe, Envelope)> {
-        let envelope = Self::envelope(self.robot)?;
-        let capsule = ModifiedCylinder::capsule(envelope.start, envelope.end, envelope.radius).ok()?;
-        Some((Probe::new(&capsule, self.pose, self.scale), *envelope))
+    /// A lower bound on the distance between the link and anything in the box.
+    ///
+    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies behind a plane
+    /// with normal v before its ends, and the box beyond the one through its corner on that side. But for rounding
+    /// the bound is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
+    /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
+    /// badly.
+    pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
+        let (low, high) = (mins - self.start, maxs - self.start);
+        let scale = low.abs().max(high.abs()).max_element().max(self.extent).power_of_two_to_unity();
+        let half = (high - low) * (0.5 * scale);
+        let centre = Vec3::from(low * scale + half);
+        let end = Vec3::from(self.along * scale);
+        let link = Link { end, axis: self.axis, radius: self.radius * scale, flat: self.flat };
+        let normal = offset_from_axis(&link, centre);
+        let corner = half.dot(Vector::from(normal).abs());
+        let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
+        ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
+    }
+}
+
+/// A link and a triangle in coordinates of their own.
+struct Pair {
+    triangle: [Vec3<Real>; 3],
+    link: Link<Real>,
+    /// What 1 is in the mesh's unit.
+    unit: Real,
+}
+
+impl Pair {
+    /// A lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
+    fn at_least(&self) -> Real {
+        let [a, b, c] = self.triangle;
+        let centre = (a + b + c) * (1.0 / 3.0);
+        let normal = offset_from_axis(&self.link, centre);
+        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
+        beyond.over(normal.norm()) - self.link.radius - SLACK
+    }
+
+    /// An answer in the mesh's frame, in which the pair's origin is `start`.
+    fn report(&self, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
+        let place = |point: Vec3<Real>| start + Vector::from(point) * self.unit;
+        let (distance, on_mesh) = (closest.distance * self.unit, place(closest.point1));
+        // One common point where they touch: rounding may have put the two apart.
+        let on_robot = if distance > 0.0 { place(closest.point2) } else { on_mesh };
+        Nearest { triangle, distance, on_robot, on_mesh }
+    }
+}
+
+/// From the axis point nearest to `point` to that point.
+fn offset_from_axis(link: &Link<Real>, point: Vec3<Real>) -> Vec3<Real> {
+    let t = point.dot(link.axis).max(0.0).min(link.end.dot(link.axis));
+    point.along(link.axis, -t)
+}
+
+/// The nearest triangle so far of those at most so far away; of two as near the one with the lower number.
+#[derive(Clone, Copy)]
+pub(crate) struct Best {
+    bound: Real,
+    nearest: Option<Nearest>,
+}
+
+impl Best {
+    /// Nothing yet.
+    pub(crate) fn within(bound: Real) -> Self {
+        Self { bound, nearest: None }
+    }
+
+    /// What was found so far, of which something at most `bound` away would be an improvement.
+    pub(crate) fn resume(bound: Real, nearest: Option<Nearest>) -> Self {
+        Self { bound, nearest }
+    }
+
+    /// What a triangle must not be farther than.
+    pub(crate) fn bound(&self) -> Real {
+        self.bound
+    }
+
+    pub(crate) fn nearest(&self) -> Option<Nearest> {
+        self.nearest
+    }
+
+    /// Whether a triangle touches the link, so that none is nearer.
+    pub(crate) fn touches(&self) -> bool {
+        self.nearest.is_some_and(|nearest| nearest.distance <= 0.0)
+    }
+
+    /// Measures a triangle. True if it is the best so far.
+    #[inline(never)] // the same code whatever the instruction set
+    pub(crate) fn measure(&mut self, link: &PlacedLink, triangle: u32, corners: [Vector; 3]) -> bool {
+        link.measure_within(self.bound, triangle, corners).is_some_and(|nearest| self.take(nearest))
+    }
+
+    /// Takes over a triangle if it is the best so far.
+    pub(crate) fn take(&mut self, other: Nearest) -> bool {
+        let is_better = other.distance <= self.bound
+            && self.nearest.is_none_or(|mine| {
+                other.distance < mine.distance
+                    || (other.distance <= mine.distance && other.triangle < mine.triangle)
+            });
+        if is_better {
+            *self = Self { bound: other.distance, nearest: Some(other) };
+        }
+        is_better
+    }
+}
+
+impl Nearest {
+    /// The answer about a link.
+    pub(crate) fn report(&self, link: usize) -> LinkProximity {
+        let Self { triangle, distance, on_robot, on_mesh } = *self;
+        LinkProximity { link: link as u32, triangle, distance, on_robot, on_mesh }
     }
 }

@@ -1,5 +1,4 @@
 use parry3d_f64::math::{Real, Vector};
-use thiserror::Error;
 
 /// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,108 +21,33 @@ pub struct LinkProximity {
     pub on_mesh: Vector,
 }
 
-/// Why a mesh cannot be queried.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MeshError {
-    /// A vertex has a coordinate that is NaN or infinite.
-    #[error("vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair the mesh")]
-    NotFinite {
-        /// The vertex's position in the mesh.
-        vertex: usize,
-        /// The offending coordinate.
-        value: Real,
-    },
-    /// A vertex lies so far out that squares of coordinates could overflow.
-    #[error(
-        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit"
-    )]
-    OutOfRange {
-        /// The vertex's position in the mesh.
-        vertex: usize,
-        /// The offending coordinate.
-        value: Real,
-        /// The largest magnitude accepted.
-        limit: Real,
-    },
-    /// New vertices must be as many as the old ones.
-    #[error("the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh")]
-    VertexCount {
-        /// How many vertices the mesh has.
-        expected: usize,
-        /// How many were given.
-        got: usize,
-    },
-    /// The mesh has no triangle, so nothing is closest.
-    #[error("the mesh has no triangles")]
-    Empty,
+impl LinkProximity {
+    /// What stands in a batch until its turn comes.
+    pub(super) fn unanswered() -> Self {
+        let nowhere = Vector::splat(Real::NAN);
+        Self { link: 0, triangle: 0, distance: Real::NAN, on_robot: nowhere, on_mesh: nowhere }
+    }
 }
 
-/// Why a query has no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+/// How much an engine has computed since it was built, batches left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ProximityError {
-    /// The robot's pose has a component that is NaN or infinite.
-    #[error("the robot's pose is not finite; check its translation and rotation")]
-    PoseNotFinite,
-    /// The pose carries a link beyond the range in which squares of coordinates are finite.
-    #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
-    OutOfRange {
-        /// The link's position in the chain.
-        link: usize,
-        /// The largest magnitude accepted.
-        limit: Real,
-    },
-    /// A margin must be a number that is at least 0.
-    #[error("the margin is {margin}; it must be at least 0")]
-    BadMargin {
-        /// The offending margin.
-        margin: Real,
-    },
-    /// An answer names a link that the robot does not have.
-    #[error(
-        "the answer is about link {link}, but the robot has {links} links; give the robot that was asked about"
-    )]
-    NoSuchLink {
-        /// The answer's link.
-        link: usize,
-        /// How many links the robot has.
-        links: usize,
-    },
-    /// An answer names a triangle that the mesh does not have.
-    #[error(
-        "the answer is about triangle {triangle}, but the mesh has {triangles}; give the mesh that was asked about"
-    )]
-    NoSuchTriangle {
-        /// The answer's triangle.
-        triangle: usize,
-        /// How many triangles the mesh has.
-        triangles: usize,
-    },
-    /// A vertex of the mesh cannot be used.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The GPU that was asked failed.
-    #[cfg(feature = "gpu")]
-    #[error(transparent)]
-    Device(#[from] DeviceFailure),
+pub struct Work {
+    /// Nodes of the hierarchy whose up to 16 children were bounded; none in an exhaustive engine.
+    pub nodes: u64,
+    /// Pairs of link and triangle that were visited, 16 triangles at a time.
+    pub visited: u64,
+    /// Pairs for which the distance between axis and triangle was computed, a pack at a time.
+    pub axis_distances: u64,
+    /// Pairs that were measured in double precision, with the disc of a flat cap where it decides.
+    pub measured: u64,
 }
 
-/// How a GPU failed. Each engine on that GPU tells of it, by the query that comes next; the one after that may succeed.
-#[cfg(feature = "gpu")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum DeviceFailure {
-    /// It was reset or removed. It answers nothing more.
-    #[error("the GPU was lost (reset, removed, or out of time); build a new engine, or use one on the CPU")]
-    Lost,
-    /// Its memory does not hold what the query needs. A smaller one may succeed.
-    #[error("the GPU is out of memory; ask for fewer robots at once, or use an engine on the CPU")]
-    OutOfMemory,
-    /// Its driver refused a command.
-    #[error("the GPU's driver refused a command; update the driver, or use an engine on the CPU")]
-    Refused,
-    /// It did not write its answer.
-    #[error("the GPU did not answer; update its driver, or use an engine on the CPU")]
-    Unanswered,
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.visited += other.visited;
+        self.axis_distances += other.axis_distances;
+        self.measured += other.measured;
+    }
 }

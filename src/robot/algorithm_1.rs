@@ -24,45 +24,43 @@
 //! which belongs to no tube and which the printed rule makes flat on both sides.
 
 use super::Cap;
-use super::exact::at_least_apart;
+use super::compare::at_least_apart;
 use parry3d_f64::math::{Real, Vector};
 
-/// The caps of each link, from the links' radii; one point more than radii.
-pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real]) -> Vec<[Cap; 2]> {
+/// Writes the caps of each link to `caps`, whose memory is used again; one point more than radii.
+pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+    reset(caps, radii.len());
     let starts = points.iter().zip(radii);
     let ends = points.iter().skip(1).zip(radii).rev();
-    let mut forward = walk(ends);
-    forward.reverse();
-    pair(walk(starts), forward)
+    walk(starts).zip(caps.iter_mut()).for_each(|(cap, caps)| caps[0] = cap);
+    walk(ends).zip(caps.iter_mut().rev()).for_each(|(cap, caps)| caps[1] = cap);
 }
 
-/// The caps of each link, from the vertices' radii; as many points as radii.
-pub(super) fn from_vertex_radii(points: &[Vector], radii: &[Real]) -> Vec<[Cap; 2]> {
+/// As [`from_segment_radii`], from the vertices' radii; as many points as radii.
+pub(super) fn from_vertex_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+    reset(caps, radii.len().saturating_sub(1));
     let vertices = points.iter().zip(radii);
-    let mut forward = walk(vertices.clone().rev());
-    forward.reverse();
     // Link k begins at vertex k and ends at vertex k + 1.
-    pair(walk(vertices), forward.split_off(1.min(forward.len())))
+    walk(vertices.clone()).zip(caps.iter_mut()).for_each(|(cap, caps)| caps[0] = cap);
+    walk(vertices.rev()).zip(caps.iter_mut().rev()).for_each(|(cap, caps)| caps[1] = cap);
+}
+
+fn reset(caps: &mut Vec<[Cap; 2]>, links: usize) {
+    caps.clear();
+    caps.resize(links, [Cap::Flat; 2]);
 }
 
 /// One walk: whether the link end at each vertex, facing back the way we came, is round.
-fn walk<'a>(vertices: impl Iterator<Item = (&'a Vector, &'a Real)>) -> Vec<Cap> {
+fn walk<'a>(vertices: impl Iterator<Item = (&'a Vector, &'a Real)>) -> impl Iterator<Item = Cap> {
     let mut limit_and_last: Option<(Vector, Real)> = None;
-    vertices
-        .map(|(&point, &radius)| {
-            let (limit, cap) = match limit_and_last {
-                Some((limit, last)) if radius <= last => {
-                    (limit, if at_least_apart(limit, point, radius) { Cap::Round } else { Cap::Flat })
-                }
-                _ => (point, Cap::Flat),
-            };
-            limit_and_last = Some((limit, radius));
-            cap
-        })
-        .collect()
-}
-
-/// The start and end caps of each link; either list may be longer by a vertex that belongs to no link.
-fn pair(starts: Vec<Cap>, ends: Vec<Cap>) -> Vec<[Cap; 2]> {
-    starts.into_iter().zip(ends).map(|(start, end)| [start, end]).collect()
+    vertices.map(move |(&point, &radius)| {
+        let (limit, cap) = match limit_and_last {
+            Some((limit, last)) if radius <= last => {
+                (limit, if at_least_apart(limit, point, radius) { Cap::Round } else { Cap::Flat })
+            }
+            _ => (point, Cap::Flat),
+        };
+        limit_and_last = Some((limit, radius));
+        cap
+    })
 }

@@ -1,12 +1,13 @@
 //! A robot as a chain of links.
 
-use super::envelope::{self, Run};
+use super::link_tree::{self, LinkNode};
 use super::modified_cylinder::{check_points, check_radii, has_direction};
 use super::{Cap, ModifiedCylinder, RobotError, algorithm_1};
-use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// A continuum robot: links joined end to end along a centreline (paper, section III.F).
 ///
@@ -51,10 +52,12 @@ use std::ops::Range;
 pub struct Chain {
     links: Vec<ModifiedCylinder>,
     segments: Vec<Range<usize>>,
-    /// Over the links' boxes; leaf i is link i.
-    bvh: Bvh,
-    /// Capsules around runs of links.
-    runs: Vec<Run>,
+    /// Capsules around halves, quarters ... of the links.
+    link_tree: Vec<LinkNode>,
+    /// Over the links' boxes, for parry's composite queries; leaf i is link i. Built when first asked for.
+    bvh: OnceLock<Bvh>,
+    /// The caps of the input's segments: memory for the next centreline.
+    caps: Vec<[Cap; 2]>,
 }
 
 impl Chain {
@@ -62,14 +65,36 @@ impl Chain {
     ///
     /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
     /// where a round cap does not stick out of such a face. A radius that is meant to be constant must be so to
-    /// the last bit: any increase is a step. Whether a joint is far enough from a face is decided exactly.
+    /// the last bit: any increase is a step. A joint exactly one radius from a face is round; distances that differ by
+    /// less than 2^-46 of themselves count as equal there.
     ///
     /// # Errors
     /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or
     /// beyond 1e150, a negative radius, or points that are all equal.
     pub fn from_centreline(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        let mut chain = Self::empty();
+        chain.set_centreline(points, segment_radii)?;
+        Ok(chain)
+    }
+
+    /// Makes this chain what [`from_centreline`](Self::from_centreline) makes of the arguments, in the memory that it
+    /// has: a control loop whose robot keeps its number of points allocates nothing.
+    ///
+    /// # Errors
+    /// As [`from_centreline`](Self::from_centreline). The chain is then what it was before.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, parry::math::Vector};
+    ///
+    /// let mut robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[0.5, 0.5])?;
+    /// robot.set_centreline(&[Vector::ZERO, Vector::Z, Vector::Z + Vector::X], &[0.5, 0.5])?;
+    /// assert_eq!(robot.links()[1].end(), Vector::new(1.0, 0.0, 1.0));
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    pub fn set_centreline(&mut self, points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
-        Self::assemble(points, segment_radii, &algorithm_1::from_segment_radii(points, segment_radii))
+        algorithm_1::from_segment_radii(points, segment_radii, &mut self.caps);
+        self.assemble(points, segment_radii)
     }
 
     /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper prints it.
@@ -84,7 +109,10 @@ impl Chain {
     pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
         check(points, vertex_radii, points.len())?;
         let segment_radii: Vec<_> = vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
-        Self::assemble(points, &segment_radii, &algorithm_1::from_vertex_radii(points, vertex_radii))
+        let mut chain = Self::empty();
+        algorithm_1::from_vertex_radii(points, vertex_radii, &mut chain.caps);
+        chain.assemble(points, &segment_radii)?;
+        Ok(chain)
     }
 
     /// The same centreline and radii with a round cap at both ends of each segment.
@@ -118,17 +146,21 @@ impl Chain {
 
     /// The smallest box, with sides along the axes of the robot's frame, that holds all links.
     pub fn local_aabb(&self) -> Aabb {
-        self.bvh().root_aabb()
+        let boxes = self.links.iter().map(ModifiedCylinder::local_aabb);
+        boxes.reduce(|a, b| a.merged(&b)).unwrap_or_else(Aabb::new_invalid)
     }
 
     /// The links' bounding volume hierarchy; leaf i is link i.
     pub(crate) fn bvh(&self) -> &Bvh {
-        &self.bvh
+        self.bvh.get_or_init(|| {
+            let boxes: Vec<_> = self.links.iter().map(ModifiedCylinder::local_aabb).collect();
+            Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+        })
     }
 
-    /// Capsules around runs of links, a run before its halves.
-    pub(crate) fn runs(&self) -> &[Run] {
-        &self.runs
+    /// The links' tree of capsules, in depth-first order.
+    pub(crate) fn link_tree(&self) -> &[LinkNode] {
+        &self.link_tree
     }
 
     /// The chain whose links are the images of this one's, or nothing if a link has none.
@@ -140,39 +172,51 @@ impl Chain {
         Some(Self::of(links, self.segments.clone()))
     }
 
+    pub(super) fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
+        let mut chain = Self { links, segments, ..Self::empty() };
+        link_tree::build(&chain.links, &mut chain.link_tree);
+        chain
+    }
+
+    /// What the constructors fill.
+    fn empty() -> Self {
+        Self {
+            links: Vec::new(),
+            segments: Vec::new(),
+            link_tree: Vec::new(),
+            bvh: OnceLock::new(),
+            caps: Vec::new(),
+        }
+    }
+
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
         check(points, segment_radii, points.len().saturating_sub(1))?;
-        Self::assemble(points, segment_radii, &vec![[cap; 2]; segment_radii.len()])
+        let mut chain = Self { caps: vec![[cap; 2]; segment_radii.len()], ..Self::empty() };
+        chain.assemble(points, segment_radii)?;
+        Ok(chain)
     }
 
-    /// Leaves out the segments without length; radii and caps are per segment.
-    fn assemble(points: &[Vector], radii: &[Real], caps: &[[Cap; 2]]) -> Result<Self, RobotError> {
-        let with_length: Vec<_> =
-            (0..radii.len()).filter(|&k| has_direction(points[k], points[k + 1], radii[k])).collect();
-        if with_length.is_empty() {
-            return Err(RobotError::AllPointsEqual);
-        }
-        let mut links = Vec::with_capacity(with_length.len());
-        let mut segments = Vec::with_capacity(with_length.len());
-        for (link, &k) in with_length.iter().enumerate() {
-            let (first, next) = (if link == 0 { 0 } else { k }, with_length.get(link + 1));
+    /// Makes links of the segments that have a length; radii and `self.caps` are per segment.
+    fn assemble(&mut self, points: &[Vector], radii: &[Real]) -> Result<(), RobotError> {
+        let has_length = |&k: &usize| has_direction(points[k], points[k + 1], radii[k]);
+        let Some(last) = (0..radii.len()).rfind(has_length) else { return Err(RobotError::AllPointsEqual) };
+        self.links.clear();
+        self.segments.clear();
+        for k in (0..radii.len()).filter(has_length) {
             // The walk leaves every end at the same place as a limit flat on its own, except at radius 0.
-            let cap_at_end = caps[if next.is_none() { radii.len() - 1 } else { k }][1];
-            links.push(ModifiedCylinder::new(
-                points[k],
-                points[k + 1],
-                radii[k],
-                [caps[first][0], cap_at_end],
-            )?);
-            segments.push(first..next.copied().unwrap_or(radii.len()));
+            let caps = [
+                self.caps[if self.links.is_empty() { 0 } else { k }][0],
+                self.caps[if k == last { radii.len() - 1 } else { k }][1],
+            ];
+            if let Some(segments) = self.segments.last_mut() {
+                segments.end = k;
+            }
+            self.segments.push(if self.links.is_empty() { 0 } else { k }..radii.len());
+            self.links.push(ModifiedCylinder::unchecked(points[k], points[k + 1], radii[k], caps));
         }
-        Ok(Self::of(links, segments))
-    }
-
-    pub(super) fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
-        let boxes: Vec<_> = links.iter().map(ModifiedCylinder::local_aabb).collect();
-        let (bvh, runs) = (Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), envelope::runs(&links));
-        Self { links, segments, bvh, runs }
+        link_tree::build(&self.links, &mut self.link_tree);
+        self.bvh = OnceLock::new();
+        Ok(())
     }
 }
 

@@ -4,9 +4,10 @@ mod aabb;
 mod algorithm_1;
 mod cap;
 mod chain;
-mod envelope;
+mod compare;
+mod convert;
 mod error;
-mod exact;
+mod link_tree;
 mod modified_cylinder;
 mod scale;
 #[cfg(feature = "serde-serialize")]
@@ -16,8 +17,8 @@ mod to_trimesh;
 
 pub use cap::Cap;
 pub use chain::Chain;
-pub(crate) use envelope::{Envelope, Run, distance_to_segment};
 pub use error::RobotError;
+pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
 pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub(crate) use scale::length;

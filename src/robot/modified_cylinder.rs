@@ -46,7 +46,12 @@ impl ModifiedCylinder {
         if !has_direction(start, end, radius) && caps != [Cap::Round; 2] {
             return Err(RobotError::FlatCapWithoutAxis { index: 0 });
         }
-        Ok(Self { start, end, radius, caps })
+        Ok(Self::unchecked(start, end, radius, caps))
+    }
+
+    /// As [`ModifiedCylinder::new`], for arguments that are known to be good.
+    pub(super) fn unchecked(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Self {
+        Self { start, end, radius, caps }
     }
 
     /// A link with two round caps (the paper's K).
@@ -83,6 +88,11 @@ impl ModifiedCylinder {
     /// The caps at the start and at the end.
     pub fn caps(&self) -> [Cap; 2] {
         self.caps
+    }
+
+    /// Which caps are flat, as the narrow phase wants it.
+    pub(crate) fn flat(&self) -> [bool; 2] {
+        self.caps.map(|cap| cap == Cap::Flat)
     }
 
     /// The length of the axis; a round cap reaches one radius further.

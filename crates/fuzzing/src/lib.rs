@@ -1,0 +1,15 @@
+//! What is fuzzed. Each body takes any bytes and panics where a promise of the crate is broken. The fuzzer calls them
+//! through `fuzz/fuzz_targets`, the test suite through `tests/proximity/fuzz.rs`.
+
+mod chain_mesh;
+mod constructors;
+mod link_triangle;
+mod mesh_file;
+mod root_finders;
+mod source;
+
+pub use chain_mesh::chain_mesh;
+pub use constructors::constructors;
+pub use link_triangle::link_triangle;
+pub use mesh_file::mesh_file;
+pub use root_finders::root_finders;

@@ -1,0 +1,158 @@
+//! The picture of a proximity query: the whole scene on the left, the robot close up on the right.
+//!
+//! Each link has the colour of its distance to the wall. A thin line joins its two closest points, and the triangle
+//! where it ends is painted in the link's colour.
+
+use crate::canvas::{Align, Canvas, Colour, hex, mix};
+use crate::colour_map::ColourMap;
+use crate::picture::{Camera, Picture, SKY, Skin, Solid};
+use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::shape::{SharedShape, TriMesh};
+use parry_continuum::proximity::LinkProximity;
+use parry_continuum::{Chain, ModifiedCylinder};
+
+const INK: Colour = hex(0x22303c);
+const PALE: Colour = hex(0x66757f);
+const SIZE: [usize; 2] = [2000, 1220];
+const LEFT: usize = 1230;
+const TOP: usize = 150;
+const INSET: [usize; 4] = [1250, 70, 690, 800];
+
+/// The text on the picture.
+pub struct Caption {
+    pub title: String,
+    pub subtitle: String,
+    /// Lines below the colour bar.
+    pub notes: Vec<String>,
+}
+
+/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one per link. The mesh's
+/// z is taken to be up and its y to the front, as in scans.
+pub fn draw(
+    mesh: &TriMesh,
+    robot: &Chain,
+    pose: &Pose,
+    answers: &[LinkProximity],
+    caption: &Caption,
+) -> Canvas {
+    let largest = answers.iter().map(|answer| answer.distance).fold(0.0, Real::max);
+    let colours = ColourMap::up_to(largest);
+    let thick = robot.links().iter().map(ModifiedCylinder::radius).fold(0.0, Real::max);
+    let mut picture = Picture::new(Some(mesh), solids(robot, pose, answers, &colours, thick));
+    for answer in answers.iter().rev() {
+        picture.tints.insert(answer.triangle, colours.colour(answer.distance));
+    }
+
+    let sky = |y: usize| mix(SKY[0], SKY[1], y as f32 / SIZE[1] as f32);
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, y| sky(y));
+    let mut seen: Vec<Vector> =
+        robot.links().iter().flat_map(|l| [pose * l.start(), pose * l.end()]).collect();
+    let (first, middle, last) = (seen[0], seen[seen.len() / 2], seen[seen.len() - 1]);
+
+    // The whole, from the front and above, on the side where the robot is.
+    let side = if first.x < mesh.local_aabb().center().x { 1.0 } else { -1.0 };
+    let towards = Vector::new(side, -0.55, -0.32).normalize();
+    let size = [LEFT, SIZE[1] - TOP];
+    let whole = Camera::framing(mesh.vertices(), towards, Vector::Z, size[0] as Real / size[1] as Real, 0.04);
+    picture.sky = [sky(TOP), sky(SIZE[1])];
+    canvas.paste(&picture.render(&whole, size[0], size[1]), [0, TOP], 0.0);
+
+    // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front of them.
+    let broadside = (middle - first).cross(last - first).normalize_or_zero();
+    let broadside = if broadside.dot(towards) < 0.0 { -broadside } else { broadside };
+    let ends = answers.iter().map(|answer| answer.on_mesh);
+    let inner = seen.clone();
+    seen.extend(ends.clone());
+    let [left, top, width, height] = INSET;
+    let mut near = Camera::framing(
+        &seen,
+        broadside + towards.normalize() * 0.5,
+        Vector::Z,
+        width as Real / height as Real,
+        0.08,
+    );
+    let depth = |p: Vector| (p - near.eye).dot(near.forward);
+    let robot_depths = inner.into_iter().map(|p| depth(p) - 1.05 * thick);
+    near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
+    picture.sky = [sky(top), sky(top + height)];
+    picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
+    let inset = picture.render(&near, width, height);
+    let frame = [left as f32, top as f32, (left + width) as f32, (top + height) as f32];
+    let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
+    lens(&mut canvas, &places.collect::<Vec<_>>(), frame);
+    canvas.paste(&inset, [left, top], 18.0);
+    canvas.frame(frame, 18.0, 2.5, PALE);
+
+    canvas.text(&caption.title, [56.0, 84.0], Align::Left, 30.0, INK);
+    canvas.text(&caption.subtitle, [56.0, 132.0], Align::Left, 19.0, PALE);
+    let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
+    ruler(&mut canvas, &whole, mesh.local_aabb().center(), size, [56.0, 1164.0]);
+    ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, frame[3] - 28.0]);
+    let bar = [frame[0], frame[3] + 74.0];
+    colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
+    for (row, note) in caption.notes.iter().enumerate() {
+        canvas.text(note, [bar[0], bar[1] + 124.0 + 38.0 * row as f32], Align::Left, 19.0, PALE);
+    }
+    canvas
+}
+
+/// Links, and the lines between closest points.
+fn solids(
+    robot: &Chain,
+    pose: &Pose,
+    answers: &[LinkProximity],
+    colours: &ColourMap,
+    thick: Real,
+) -> Vec<Solid> {
+    let mut solids = Vec::new();
+    for (link, answer) in robot.links().iter().zip(answers) {
+        let colour = colours.colour(answer.distance);
+        solids.push(Solid::new(SharedShape::new(*link), *pose, colour, true));
+        let line = answer.on_mesh - answer.on_robot;
+        if line != Vector::ZERO {
+            let middle = Pose::from_parts(
+                answer.on_robot.midpoint(answer.on_mesh),
+                Rot3::from_rotation_arc(Vector::Y, line.normalize()),
+            );
+            solids.push(Solid::new(
+                SharedShape::cylinder(0.5 * line.length(), 0.045 * thick),
+                middle,
+                INK,
+                false,
+            ));
+            let end = Pose::from_translation(answer.on_mesh);
+            solids.push(Solid::new(SharedShape::ball(0.11 * thick), end, INK, false));
+        }
+    }
+    solids
+}
+
+/// Shows which part of the left picture the close-up shows.
+fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
+    let side =
+        |axis: usize, pick: fn(f32, f32) -> f32| places.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0);
+    let margin = 14.0;
+    let frame = [
+        side(0, f32::min) - margin,
+        side(1, f32::min) - margin,
+        side(0, f32::max) + margin,
+        side(1, f32::max) + margin,
+    ];
+    for (from, to) in [(frame[1], inset[1]), (frame[3], inset[3])] {
+        canvas.stroke(&[vec![[frame[2] - 5.0, from], [inset[0] + 9.0, to]]], 1.6, PALE, 0.55);
+    }
+    canvas.frame(frame, 10.0, 2.0, PALE);
+}
+
+/// A ruler as long as a round number of millimetres at the given depth, with its left end at `at`.
+fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
+    let [from, to] = [depth, depth + camera.right].map(|p| camera.place(p, size)[0]);
+    let unit = f64::from(to - from);
+    let decade = 10f64.powf((150.0 / unit).log10().floor());
+    let length =
+        [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|n| n * unit <= 170.0).unwrap_or(decade);
+    let right = at[0] + (length * unit) as f32;
+    let ends = [at[0], right].map(|x| vec![[x, at[1] - 7.0], [x, at[1] + 7.0]]);
+    canvas.stroke(&[vec![at, [right, at[1]]], ends[0].clone(), ends[1].clone()], 2.5, INK, 1.0);
+    canvas.text(&format!("{length} mm"), [right + 14.0, at[1] + 8.0], Align::Left, 17.0, INK);
+}

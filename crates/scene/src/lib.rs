@@ -1,0 +1,41 @@
+//! The scene that examples, benches and tests share: a brain ventricle, a concentric tube robot in it, and a picture of
+//! both. Lengths are in millimetres.
+//!
+//! | what | modules |
+//! |---|---|
+//! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`], of any size; [`subdivide`] |
+//! | the robot | [`ctr`]; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
+//! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
+//! | files | `mesh_file` (feature `files`) |
+//! | pictures | `picture`, `figure`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
+//! | programs | `command`, `anatomy` (feature `command`); [`timing`], [`levels`] |
+
+#[cfg(feature = "command")]
+pub mod anatomy;
+#[cfg(feature = "pictures")]
+pub mod canvas;
+pub mod cavity;
+#[cfg(feature = "pictures")]
+pub mod colour_map;
+#[cfg(feature = "command")]
+pub mod command;
+pub mod ctr;
+pub mod field;
+#[cfg(feature = "pictures")]
+pub mod figure;
+#[cfg(feature = "pictures")]
+pub mod lettering;
+pub mod levels;
+#[cfg(feature = "files")]
+pub mod mesh_file;
+#[cfg(feature = "pictures")]
+pub mod picture;
+pub mod remesh;
+#[cfg(feature = "rod")]
+pub mod rod;
+pub mod steer;
+pub mod subdivide;
+pub mod surface;
+pub mod timing;
+pub mod torsion;
+pub mod ventricle;

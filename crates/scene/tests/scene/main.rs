@@ -1,0 +1,5 @@
+//! The scene is what it says: the wall, the robot, the files and the pictures.
+
+mod concentric_tube;
+mod mesh_files;
+mod ventricle;

@@ -1,0 +1,97 @@
+//! What was measured at the extremes, as tables and as one line for each pair, category and precision.
+
+use super::measure::{Found, Measurement, PAIRS};
+use super::problems::Extreme;
+use super::reference::median_and_worst;
+use std::fmt::Write;
+
+/// The instruction sets that have columns in the file.
+pub const LEVELS: [&str; 4] = ["AVX-512", "AVX2", "SSE4.2", "SSE2"];
+
+/// Median and worst of some errors.
+pub fn cell(errors: Vec<f64>) -> String {
+    match median_and_worst(errors) {
+        Some((median, worst)) => format!("{median:.2},{worst:.2}"),
+        None => "-,-".into(),
+    }
+}
+
+/// One line for each precision, category and pair. `peer` writes what is known of parry.
+pub fn lines(measurement: &Measurement, mut peer: impl FnMut(Extreme, &[usize]) -> String) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (extreme, category, _) in Extreme::ALL {
+        for (pair, kernels) in PAIRS {
+            let here = |found: &&Found| found.extreme == extreme && kernels.contains(&found.kernel);
+            let found: Vec<_> = measurement.found.iter().filter(here).collect();
+            let scalar = cell(found.iter().map(|found| found.scalar).collect());
+            let mut line = format!("{},{category},{pair},{},{scalar}", measurement.precision, found.len());
+            for level in LEVELS {
+                let index = measurement.levels.iter().position(|name| *name == level);
+                let errors =
+                    |index: usize| found.iter().filter_map(|f| f.levels.get(index).copied()).collect();
+                write!(line, ",{}", cell(index.map(errors).unwrap_or_default())).ok();
+            }
+            write!(line, ",{}", peer(extreme, kernels)).ok();
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+/// The head of the lines.
+pub fn head() -> String {
+    let levels = LEVELS.map(|level| format!("{level} median,{level} worst")).join(",");
+    format!("precision,category,pair,problems,scalar median,scalar worst,{levels},parry median,parry worst")
+}
+
+/// The tables of scalar errors, which are the same on every machine.
+pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2]) -> String {
+    let mut text = String::from(
+        "| category | what it is | f64 answers | median | worst | f32 answers | median | worst |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (extreme, name, what) in Extreme::ALL {
+        let of = |measurement| row(measurement, |found| found.extreme == extreme);
+        writeln!(text, "| {name} | {what} | {} | {} |", of(double), of(single)).ok();
+    }
+    text += "\nThe same by pair:\n\n\
+             | pair | f64 answers | median | worst | f32 answers | median | worst |\n|---|---|---|---|---|---|---|\n";
+    for (name, kernels) in PAIRS {
+        let of = |measurement| row(measurement, |found| kernels.contains(&found.kernel));
+        writeln!(text, "| {name} | {} | {} |", of(double), of(single)).ok();
+    }
+    text += "\nThe worst error of any pair at each power of ten, f64 and f32:\n\n| k |";
+    let series: Vec<_> = Extreme::ALL.into_iter().filter(|(extreme, ..)| extreme.powers(16) > 0).collect();
+    series.iter().for_each(|(_, name, _)| text += &format!(" {name} |"));
+    text += &format!("\n|---|{}\n", "---|".repeat(series.len()));
+    for power in 1..=16 {
+        write!(text, "| {power} |").ok();
+        for (extreme, ..) in &series {
+            let worst = |measurement: &Measurement| {
+                let here = |found: &&Found| found.extreme == *extreme && found.power == power;
+                let errors = measurement.found.iter().filter(here).map(|found| found.scalar);
+                errors.reduce(f64::max).map_or("-".into(), |worst| format!("{worst:.1}"))
+            };
+            write!(text, " {}, {} |", worst(double), worst(single)).ok();
+        }
+        text.push('\n');
+    }
+    let [[low, high], [single_low, single_high]] = ranges;
+    write!(
+        text,
+        "\nThe usable range: problems of a size from 2^{low} to 2^{high} in f64 and from 2^{single_low} to 2^{single_high} \
+         in f32 are answered within 16 units. No proof left more than {:.1} units open.\n",
+        double.gap.max(single.gap)
+    )
+    .ok();
+    text
+}
+
+fn row(measurement: &Measurement, of: impl Fn(&Found) -> bool) -> String {
+    let errors: Vec<_> = measurement.found.iter().filter(|found| of(found)).map(|f| f.scalar).collect();
+    let count = errors.len();
+    match median_and_worst(errors) {
+        Some((median, worst)) => format!("{count} | {median:.2} | {worst:.2}"),
+        None => "0 | - | -".into(),
+    }
+}

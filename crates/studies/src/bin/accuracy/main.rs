@@ -1,0 +1,206 @@
+//! Measures the narrow phase, the engines and parry: `cargo run --release -p continuum-studies --bin accuracy`.
+//!
+//! Writes `docs/ACCURACY.md`, tables by category beside it (`accuracy*.csv`) and the picture `docs/correctness.png`. They
+//! tell how far this crate's distances are from the truth, on the reference cases and on seeded problems at the
+//! extremes, and how far those of parry's `query::distance` are for the same links. With the feature `gpu` the kernels
+//! on the GPU are measured too.
+
+#[cfg(feature = "gpu")]
+mod device;
+mod peers;
+mod slice;
+
+use clap::Parser;
+use continuum_scene::command;
+use continuum_scene::levels::levels;
+use continuum_studies::accuracy::measure::{Measurement, measure, problems, range};
+use continuum_studies::accuracy::{EACH, LARGEST, certificates, engines, reference, tables};
+use continuum_studies::quote::between;
+use continuum_testing::distance_cases;
+use peers::{Peer, comparison};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+struct Options {
+    /// Where to write ACCURACY.md, the tables by category and the picture
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    out: PathBuf,
+}
+
+const INTRODUCTION: &str = "# Accuracy
+
+Written by `cargo run --release -p continuum-studies --bin accuracy`. `cargo test -p continuum-studies --test accuracy`
+computes this crate's errors again and fails if one of them differs from what is written here.
+
+The 2,050 reference cases (`tests/data/distance.jsonl`) were computed with far more digits than a double has. They
+include what usually goes wrong: contact, near-parallel edges, needles, triangles without area, wires, huge and tiny
+sizes, and problems far from the origin.
+
+## This crate
+
+The error is the difference from the reference distance, in units of u x extent. u is 2^-53 in double precision (f64)
+and 2^-24 in single precision (f32). The extent is the largest difference between two coordinates of the problem, or
+its radius. An error of 1 means one rounding of a number as large as the problem. The crate promises at most 16.
+Single precision is measured on the cases whose input it can hold. Of two errors in the middle, the median is the
+smaller. The numbers do not depend on the machine, because the kernels use only operations that IEEE 754 rounds
+correctly. [accuracy_cases.csv](accuracy_cases.csv) has each category by itself.
+
+<!-- ours -->
+";
+
+const EXTREMES: &str = "<!-- /ours -->
+
+## At the extremes
+
+Seeded problems, each driven to an extreme: a triangle and a link, from which every pair takes its part. The expected
+distance is proven for each, by two points and a plane between the shapes, computed with twice the digits of f64. k goes
+from 1 to 12, to 16 for short links, or to the last digit of the precision. Among subnormal numbers half their spacing is
+the unit, as no answer can be nearer. [accuracy.csv](accuracy.csv) has each pair in each category by itself.
+
+<!-- extremes -->
+";
+
+const LEVELS: &str = "<!-- /extremes -->
+
+The same links and triangles computed in packs, at each instruction set of the machine that wrote this page. Fused
+operations make the difference.
+
+";
+
+const ENGINES: &str = "
+The engines on meshes of a dozen of these triangles, each with a cylinder and with a capsule. The error is that of the
+least distance, in units of the link and the triangle that are named. Exhaustive engines ran with and without culling.
+
+";
+
+const CERTIFICATES: &str = "
+## Certificates
+
+How far apart the bounds of `Certificate::between` lie, in units of u x extent, on the links of the reference cases and
+on the extreme problems with each choice of caps. The goal is 16. The features are those that the nearest points lie on.
+
+<!-- certificates -->
+";
+
+const GPU: &str = "
+## On the GPU
+
+The extreme problems by the kernels of the feature `gpu`; `--features gpu` measures them. Without a GPU, or with one in
+software only, what a GPU was measured at is kept.
+
+<!-- gpu -->
+";
+
+const PEERS: &str = "
+## parry at the extremes
+
+parry's `distance` for the same capsules and cylinders, in the same units (u x extent, f64). An over-estimate reports more
+clearance than there is, by more than 1e-9 of the extent. *No answer* is a panic, NaN or infinity.
+
+";
+
+const COMPARISON: &str = "
+## Beside parry
+
+The same triangles and links, asked of `parry::query::distance`: capsules and cylinders, which parry has too. Errors are
+relative to the extent here. *As given*, nine in ten cases have an extent between 1 and 250. *x 1e-3* is the same
+problem with all lengths multiplied by 1e-3, as when millimetres become metres; that rounds the input once more, for
+parry and for this crate. parry stops on absolute tolerances, so its worst answers are those of the smallest problems.
+
+An *over-estimate* reports more clearance than there is, by more than 1e-9 of the extent: the unsafe side. The last
+column is the largest over-estimate relative to the true distance, among the cases whose distance is at least 1/1000 of
+the extent.
+
+";
+
+fn main() -> ExitCode {
+    command::run(|options: &Options| write_all(&options.out))
+}
+
+fn write_all(docs: &Path) -> Result<(), String> {
+    let path = docs.join("ACCURACY.md");
+    let cases = distance_cases();
+    let levels = levels();
+    let (problems, single) = (problems::<f64>(EACH), problems::<f32>(EACH));
+    let (double_errors, single_errors) = (measure(&problems, &levels), measure(&single, &levels));
+    let peer = Peer::ask(&problems);
+    std::fs::create_dir_all(docs)
+        .map_err(|error| format!("cannot make {} ({error}); choose another --out", docs.display()))?;
+    let before = std::fs::read_to_string(&path).unwrap_or_default();
+    let on_gpu = between(&before, "gpu").unwrap_or("No GPU has been measured yet.\n").to_owned();
+    #[cfg(feature = "gpu")]
+    let on_gpu = device::section(docs, &on_gpu, &problems, &single)?.unwrap_or(on_gpu);
+    let page = [
+        INTRODUCTION,
+        &reference::table(&cases),
+        EXTREMES,
+        &tables::tables(&double_errors, &single_errors, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
+        LEVELS,
+        &by_level(&double_errors, &single_errors),
+        ENGINES,
+        &engines_table(&engines::measure(&problems, &levels)),
+        CERTIFICATES,
+        &certificates::table(&cases, &problems),
+        "<!-- /certificates -->\n",
+        GPU,
+        &on_gpu,
+        "<!-- /gpu -->\n",
+        PEERS,
+        &peer.table(),
+        COMPARISON,
+        &comparison(&cases),
+    ]
+    .concat();
+    save(&path, &page)?;
+    save(&docs.join("accuracy.csv"), &file(&double_errors, &single_errors, &peer))?;
+    let mut lines = vec![reference::HEAD.to_owned()];
+    lines.extend(reference::lines(&cases, peers::on_cases));
+    save(&docs.join("accuracy_cases.csv"), &(lines.join("\n") + "\n"))?;
+    let picture = docs.join("correctness.png");
+    slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
+    println!("{}", picture.display());
+    Ok(())
+}
+
+fn file(double: &Measurement, single: &Measurement, peer: &Peer) -> String {
+    let mut lines = vec![tables::head()];
+    lines.extend(tables::lines(double, |extreme, kernels| peer.cells(extreme, kernels)));
+    lines.extend(tables::lines(single, |_, _| "-,-".into()));
+    lines.join("\n") + "\n"
+}
+
+/// A row for each instruction set, on the pairs that have packs.
+fn by_level(double: &Measurement, single: &Measurement) -> String {
+    let mut text = String::from(
+        "| numbers | f64 median | f64 worst | f32 median | f32 worst |\n|---|---|---|---|---|\n",
+    );
+    let columns = std::iter::once("scalar").chain(double.levels.iter().copied());
+    for (column, name) in columns.enumerate() {
+        write!(text, "| {name} |").ok();
+        for measurement in [double, single] {
+            let packed = measurement.found.iter().filter(|found| !found.levels.is_empty());
+            let errors =
+                packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
+            write!(text, " {} |", tables::cell(errors.collect()).replace(',', " | ")).ok();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn engines_table(errors: &engines::Errors) -> String {
+    let mut text = String::from("| engine | queries | median | worst |\n|---|---|---|---|\n");
+    for (name, errors) in errors {
+        let (median, worst) = reference::median_and_worst(errors.clone()).unwrap_or_default();
+        writeln!(text, "| {name} | {} | {median:.2} | {worst:.2} |", errors.len()).ok();
+    }
+    text
+}
+
+fn save(path: &Path, text: &str) -> Result<(), String> {
+    std::fs::write(path, text).map_err(|error| format!("cannot write {} ({error})", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
+}

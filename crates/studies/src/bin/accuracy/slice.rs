@@ -1,0 +1,128 @@
+//! The picture of correctness: the error of parry's GJK and of this crate over a slice of configurations.
+//!
+//! A tube of half a millimetre, in metres, and a triangle beside it: from right to left the gap between them grows
+//! smaller, from the bottom up the triangle tilts away from the tube's axis. Every cell is one query.
+
+use crate::peers::parry_distance;
+use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_testing::precision::Precision;
+use parry_continuum::ModifiedCylinder;
+use parry_continuum::distance::triangle_modified_cylinder;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::Certificate;
+use rayon::prelude::*;
+
+const RADIUS: f64 = 2.5e-4;
+const LENGTH: f64 = 1e-2;
+/// Cells along each side of a panel, and pixels along each side of a cell.
+const CELLS: usize = 256;
+const CELL: usize = 3;
+/// The gap from 1e-7 m to 1e-2 m, the tilt from 1e-8 to 1.
+const GAP: [f64; 2] = [-7.0, -2.0];
+const TILT: [f64; 2] = [-8.0, 0.0];
+/// Errors from 1e-17 up have colours.
+const DECADES: usize = 17;
+
+const INK: Colour = hex(0x22303c);
+const PALE: Colour = hex(0x66757f);
+const PAPER: Colour = hex(0xfafafa);
+const STOPS: [Colour; 6] =
+    [hex(0x173f5f), hex(0x2a7f9e), hex(0x8cc6b0), hex(0xf6e6a1), hex(0xee8f3c), hex(0xb3123b)];
+
+/// The colour of an error relative to the distance, in steps of half a power of ten.
+fn shade(error: f64) -> Colour {
+    let decades = (error.log10() + DECADES as f64).clamp(0.0, DECADES as f64 - 1e-9);
+    let place = (decades * 2.0).floor() / (2 * DECADES - 1) as f64 * (STOPS.len() - 1) as f64;
+    let stop = (place as usize).min(STOPS.len() - 2);
+    mix(STOPS[stop], STOPS[stop + 1], (place - stop as f64) as f32)
+}
+
+/// The errors of parry and of this crate, relative to the distance, in one cell.
+fn errors(column: usize, row: usize) -> [f64; 2] {
+    let at = |[low, high]: [f64; 2], cell: usize| {
+        10.0_f64.powf(low + (high - low) * (cell as f64 + 0.5) / CELLS as f64)
+    };
+    let (gap, tilt) = (at(GAP, column), at(TILT, CELLS - 1 - row));
+    // In a direction that no coordinate prefers.
+    let axis = Vector::new(0.48, 0.6, 0.64);
+    let side = Vector::new(0.8, 0.0, -0.6);
+    let other = axis.cross(side);
+    let (start, end) = (axis * (-0.5 * LENGTH), axis * (0.5 * LENGTH));
+    let near = side * (RADIUS + gap);
+    let triangle = [
+        near - axis * 2e-3 - other * 1e-3,
+        near + (axis + side * tilt) * 3e-3 + other * 2e-3,
+        near + (axis + side * tilt) * 1e-3 - other * 2.5e-3 + side * (1e-3 * tilt),
+    ];
+    let Ok(link) = ModifiedCylinder::cylinder(start, end, RADIUS) else { return [f64::NAN; 2] };
+    let Ok(proof) = Certificate::between(&link, &Pose::IDENTITY, triangle) else { return [f64::NAN; 2] };
+    let truth = proof.lower.midpoint(proof.upper);
+    let [from, to] = [start, end].map(f64::vec3);
+    let ours = triangle_modified_cylinder(triangle.map(f64::vec3), from, to, RADIUS, [true; 2]).distance;
+    [parry_distance(triangle, [start, end], RADIUS, true), ours]
+        .map(|distance| (distance - truth).abs() / truth)
+}
+
+/// Draws both panels and the legend.
+pub fn draw() -> Canvas {
+    let cells: Vec<_> =
+        (0..CELLS * CELLS).into_par_iter().map(|cell| errors(cell % CELLS, cell / CELLS)).collect();
+    let panel = CELLS * CELL;
+    let (left, top, between) = (150, 150, 60);
+    let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 290, |_, _| PAPER);
+    let title =
+        "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
+    canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
+    for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
+        let x = left + which * (panel + between);
+        let picture = Canvas::new(panel, panel, |x, y| shade(cells[x / CELL + y / CELL * CELLS][which]));
+        canvas.paste(&picture, [x, top], 0.0);
+        let frame = [x as f32, top as f32, (x + panel) as f32, (top + panel) as f32];
+        canvas.frame(frame, 0.0, 2.0, INK);
+        canvas.text(name, [frame[0], frame[1] - 20.0], Align::Left, 22.0, INK);
+        ticks(&mut canvas, frame, which == 0);
+    }
+    legend(&mut canvas, [left as f32, (top + panel + 150) as f32], (2 * panel + between) as f32);
+    canvas
+}
+
+/// Powers of ten along the lower and the left side.
+fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4], names_tilt: bool) {
+    let mark = |canvas: &mut Canvas, from: [f32; 2], to: [f32; 2]| {
+        canvas.stroke(&[vec![from, to]], 2.0, INK, 1.0);
+    };
+    let decades = |[low, high]: [f64; 2]| {
+        (low as i32..=high as i32).map(move |k| (k, (f64::from(k) - low) / (high - low)))
+    };
+    for (power, at) in decades(GAP) {
+        let x = x0 + (x1 - x0) * at as f32;
+        mark(canvas, [x, y1], [x, y1 + 8.0]);
+        canvas.text(&format!("1e{power}"), [x, y1 + 34.0], Align::Centre, 17.0, INK);
+    }
+    canvas.text("gap before the tilt, m", [0.5 * (x0 + x1), y1 + 72.0], Align::Centre, 19.0, PALE);
+    if names_tilt {
+        for (power, at) in decades(TILT).step_by(2) {
+            let y = y1 - (y1 - y0) * at as f32;
+            mark(canvas, [x0, y], [x0 - 8.0, y]);
+            canvas.text(&format!("1e{power}"), [x0 - 16.0, y + 8.0], Align::Right, 17.0, INK);
+        }
+        canvas.text("tilt", [x0 - 16.0, y0 - 20.0], Align::Right, 19.0, PALE);
+    }
+}
+
+/// The colours of the errors.
+fn legend(canvas: &mut Canvas, [x, y]: [f32; 2], width: f32) {
+    canvas.text("error relative to the true clearance", [x, y - 18.0], Align::Left, 19.0, INK);
+    let step = width / (2 * DECADES) as f32;
+    for half in 0..2 * DECADES {
+        let error = 10.0_f64.powf(half as f64 * 0.5 + 0.25 - DECADES as f64);
+        let from = x + step * half as f32;
+        canvas.panel([from, y, from + step, y + 34.0], 0.0, shade(error), 1.0);
+    }
+    canvas.frame([x, y, x + width, y + 34.0], 0.0, 2.0, INK);
+    for power in (0..=DECADES).step_by(2) {
+        let at = x + width * (DECADES - power) as f32 / DECADES as f32;
+        let name = if power == 0 { "1".to_owned() } else { format!("1e-{power}") };
+        canvas.text(&name, [at, y + 64.0], Align::Centre, 17.0, INK);
+    }
+}

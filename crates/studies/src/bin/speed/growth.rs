@@ -1,0 +1,164 @@
+//! Time against the number of triangles, links and threads: the paper's Figure 9 for the CPU.
+
+use crate::Effort;
+use crate::exhaustive::{models, on_one_thread};
+use continuum_scene::subdivide::{in_four, shuffled};
+use continuum_scene::timing::medians;
+use continuum_scene::ventricle;
+use parry_continuum::Chain;
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
+use plotters::prelude::*;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+
+/// Triangles of the mesh that is divided.
+const SMALLEST: usize = 10_000;
+
+/// A line of the plot.
+struct Series {
+    name: String,
+    /// Triangles and seconds a query.
+    points: Vec<(f64, f64)>,
+}
+
+/// The chapter of the page; the plot goes to `out`.
+pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
+    let (models, enough) = (models()?, effort.enough / 10);
+    let mut all: Vec<Series> = Vec::new();
+    let mut threads = String::new();
+    let mut mesh = ventricle::mesh(SMALLEST);
+    for step in 0..=effort.largest {
+        let (vertices, indices) = shuffled(mesh.clone(), 1);
+        let tri_mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
+        for (model, robot) in &models {
+            let job = || -> Result<[f64; 3], String> {
+                Ok([
+                    time(&mut exhaustive::<f32>(&tri_mesh)?, robot, enough)?,
+                    time(&mut exhaustive::<f64>(&tri_mesh)?, robot, enough)?,
+                    time(&mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?, robot, enough)?,
+                ])
+            };
+            let times = on_one_thread(job)??;
+            for (engine, time) in ["exhaustive f32", "exhaustive f64", "search, warm"].into_iter().zip(times)
+            {
+                let name = format!("{model}, {engine}");
+                let point = (tri_mesh.num_triangles() as f64, time);
+                match all.iter_mut().find(|series| series.name == name) {
+                    Some(series) => series.points.push(point),
+                    None => all.push(Series { name, points: vec![point] }),
+                }
+            }
+        }
+        if step == effort.largest {
+            threads = scaling(&tri_mesh, &models[1].1, enough)?;
+        } else {
+            mesh = in_four(mesh);
+        }
+    }
+    plot(&all, &out.join("speed.svg"))?;
+    Ok(table(&all)? + &threads)
+}
+
+fn exhaustive<T: SearchPrecision>(mesh: &TriMesh) -> Result<Exhaustive<T>, String> {
+    Exhaustive::new(mesh).map_err(|error| error.to_string())
+}
+
+fn time(engine: &mut dyn Proximity, robot: &Chain, enough: Duration) -> Result<f64, String> {
+    let mut out = Vec::new();
+    let base = ventricle::entry();
+    let mut query = || engine.per_link(robot, &base, &mut out).map_err(|error| error.to_string());
+    query()?;
+    Ok(medians::<String>(&mut [&mut query], enough)?[0].as_secs_f64())
+}
+
+/// Links and threads: how the time of an exhaustive query in single precision grows and shrinks.
+fn scaling(mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
+    let links = robot.links().len();
+    let points: Vec<_> = robot.links().iter().map(|link| link.start()).collect();
+    let radii: Vec<_> = robot.links().iter().map(|link| link.radius()).collect();
+    let half = Chain::from_centreline(&points[..=links / 2], &radii[..links / 2])
+        .map_err(|error| error.to_string())?;
+    let one = on_one_thread(|| -> Result<_, String> {
+        let mut engine = exhaustive::<f32>(mesh)?;
+        Ok((time(&mut engine, robot, enough)?, time(&mut engine, &half, enough)?))
+    })??;
+    let all = time(&mut exhaustive::<f32>(mesh)?, robot, enough)?;
+    let cores = rayon::current_num_threads();
+    Ok(format!(
+        "\nAt {} triangles, exhaustive in f32: half of the links take {:.2} of the time of all; {cores} threads are {:.2} \
+         times as fast as one.\n",
+        mesh.num_triangles(),
+        one.1 / one.0,
+        one.0 / all
+    ))
+}
+
+fn table(all: &[Series]) -> Result<String, String> {
+    let mut page = String::from(
+        "## Growth\n\n\
+         A ventricle divided in four again and again and shuffled, 30 links, one thread: time of a per-link query \
+         against triangles (the paper's Figure 9 for the CPU, with culling; search warm).\n\n\
+         ![Time against triangles](speed.svg)\n\n| microseconds |",
+    );
+    let write_all = |page: &mut String| -> std::fmt::Result {
+        for (triangles, _) in &all[0].points {
+            write!(page, " {triangles} |")?;
+        }
+        write!(page, "\n|---|{}\n", "---|".repeat(all[0].points.len()))?;
+        for series in all {
+            write!(page, "| {} |", series.name)?;
+            for (_, seconds) in &series.points {
+                write!(page, " {:.1} |", seconds * 1e6)?;
+            }
+            writeln!(page)?;
+        }
+        Ok(())
+    };
+    write_all(&mut page).map_err(|error| error.to_string())?;
+    Ok(page)
+}
+
+fn plot(all: &[Series], path: &Path) -> Result<(), String> {
+    draw(all, path).map_err(|error| format!("cannot draw {} ({error}); choose another --out", path.display()))
+}
+
+fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    if let Some(directory) = path.parent() {
+        std::fs::create_dir_all(directory)?;
+    }
+    let points = || all.iter().flat_map(|series| &series.points);
+    let (low, high) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.1), high.max(p.1)));
+    let (few, many) = points().fold((f64::INFINITY, 0.0_f64), |(few, many), p| (few.min(p.0), many.max(p.0)));
+    let area = SVGBackend::new(path, (900, 560)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&area)
+        .margin(16)
+        .x_label_area_size(40)
+        .y_label_area_size(70)
+        .build_cartesian_2d((few * 0.9..many * 1.1).log_scale(), (low * 0.5..high * 2.0).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("triangles")
+        .y_desc("seconds a query of 30 links")
+        .x_label_formatter(&|x| format!("{x:.0}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .draw()?;
+    for (index, series) in all.iter().enumerate() {
+        let colour = Palette99::pick(index).to_rgba();
+        chart
+            .draw_series(
+                LineSeries::new(series.points.iter().copied(), colour.stroke_width(2)).point_size(3),
+            )?
+            .label(&series.name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.8))
+        .draw()?;
+    area.present()?;
+    Ok(())
+}

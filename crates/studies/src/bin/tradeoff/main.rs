@@ -1,0 +1,144 @@
+//! What accuracy costs: every model, tolerance and engine on seeded shapes of a concentric tube robot in a ventricle.
+//! Writes `docs/TRADEOFF.md`, its plot and the README's guide.
+//!
+//! ```text
+//! cargo run --release -p continuum-studies --bin tradeoff
+//! ```
+//!
+//! Needs a few minutes. With `--features gpu` the engines on the GPU take part. `--mesh` takes other anatomy; then the page goes to `target/tradeoff`, as it does with other
+//! numbers of shapes.
+
+mod clock;
+mod front;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod guide;
+mod kinematics;
+mod outcome;
+mod page;
+mod plot;
+mod reference;
+mod shapes;
+mod shares;
+mod statistics;
+mod subject;
+mod ways;
+
+use clap::Parser;
+use continuum_scene::anatomy::Anatomy;
+use continuum_scene::steer::Random;
+use continuum_scene::{command, ctr};
+use continuum_studies::quote;
+use outcome::outcomes;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Measure what accuracy costs: models, tolerances and engines on many shapes of a concentric tube robot.
+#[derive(Parser)]
+struct Options {
+    #[command(flatten)]
+    anatomy: Anatomy,
+
+    /// Shapes whose clearance is compared
+    #[arg(long, value_name = "COUNT", default_value_t = SHAPES, value_parser = clap::value_parser!(u32).range(10..))]
+    shapes: u32,
+
+    /// Shapes that are timed: the first that are free of the wall
+    #[arg(long, value_name = "COUNT", default_value_t = TIMED, value_parser = clap::value_parser!(u32).range(1..))]
+    timed: u32,
+
+    /// Where to write TRADEOFF.md and tradeoff.svg [default: docs, or target/tradeoff with other options]
+    #[arg(long, value_name = "DIRECTORY")]
+    out: Option<PathBuf>,
+}
+
+const SHAPES: u32 = 10_000;
+const TIMED: u32 = 300;
+
+/// Shapes with torsion.
+const TWISTED: usize = 1000;
+
+fn main() -> ExitCode {
+    command::run(measure)
+}
+
+fn measure(options: &Options) -> Result<(), String> {
+    let usual = options.anatomy.is_planned() && options.shapes == SHAPES && options.timed == TIMED;
+    let out = options.out.clone().unwrap_or_else(|| if usual { "docs" } else { "target/tradeoff" }.into());
+    let mesh = options.anatomy.load()?;
+    let base = options.anatomy.pose(&mesh)?;
+    let robot = ctr::three_tubes();
+
+    let start = Instant::now();
+    let stage = |name: &str| println!("{:5.0} s  {name}", start.elapsed().as_secs_f64());
+    stage("shapes");
+    let mut random = Random(1);
+    let shapes: Vec<_> = (0..options.shapes).map(|_| shapes::draw(&robot, &mut random)).collect();
+    let outcomes = outcomes(&robot, &shapes, &mesh, &base)?;
+    let timed: Vec<_> = shapes
+        .iter()
+        .zip(&outcomes)
+        .filter(|(_, outcome)| outcome.truth > 0.0)
+        .map(|(joints, _)| joints.clone())
+        .take(options.timed as usize)
+        .collect();
+    if timed.is_empty() {
+        return Err(
+            "every shape touches the wall; move the robot with --base and --axis, or bring the mesh to \
+                    millimetres with --scale"
+                .into(),
+        );
+    }
+    stage("the reference itself");
+    let checked = reference::check(&robot, &timed, &mesh, &base)?;
+    stage("torsion");
+    let some = TWISTED.min(shapes.len());
+    let (kinematics, torsion_median, torsion_worst) =
+        kinematics::chapter(&robot, &shapes[..some], &outcomes[..some], &mesh, &base)?;
+    stage("times");
+    #[cfg(feature = "gpu")]
+    let devices = gpu::devices();
+    #[cfg(not(feature = "gpu"))]
+    let devices = Vec::new();
+    let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
+
+    stage("writing");
+    let errors = front::errors(&outcomes);
+    let all = front::combinations(&times, &errors);
+    let command = command::line("-p continuum-studies --bin tradeoff");
+    let widest = robot.sections.iter().map(|section| section.radius).fold(0.0, f64::max);
+    let page = page::page(&page::Facts {
+        command: &command,
+        triangles: mesh.num_triangles(),
+        timed: timed.len(),
+        outcomes: &outcomes,
+        checked: &checked,
+        times: &times,
+        errors: &errors,
+        all: &all,
+        widest,
+        device: devices.first().map(|device| device.name.as_str()),
+    });
+    fs::create_dir_all(&out).map_err(|error| unwritable(&out, error))?;
+    let file = out.join("TRADEOFF.md");
+    fs::write(&file, page + "\n" + &shares::chapter(&outcomes) + "\n" + &kinematics)
+        .map_err(|error| unwritable(&file, error))?;
+    plot::draw(&all, &out.join("tradeoff.svg"))?;
+    let guide = guide::text(&guide::Facts {
+        command: &command,
+        all: &all,
+        times: &times,
+        forbidden: shares::forbidden(&outcomes, subject::Model::Capsule),
+        torsion: [torsion_median, torsion_worst],
+    });
+    quote::in_readme(&guide, "tradeoff", &out)?;
+    stage("done");
+    println!("{}", file.display());
+    Ok(())
+}
+
+fn unwritable(path: &std::path::Path, error: std::io::Error) -> String {
+    format!("cannot write {} ({error}); choose another --out", path.display())
+}

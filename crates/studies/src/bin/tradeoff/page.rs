@@ -1,0 +1,222 @@
+//! The page of the trade: what was measured, and what geometry says about it.
+
+use crate::clock::Times;
+use crate::front::{Combination, front};
+use crate::outcome::{INPUT_SPACING, Outcome, REFERENCE_SPACING, TOLERANCES};
+use crate::reference::Checked;
+use crate::statistics::{Errors, length, quantile};
+use crate::subject::Model;
+use continuum_studies::machine;
+use std::fmt::Write;
+
+/// The largest curvature of the robot's curve, 1 / mm: all tubes bend the same way.
+const CURVATURE: f64 = 0.0523;
+
+/// What the page is made of.
+pub struct Facts<'a> {
+    pub command: &'a str,
+    pub triangles: usize,
+    pub timed: usize,
+    pub outcomes: &'a [Outcome],
+    pub checked: &'a Checked,
+    pub times: &'a Times,
+    pub errors: &'a [[Errors; Model::ALL.len()]],
+    pub all: &'a [Combination],
+    /// The largest radius of the robot.
+    pub widest: f64,
+    /// The GPU, if one took part.
+    pub device: Option<&'a str>,
+}
+
+/// The page, without the chapters of the shares and of torsion.
+pub fn page(facts: &Facts) -> String {
+    let Facts { command, triangles, timed, outcomes, checked, times, errors, all, widest, device } = *facts;
+    format!(
+        "# What accuracy costs\n\n\
+         Written by `{command}` on {}{}.\n\n\
+         A concentric tube robot in a mesh of {triangles} triangles. Its shapes are drawn from a seed: a reach of 15, 30 \
+         or 60 %, each as likely, then each section's extension uniform up to that share of its length, and every \
+         tube's angle uniform. {}.\n\n\
+         The *true* clearance is that of the swept tube with flat faces: a chain of flat links along the true curve, at \
+         most {REFERENCE_SPACING} mm long and a hundredth of that at the faces, in f64. Stations twice as close change it \
+         by at most {} mm, four times as close by {} mm. Chains by Algorithm 1 at the same stations differ from it by up \
+         to {} mm; a round cap that has just been admitted behind a face can stick out of it, by r - sqrt(r^2 - (r^2 kappa / \
+         2)^2) or {} mm at most.\n\n\
+         ## The trade\n\n\
+         The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
+         thread. Times are medians over the shapes, the chain already built. *Cold*: without the last answers. *Warm*: after \
+         a query for the shape a small step earlier (0.1 mm of each extension, 0.01 rad of each angle). The search works \
+         in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
+         that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
+         sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
+         less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n{}\n\n\
+         ![Error against time](tradeoff.svg)\n\n\
+         The front of the picture:\n\n{}\n\
+         ### What geometry predicts\n\n\
+         `simplify` promises that the links' axis and the curve are within the tolerance of each other, and an error on \
+         the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
+         which a chord of sagitta t turns by sqrt(2 t kappa) from the curve's: at a radius r the rim is out of place by r \
+         sqrt(2 t kappa), here at most with r = {widest} mm and kappa = {CURVATURE} / mm. A capsule's end reaches r beyond a \
+         flat face: its clearance falls short by up to r, at any tolerance.\n\n\
+         *Faces fixed*: two more links, that end 0.3 and 0.01 mm before each face. The last one is so short that the \
+         face has the curve's direction, and the one before ends so near that its tilted end stays behind the face. What \
+         is left is the tolerance and a few micrometres.\n\n{}\n\
+         ### Before the query\n\n\
+         From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
+        machine::description(),
+        device.map_or(String::new(), |name| format!(" and {name}")),
+        clearances(outcomes),
+        length(checked.halved),
+        length(checked.quartered),
+        length(checked.algorithm_1),
+        length(widest - (widest * widest - (0.5 * widest * widest * CURVATURE).powi(2)).sqrt()),
+        agreement(times.apart),
+        table(times, errors),
+        base_cap(outcomes),
+        front_table(all),
+        predictions(outcomes, errors, widest),
+        building(times)
+    )
+}
+
+/// The trade's table.
+fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
+    let of_model =
+        |index: usize, model| times.queries[index].iter().filter(move |timed| timed.model == model);
+    let ways: Vec<_> = of_model(0, Model::ALL[0]).map(|timed| timed.way).collect();
+    let mut page = format!(
+        "| model | within | links | {} | error: median | worst over | worst under |\n{}\n",
+        ways.join(" | "),
+        "|---".repeat(6 + ways.len()) + "|"
+    );
+    for (which, model) in Model::ALL.into_iter().enumerate() {
+        for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
+            let error = &errors[index][which];
+            let links = of_model(index, model).next();
+            let mut cells: Vec<_> = of_model(index, model).map(|timed| microseconds(timed.time)).collect();
+            // parry has one way, a search without memory.
+            cells.resize(ways.len(), String::new());
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                page,
+                "| {} | {tolerance} mm | {} | {} | {} | {} | {} |",
+                model.name(),
+                links.map_or(0, |timed| timed.links),
+                cells.join(" | "),
+                signed(error.median),
+                signed(error.over),
+                signed(error.under),
+            );
+        }
+    }
+    page
+}
+
+/// The front, from the fastest to the most accurate.
+fn front_table(all: &[Combination]) -> String {
+    let mut page = String::from("| time | worst error | model | within | way |\n|---|---|---|---|---|\n");
+    for one in front(all) {
+        let _ = writeln!(
+            page,
+            "| {} | {} mm | {} | {} mm | {} |",
+            microseconds(one.time),
+            length(one.error),
+            one.model.name(),
+            one.tolerance,
+            one.way
+        );
+    }
+    page
+}
+
+/// What geometry predicts, beside what was measured.
+fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], widest: f64) -> String {
+    let mut page = String::from(
+        "| within | face out of place: predicted | found | Z*: worst over | worst under | Z*, faces fixed: over | under | K: over | under |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
+        let found = outcomes.iter().map(|shape| shape.each[index].tilt).fold(0.0, f64::max);
+        let [k, _, modified, faced, ..] = &errors[index];
+        let _ = writeln!(
+            page,
+            "| {tolerance} mm | {} | {} | {} | {} | {} | {} | {} | {} |",
+            length(widest * (2.0 * tolerance * CURVATURE).sqrt()),
+            length(found),
+            signed(modified.over),
+            signed(modified.under),
+            signed(faced.over),
+            signed(faced.under),
+            signed(k.over),
+            signed(k.under),
+        );
+    }
+    page
+}
+
+fn agreement(apart: f64) -> String {
+    if apart == 0.0 {
+        "all engines agree to the last bit".into()
+    } else {
+        format!("two engines differ by at most {apart:.0e} mm")
+    }
+}
+
+/// What the base's cap does to capsules.
+fn base_cap(outcomes: &[Outcome]) -> String {
+    let free: Vec<_> = outcomes.iter().filter(|shape| shape.truth > 0.0).collect();
+    let others: Vec<_> = free.iter().filter(|shape| !shape.cap_at_base).collect();
+    let k = Model::Capsule.index();
+    let errors = Errors::of(others.iter().map(|shape| shape.each[0].clearances[k] - shape.truth));
+    format!(
+        "In {} of the {} free shapes it is the round cap at the robot's base that is nearest in the model K, where it \
+         reaches back towards the wall around the entry. In the other {} the error of K within {} mm is {} mm in the \
+         median and at worst {} mm.",
+        free.len() - others.len(),
+        free.len(),
+        others.len(),
+        TOLERANCES[0],
+        signed(errors.median),
+        signed(errors.under)
+    )
+}
+
+/// What comes before a query.
+fn building(times: &Times) -> String {
+    let mut page = String::from("| within | links | `simplify` | the chain Z* |\n|---|---|---|---|\n");
+    for (building, tolerance) in times.building.iter().zip(TOLERANCES) {
+        let _ = writeln!(
+            page,
+            "| {tolerance} mm | {} | {} | {} |",
+            building.links,
+            microseconds(building.simplify),
+            microseconds(building.chain)
+        );
+    }
+    page
+}
+
+/// The longest and the middle clearance, to know what the errors are to be compared with.
+fn clearances(outcomes: &[Outcome]) -> String {
+    let free: Vec<_> = outcomes.iter().map(|shape| shape.truth).filter(|&truth| truth > 0.0).collect();
+    let base = outcomes.iter().filter(|shape| shape.truth > 0.0 && shape.at_base).count();
+    format!(
+        "{} of the {} shapes are free of the wall; their clearances are {} mm in the median and at most {} mm, and in \
+         {} of them the base's face is what is nearest",
+        free.len(),
+        outcomes.len(),
+        length(quantile(free.clone(), 0.5).unwrap_or(0.0)),
+        length(free.iter().copied().fold(0.0, f64::max)),
+        base
+    )
+}
+
+fn microseconds(seconds: f64) -> String {
+    let us = seconds * 1e6;
+    if us < 100.0 { format!("{us:.1} us") } else { format!("{us:.0} us") }
+}
+
+/// With its sign, because a sign tells the safe side from the unsafe.
+fn signed(mm: f64) -> String {
+    if mm > 0.0 { format!("+{}", length(mm)) } else { length(mm) }
+}

@@ -1,0 +1,115 @@
+//! One shape of the robot as each program takes it: models made of the same links.
+
+use continuum_scene::ctr::Centreline;
+use continuum_scene::timing;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::shape::{Capsule, Cylinder};
+use parry_continuum::{Chain, RobotError, simplify};
+
+/// A model of the robot, and whose arithmetic asks for it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Model {
+    Capsule,
+    Cylinder,
+    Modified,
+    /// With two more links at each face, so that the face has the curve's direction.
+    Faced,
+    ParryCapsule,
+    ParryCylinder,
+    Spheres,
+}
+
+impl Model {
+    pub const ALL: [Self; 7] = [
+        Self::Capsule,
+        Self::Cylinder,
+        Self::Modified,
+        Self::Faced,
+        Self::ParryCapsule,
+        Self::ParryCylinder,
+        Self::Spheres,
+    ];
+
+    /// Those of this crate.
+    pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
+
+    /// Its place in [`Model::ALL`], and in [`Model::OURS`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Capsule => "K, capsules",
+            Self::Cylinder => "Z, cylinders",
+            Self::Modified => "Z*, modified",
+            Self::Faced => "Z*, faces fixed",
+            Self::ParryCapsule => "parry's Capsule",
+            Self::ParryCylinder => "parry's Cylinder",
+            Self::Spheres => "7 spheres a link",
+        }
+    }
+}
+
+/// The spheres that stand for a link in the way of the sphere chains: as many, evenly along the axis, ends included.
+const SPHERES: usize = 7;
+
+/// The robot with the fewest links within a tolerance.
+pub struct Subject {
+    /// In the order of [`Model::OURS`].
+    chains: [Chain; 4],
+    pub capsules: Vec<(Pose, Capsule)>,
+    pub cylinders: Vec<(Pose, Cylinder)>,
+    /// Centres and radii.
+    pub spheres: Vec<(Vector, Real)>,
+}
+
+impl Subject {
+    /// Of a curve and the numbers of its points that fix the directions of faces.
+    pub fn new(curve: &Centreline, at_faces: &[usize], tolerance: Real) -> Result<Self, RobotError> {
+        let (points, radii) = simplify(&curve.points, &curve.radii, tolerance)?;
+        let faced = keeping(curve, at_faces, tolerance)?;
+        let chains = [
+            Chain::capsules(&points, &radii)?,
+            Chain::cylinders(&points, &radii)?,
+            Chain::from_centreline(&points, &radii)?,
+            Chain::from_centreline(&faced.points, &faced.radii)?,
+        ];
+        let links = chains[0].links();
+        let capsule =
+            |link: &parry_continuum::ModifiedCylinder| Capsule::new(link.start(), link.end(), link.radius());
+        let capsules = links.iter().map(|link| (Pose::IDENTITY, capsule(link))).collect();
+        let spheres = links
+            .iter()
+            .flat_map(|link| {
+                let share = |k: usize| k as Real / (SPHERES - 1) as Real;
+                (0..SPHERES).map(move |k| (link.start().lerp(link.end(), share(k)), link.radius()))
+            })
+            .collect();
+        let cylinders = timing::cylinders(&chains[1]);
+        Ok(Self { chains, capsules, cylinders, spheres })
+    }
+
+    /// The chain of one of this crate's models; of a peer's model, the one with the same links.
+    pub fn chain(&self, model: Model) -> &Chain {
+        match model {
+            Model::Capsule | Model::ParryCapsule | Model::Spheres => &self.chains[0],
+            Model::Cylinder | Model::ParryCylinder => &self.chains[1],
+            Model::Modified => &self.chains[2],
+            Model::Faced => &self.chains[3],
+        }
+    }
+}
+
+/// The fewest links within a tolerance that keep some of the points.
+fn keeping(curve: &Centreline, points: &[usize], tolerance: Real) -> Result<Centreline, RobotError> {
+    let mut kept = Centreline { points: vec![curve.points[0]], radii: Vec::new() };
+    let mut from = 0;
+    for to in points.iter().copied().chain([curve.points.len() - 1]) {
+        let (points, radii) = simplify(&curve.points[from..=to], &curve.radii[from..to], tolerance)?;
+        kept.points.extend(&points[1..]);
+        kept.radii.extend(radii);
+        from = to;
+    }
+    Ok(kept)
+}

@@ -1,0 +1,199 @@
+//! The programs that measure and write pages, each rehearsed: what they write is whole, and its numbers are
+//! numbers. Times are not judged.
+
+use continuum_testing::programs::*;
+
+const ACCURACY: &str = env!("CARGO_BIN_EXE_accuracy");
+const SPEED: &str = env!("CARGO_BIN_EXE_speed");
+const STUDIES: &str = env!("CARGO_BIN_EXE_studies");
+const TRADEOFF: &str = env!("CARGO_BIN_EXE_tradeoff");
+
+/// A README with marks, and what becomes of it.
+fn readme(directory: &str, mark: &str) {
+    let text = format!("before\n<!-- {mark} -->\nstale\n<!-- /{mark} -->\nafter\n");
+    file(&format!("{directory}/README.md"), &text);
+}
+
+fn assert_quoted(directory: &str, mark: &str, begins: &str) {
+    let readme = read(&format!("{directory}/README.md"));
+    let begins = format!("before\n<!-- {mark} -->\n{begins}");
+    assert!(readme.starts_with(&begins) && !readme.contains("stale"), "{readme}");
+    assert!(readme.ends_with(&format!("\n<!-- /{mark} -->\nafter\n")), "{readme}");
+    assert_finite(&readme);
+}
+
+#[test]
+fn the_trade_is_measured_drawn_and_quoted() {
+    let hall = room("hall.obj");
+    readme("trade", "tradeoff");
+    let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
+    let small = ["--shapes", "12", "--timed", "2", "--out", "trade/docs"];
+    succeed(TRADEOFF, &[place, small].concat());
+
+    let page = read("trade/docs/TRADEOFF.md");
+    let trade = page.split("## The trade").nth(1).unwrap().split("![").next().unwrap();
+    for model in [
+        "K, capsules",
+        "Z, cylinders",
+        "Z*, modified",
+        "Z*, faces fixed",
+        "parry's Capsule",
+        "parry's Cylinder",
+        "7 spheres a link",
+    ] {
+        assert_eq!(trade.matches(&format!("\n| {model} | ")).count(), 7, "{model}: {trade}");
+    }
+    for text in [
+        "of the 12 shapes are free",
+        "95 % confidence (Wilson)",
+        "GJK alone",
+        "torsion, same angles at the base",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+    assert_finite(&page);
+    // Discs and rings for the search of four models at seven tolerances, and in the legend.
+    assert_eq!(read("trade/docs/tradeoff.svg").matches("<circle").count(), 2 * 4 * 7 + 2);
+    assert_quoted("trade", "tradeoff", "Measured by");
+
+    let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+    let arguments =
+        ["--mesh", &wall, "--base", "0,0,0", "--axis", "0,0,1", "--shapes", "10", "--out", "trade/none"];
+    let (success, _, error) = run(TRADEOFF, &arguments);
+    assert!(!success && error.contains("every shape touches the wall"), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
+}
+
+/// A percentage.
+fn percent(text: &str) -> f64 {
+    text.trim().strip_suffix(" %").unwrap_or_else(|| panic!("{text}")).parse().unwrap()
+}
+
+#[test]
+fn speed_is_measured_drawn_and_quoted() {
+    readme("speed", "speed");
+    let arguments = ["--largest", "1", "--enough", "0", "--out", "speed/docs"];
+    assert_eq!(succeed(SPEED, &arguments), "speed/docs/SPEED.md\n");
+    let page = read("speed/docs/SPEED.md");
+    assert_finite(&page);
+    assert!(page.contains(
+        "`cargo run --release -p continuum-studies --bin speed -- --largest 1 --enough 0 --out speed/docs`"
+    ));
+
+    for head in ["| scene | triangles | parry, 30 links |", "| scene | triangles | nodes, cold |"] {
+        let rows = table(&page, head);
+        let of: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[1])).collect();
+        assert_eq!(of, [("wall", "5120"), ("middle", "5120")], "{head}");
+    }
+    assert!(page.contains("6,000 triangles divided in four once"), "{page}");
+    assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
+    let shares = table(&page, "| order | precision | K |");
+    assert_eq!(shares.len(), 4);
+    for model in shares.iter().flat_map(|row| &row[2..]) {
+        let (axes, measured) = model.split_once(',').unwrap();
+        let (axes, measured) = (percent(axes), percent(measured));
+        assert!(measured > 0.0 && axes > measured && axes < 50.0, "{shares:?}");
+    }
+    assert!(!table(&page, "| instruction set |").is_empty());
+    let head = page.lines().find(|line| line.starts_with("| microseconds |")).unwrap();
+    let growth = table(&page, head);
+    let names: Vec<_> = growth.iter().map(|row| &*row[0]).collect();
+    for (model, engines) in ["K", "Z*", "Z"].iter().zip(names.chunks(3)) {
+        let expected = ["exhaustive f32", "exhaustive f64", "search, warm"];
+        assert_eq!(engines, expected.map(|engine| format!("{model}, {engine}")));
+    }
+    let sizes: Vec<u32> =
+        head.split(" | ").skip(1).map(|n| n.trim_matches([' ', '|']).parse().unwrap()).collect();
+    assert!(sizes.len() == 2 && sizes[1] == 4 * sizes[0], "{head}");
+    assert_eq!(table(&page, "| triangles | refit and search |").len(), 1);
+    assert_eq!(table(&page, "| engine | bytes |").len(), 3);
+    assert!(table(&page, "| job | goal | measured | met |").len() > 5);
+
+    // A line and a legend for each model and engine.
+    let plot = read("speed/docs/speed.svg");
+    for name in names {
+        assert!(plot.contains(name), "{name}: {plot}");
+    }
+    assert!(plot.matches("<polyline").count() >= 18, "{plot}");
+    assert_quoted(
+        "speed",
+        "speed",
+        "Written by `cargo run --release -p continuum-studies --bin speed -- --largest 1",
+    );
+
+    for (arguments, expected) in [
+        (["--largest", "7"], "1..=6"),
+        (["--enough", "-1"], "--help"),
+        (["--enough=nan", "--largest=1"], "seconds from 0 to 60"),
+    ] {
+        refuse(SPEED, &arguments, expected);
+    }
+}
+
+#[test]
+fn the_studies_are_made_and_one_is_made_again() {
+    let small = ["--problems", "400", "--queries", "20", "--triangles", "1000", "--polynomials", "200"];
+    let _ = std::fs::remove_dir_all(place("studies"));
+    let out = ["--out", "studies"];
+    assert_eq!(succeed(STUDIES, &[&small[..], &out].concat()), "studies/STUDIES.md\n");
+    let page = read("studies/STUDIES.md");
+    assert_finite(&page);
+
+    let routes = table(&page, "| route | f32: worst |");
+    assert_eq!(routes.len(), 13);
+    // Answers with more than 8 units of error, in single and in double precision: none by the default.
+    assert_eq!([&*routes[0][0], &*routes[0][2], &*routes[0][6]], ["convex, Halley", "0", "0"]);
+    for printed in &routes[1..5] {
+        assert!(printed[0].starts_with("(18) as printed") && percent(&printed[3]) > 0.0, "{printed:?}");
+    }
+    let tables: Vec<_> = page.split("\n## Table I").collect();
+    for chapter in ["I: segment to segment", "II: point to triangle"] {
+        let chapter = tables.iter().find(|text| text.starts_with(chapter)).unwrap();
+        assert_eq!(table(chapter, "| precision | queries | clamped |").len(), 4);
+    }
+    let growth = table(&page, "| precision | model | pairs and discs | 1000 |");
+    assert_eq!((growth.len(), table(&page, "| precision | model | pairs and discs | s |").len()), (16, 16));
+    for row in growth.iter().filter(|row| !row[2].contains("(18)")) {
+        // A loop in single precision may find another triangle that is as near as it can tell.
+        let is_rounded = row[0] == "f32" && row[2].starts_with("one by one");
+        let limit = if is_rounded { 1e-4 } else { 1e-10 };
+        assert!(row[5].parse::<f64>().unwrap() < limit, "an error in mm: {row:?}");
+    }
+    let finders = table(&page, "| degree | finder |");
+    assert_eq!(finders.len(), 24);
+    assert!(
+        finders
+            .iter()
+            .all(|row| [&row[4], &row[7]].iter().all(|found| *found == "all" || percent(found) > 90.0))
+    );
+
+    let again = ["--only", "polynomials", "--polynomials", "20"];
+    succeed(STUDIES, &[&again[..], &out].concat());
+    let (chapters, polynomials) = page.split_once("## Table V").unwrap();
+    let after = read("studies/STUDIES.md");
+    let (chapters_after, polynomials_after) = after.split_once("## Table V").unwrap();
+    assert_eq!(chapters, chapters_after);
+    assert!(polynomials.contains("\n200 polynomials") && polynomials_after.contains("\n20 polynomials"));
+
+    for (arguments, expected) in [
+        (["--problems", "19"], "at least 20"),
+        (["--only", "roots"], "discs, branching, engines, polynomials"),
+    ] {
+        refuse(STUDIES, &arguments, expected);
+    }
+}
+
+#[test]
+fn accuracy_is_measured_and_drawn() {
+    succeed(ACCURACY, &["--out", "accuracy"]);
+    let page = read("accuracy/ACCURACY.md");
+    for table in ["ours", "extremes", "certificates", "gpu"] {
+        assert!(page.contains(&format!("<!-- {table} -->\n")), "{table}: {page}");
+    }
+    for (file, least) in [("accuracy.csv", 2 * 18 * 11), ("accuracy_cases.csv", 150)] {
+        let lines = read(&format!("accuracy/{file}"));
+        assert!(lines.lines().count() > least, "{file}: {lines}");
+        assert_finite(&lines);
+    }
+    assert!(colours("accuracy/correctness.png") > 10);
+}

@@ -1,0 +1,70 @@
+//! The reference cases.
+
+use serde::Deserialize;
+
+/// A reference distance: the inputs of one pair and the distance to 30 digits.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Case {
+    pub id: String,
+    pub kind: String,
+    pub cat: String,
+    #[serde(default)]
+    pub tri: [[f64; 3]; 3],
+    #[serde(default)]
+    pub s0: [f64; 3],
+    #[serde(default)]
+    pub s1: [f64; 3],
+    #[serde(default)]
+    pub u0: [f64; 3],
+    #[serde(default)]
+    pub u1: [f64; 3],
+    #[serde(default)]
+    pub p: [f64; 3],
+    #[serde(default)]
+    pub c: [f64; 3],
+    #[serde(default)]
+    pub n: [f64; 3],
+    #[serde(default)]
+    pub p0: [f64; 3],
+    #[serde(default)]
+    pub p1: [f64; 3],
+    #[serde(default)]
+    pub r: f64,
+    #[serde(default)]
+    pub caps: Vec<String>,
+    pub d: String,
+    pub scale: f64,
+    pub mag: f64,
+    pub f32: bool,
+}
+
+impl Case {
+    /// The expected distance, rounded to f64.
+    pub fn distance(&self) -> f64 {
+        self.d.parse().expect("a decimal number")
+    }
+
+    /// Whether the pair is a triangle and a link.
+    pub fn is_link(&self) -> bool {
+        self.kind.contains("capsule") || self.kind.contains("cylinder")
+    }
+
+    /// Which caps are flat, for the kinds that have caps.
+    pub fn flat(&self) -> [bool; 2] {
+        match self.kind.as_str() {
+            "triangle_cylinder" => [true, true],
+            "triangle_modified_cylinder" => [self.caps[0] == "flat", self.caps[1] == "flat"],
+            _ => [false, false],
+        }
+    }
+}
+
+/// Reads one JSON value a line.
+pub fn read_lines<T: for<'a> Deserialize<'a>>(text: &str) -> Vec<T> {
+    text.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect()
+}
+
+/// The reference distances.
+pub fn distance_cases() -> Vec<Case> {
+    read_lines(include_str!("../../../tests/data/distance.jsonl"))
+}

@@ -1,0 +1,32 @@
+//! The GPU of this machine, opened once for all tests of a program.
+//!
+//! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
+
+use parry_continuum::gpu::{Gpu, GpuError, Precision};
+use std::sync::OnceLock;
+
+/// The precisions, with names for messages.
+pub const PRECISIONS: [(&str, Precision); 2] = [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
+
+/// The GPU in this precision; None if there is none and none is required.
+pub fn open(precision: Precision) -> Option<&'static Gpu> {
+    static SINGLE: OnceLock<Option<Gpu>> = OnceLock::new();
+    static DOUBLE: OnceLock<Option<Gpu>> = OnceLock::new();
+    let opened = if precision == Precision::F32 { &SINGLE } else { &DOUBLE };
+    let open = || match Gpu::open(precision) {
+        Ok(gpu) => {
+            println!("{precision:?}: {}", gpu.adapter());
+            Some(gpu)
+        }
+        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDoublePrecision { .. })) => {
+            assert!(!is_required(), "{error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    };
+    opened.get_or_init(open).as_ref()
+}
+
+pub fn is_required() -> bool {
+    std::env::var_os("PARRY_CONTINUUM_REQUIRE_GPU").is_some()
+}

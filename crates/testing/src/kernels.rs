@@ -1,0 +1,197 @@
+//! Every public function of the narrow phase on one input.
+
+use crate::Case;
+use crate::precision::{Precision, extent, vector};
+use crate::problems::Problem;
+use parry_continuum::distance::*;
+use parry_continuum::parry::math::Vector;
+
+/// A triangle, a plane through its first vertex, a link, and a disc around the link's end.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<T> {
+    pub triangle: [Vec3<T>; 3],
+    pub plane_normal: Vec3<T>,
+    pub start: Vec3<T>,
+    pub end: Vec3<T>,
+    pub disc_normal: Vec3<T>,
+    pub radius: T,
+}
+
+// The kernels are inlined wherever they are called; these are compiled once for all kinds of caps.
+
+#[inline(never)]
+fn point_apart<T: Scalar>(
+    point: Vec3<T>,
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
+    point_modified_cylinder(point, start, end, radius, flat)
+}
+
+#[inline(never)]
+fn link_apart<T: Scalar>(
+    triangle: [Vec3<T>; 3],
+    start: Vec3<T>,
+    end: Vec3<T>,
+    radius: T,
+    flat: [T::Mask; 2],
+) -> Closest<T> {
+    triangle_modified_cylinder(triangle, start, end, radius, flat)
+}
+
+/// The names of what [`Input::answers`] returns.
+pub const KERNELS: [&str; 15] = [
+    "segment-segment",
+    "point-triangle",
+    "segment-triangle",
+    "point-disc",
+    "segment-disc",
+    "plane-disc",
+    "triangle-disc",
+    "point-link, round",
+    "point-link, flat",
+    "point-link, flat end",
+    "triangle-capsule",
+    "triangle-link, round",
+    "triangle-link, flat",
+    "triangle-link, flat start",
+    "triangle-link, flat end",
+];
+
+impl<T: Scalar> Input<T> {
+    /// The answers of every kernel.
+    pub fn answers(&self) -> [Closest<T>; KERNELS.len()] {
+        let Self { triangle, plane_normal, start, end, disc_normal, radius } = *self;
+        let [a, b, _] = triangle;
+        let (yes, no) = (radius.le(radius), radius.lt(radius));
+        let to_point = |flat| point_apart(a, start, end, radius, flat);
+        let to_triangle = |flat| link_apart(triangle, start, end, radius, flat);
+        [
+            segment_segment([start, end], [a, b]),
+            point_triangle(end, triangle),
+            segment_triangle([start, end], triangle),
+            point_disc(a, end, disc_normal, radius),
+            segment_disc([a, b], end, disc_normal, radius),
+            plane_disc(a, plane_normal, end, disc_normal, radius),
+            triangle_disc(triangle, end, disc_normal, radius),
+            to_point([no, no]),
+            to_point([yes, yes]),
+            to_point([no, yes]),
+            triangle_capsule(triangle, start, end, radius),
+            to_triangle([no, no]),
+            to_triangle([yes, yes]),
+            to_triangle([yes, no]),
+            to_triangle([no, yes]),
+        ]
+    }
+
+    pub fn map<U>(&self, number: impl Fn(T) -> U) -> Input<U> {
+        let vector = |v: Vec3<T>| Vec3::new(number(v.x), number(v.y), number(v.z));
+        Input {
+            triangle: self.triangle.map(vector),
+            plane_normal: vector(self.plane_normal),
+            start: vector(self.start),
+            end: vector(self.end),
+            disc_normal: vector(self.disc_normal),
+            radius: number(self.radius),
+        }
+    }
+}
+
+impl<T: Precision> Input<T> {
+    /// The extent of each kernel's pair: the largest difference of two of its points in a coordinate, or its radius.
+    pub fn extents(&self) -> [f64; KERNELS.len()] {
+        self.parts().map(|(points, radius)| extent(&points, radius))
+    }
+
+    /// The points of each kernel's pair, and its radius if it has one.
+    pub fn parts(&self) -> [(Vec<Vector>, f64); KERNELS.len()] {
+        let [a, b, c] = self.triangle.map(vector);
+        let (start, end, radius) = (vector(self.start), vector(self.end), self.radius.into());
+        let link = || (vec![a, b, c, start, end], radius);
+        let point_link = || (vec![a, start, end], radius);
+        [
+            (vec![start, end, a, b], 0.0),
+            (vec![end, a, b, c], 0.0),
+            (vec![start, end, a, b, c], 0.0),
+            (vec![a, end], radius),
+            (vec![a, b, end], radius),
+            (vec![a, end], radius),
+            (vec![a, b, c, end], radius),
+            point_link(),
+            point_link(),
+            point_link(),
+            link(),
+            link(),
+            link(),
+            link(),
+            link(),
+        ]
+    }
+}
+
+/// The distance of triangle and link, for packs; the caps are numbers, 1 where they are flat.
+pub struct LinkDistance;
+
+/// How many numbers a triangle and a link have.
+pub const NUMBERS: usize = 18;
+
+impl Kernel<NUMBERS, 1> for LinkDistance {
+    #[inline(always)]
+    fn run<T: Scalar>(n: [T; NUMBERS]) -> [T; 1] {
+        let (triangle, [start, end]) = (
+            [Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]), Vec3::new(n[6], n[7], n[8])],
+            [Vec3::new(n[9], n[10], n[11]), Vec3::new(n[12], n[13], n[14])],
+        );
+        let flat = [n[16].zero().lt(n[16]), n[17].zero().lt(n[17])];
+        [triangle_modified_cylinder(triangle, start, end, n[15], flat).distance]
+    }
+}
+
+impl<T: Precision> Input<T> {
+    /// Triangle, link and caps in a row.
+    pub fn link_numbers(&self, flat: [bool; 2]) -> [T; NUMBERS] {
+        let Self { triangle: [a, b, c], start, end, .. } = *self;
+        let mut numbers = [self.radius; NUMBERS];
+        let points = [a, b, c, start, end].map(|v| [v.x, v.y, v.z]);
+        numbers.iter_mut().zip(points.into_iter().flatten()).for_each(|(to, from)| *to = from);
+        [numbers[16], numbers[17]] = flat.map(|flat| T::from_f64(f64::from(u8::from(flat))));
+        numbers
+    }
+}
+
+impl From<&Problem> for Input<f64> {
+    fn from(problem: &Problem) -> Self {
+        let vec3 = |v: Vector| Vec3::from(v.to_array());
+        let [a, b, c] = problem.triangle;
+        Self {
+            triangle: problem.triangle.map(vec3),
+            plane_normal: vec3((b - a).cross(c - a)),
+            start: vec3(problem.start),
+            end: vec3(problem.end),
+            disc_normal: vec3(problem.end - problem.start),
+            radius: problem.radius,
+        }
+    }
+}
+
+impl From<&Case> for Input<f64> {
+    /// What the case's kind has not is filled in from what it has.
+    fn from(case: &Case) -> Self {
+        let ([start, end], triangle) = match case.kind.as_str() {
+            "segment_segment" => ([case.s0, case.s1], [case.u0, case.u1, case.s1]),
+            "point_triangle" => ([case.tri[0], case.p], case.tri),
+            "segment_triangle" => ([case.s0, case.s1], case.tri),
+            "point_disc" => ([case.n, case.c], [case.p, case.n, case.c]),
+            "segment_disc" => ([case.n, case.c], [case.s0, case.s1, case.c]),
+            "triangle_disc" => ([case.tri[1], case.c], case.tri),
+            _ => ([case.p0, case.p1], case.tri),
+        };
+        let [a, b, c] = triangle.map(Vec3::from);
+        let (start, end) = (Vec3::from(start), Vec3::from(end));
+        let disc_normal = if case.n == [0.0; 3] { end - start } else { Vec3::from(case.n) };
+        Self { triangle: [a, b, c], plane_normal: c - a, start, end, disc_normal, radius: case.r }
+    }
+}

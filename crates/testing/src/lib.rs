@@ -1,0 +1,24 @@
+//! What the tests and measurements of `parry-continuum` share, so that all of them ask and judge alike.
+//!
+//! | what | modules |
+//! |---|---|
+//! | questions | [`problems`] that break distance code; [`Case`], references known to 30 digits; [`Random`], the same anywhere |
+//! | the narrow phase | [`kernels`], every public function on one input; [`precision`], one text for `f32` and `f64` |
+//! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
+//! | programs | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
+
+mod cases;
+pub mod certificate;
+pub mod disc_problems;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+pub mod kernels;
+pub mod precision;
+pub mod problems;
+#[cfg(feature = "programs")]
+pub mod programs;
+mod random;
+pub mod rotation;
+
+pub use cases::{Case, distance_cases, read_lines};
+pub use random::Random;

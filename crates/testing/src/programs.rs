@@ -1,0 +1,106 @@
+//! Running a program as a user does, and looking at what it wrote.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+
+/// The directory of this build: tests are in target/debug/deps.
+pub fn build_directory() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.ancestors().nth(2).unwrap().to_owned()
+}
+
+/// Where programs run, and all that they write goes.
+pub fn place(name: &str) -> PathBuf {
+    build_directory().with_file_name("tmp").join(name)
+}
+
+/// A file with the given text.
+pub fn file(name: &str, text: &str) -> String {
+    let path = place(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().into()
+}
+
+/// What a program wrote.
+pub fn read(name: &str) -> String {
+    let path = place(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A mesh file of a box with room for a robot.
+pub fn room(name: &str) -> String {
+    let corners = (0..8).map(|k| format!("v {} {} {}\n", 60 * (k & 1), 30 * (k & 2), 15 * (k & 4)));
+    let sides = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    file(name, &(corners.collect::<String>() + sides))
+}
+
+/// An example program of the package in `manifest`, which is built first with these features.
+pub fn example(manifest: &str, name: &str, features: &str) -> PathBuf {
+    static BUILT: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    let mut built = BUILT.lock().unwrap();
+    if built.insert(name.into()) {
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--quiet", "--example", name, "--features", features]);
+        assert!(build.current_dir(manifest).status().unwrap().success());
+    }
+    build_directory().join("examples").join(name)
+}
+
+/// Runs a program: whether it succeeds, its output and its errors.
+pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (bool, String, String) {
+    let place = place("");
+    std::fs::create_dir_all(&place).unwrap();
+    let output = Command::new(program.as_ref()).args(arguments).current_dir(place).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.success(), text(output.stdout), text(output.stderr))
+}
+
+/// The output of a program that succeeds.
+pub fn succeed(program: impl AsRef<Path>, arguments: &[&str]) -> String {
+    let program = program.as_ref();
+    let (success, out, error) = run(program, arguments);
+    assert!(success, "{} {arguments:?}: {error}", program.display());
+    out
+}
+
+/// A program must refuse these arguments with one line that says this.
+pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) {
+    let program = program.as_ref();
+    let (success, out, error) = run(program, arguments);
+    let name = program.display();
+    assert!(!success && out.is_empty(), "{name} {arguments:?}: {out}");
+    assert!(error.contains(expected) && error.lines().count() == 1, "{name} {arguments:?}: {error}");
+}
+
+/// The rows of the table whose head begins so, cell by cell. Every row has as many as the head, and each holds something.
+pub fn table(page: &str, head: &str) -> Vec<Vec<String>> {
+    let mut lines = page.lines().skip_while(|line| !line.starts_with(head));
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let columns = cells(lines.next().unwrap_or_else(|| panic!("no table {head}: {page}"))).len();
+    assert_eq!(lines.next(), Some(format!("|{}", "---|".repeat(columns)).as_str()), "{head}");
+    let rows: Vec<_> = lines.take_while(|line| line.starts_with('|')).map(cells).collect();
+    for row in &rows {
+        assert!(row.len() == columns && row.iter().all(|cell| !cell.is_empty()), "{head}: {row:?}");
+    }
+    rows
+}
+
+/// Every number of the text is one.
+pub fn assert_finite(text: &str) {
+    let mut words = text.split(|c: char| !c.is_alphanumeric());
+    assert!(!words.any(|word| ["NaN", "inf"].contains(&word)), "{text}");
+}
+
+/// How many colours a picture has.
+pub fn colours(name: &str) -> usize {
+    let file = std::fs::File::open(place(name)).unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels.as_chunks::<3>().0.iter().collect::<BTreeSet<_>>().len()
+}

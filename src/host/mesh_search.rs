@@ -1,0 +1,61 @@
+//! The closest triangle of a mesh, by the mesh's own bounding volume hierarchy.
+
+use crate::proximity::{Best, Nearest, PlacedLink};
+use parry3d_f64::math::Real;
+use parry3d_f64::partitioning::BvhLeafCost;
+use parry3d_f64::shape::TriMesh;
+use std::cell::Cell;
+
+/// A triangle that the search visited has a vertex that is NaN or infinite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TriangleNotFinite;
+
+/// How far a search goes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Until {
+    /// The nearest triangle is known.
+    Nearest,
+    /// Some triangle is nearer than the bound.
+    FirstWithinBound,
+}
+
+/// The triangle nearest to the link among those strictly nearer than `bound`.
+///
+/// Nearer boxes go first, and boxes no nearer than the best triangle so far are left out.
+pub(super) fn search(
+    mesh: &TriMesh,
+    link: &PlacedLink,
+    bound: Real,
+    until: Until,
+) -> Result<Option<Nearest>, TriangleNotFinite> {
+    let all_finite = Cell::new(true);
+    let found = mesh.bvh().find_best(
+        bound,
+        |node, _| link.distance_to_box(node.mins(), node.maxs()),
+        |triangle, bound| {
+            let vertices = mesh.triangle(triangle).vertices().to_owned();
+            if !vertices.iter().all(|vertex| vertex.is_finite()) {
+                all_finite.set(false);
+                return None;
+            }
+            let mut best = Best::within(bound);
+            best.measure(link, triangle, vertices);
+            let nearest = best.nearest()?;
+            // A cost of 0 makes the hierarchy leave out everything else.
+            let cost = if until == Until::FirstWithinBound { 0.0 } else { nearest.distance };
+            Some(Candidate { cost, nearest })
+        },
+    );
+    if all_finite.get() { Ok(found.map(|(_, candidate)| candidate.nearest)) } else { Err(TriangleNotFinite) }
+}
+
+struct Candidate {
+    cost: Real,
+    nearest: Nearest,
+}
+
+impl BvhLeafCost for Candidate {
+    fn cost(&self) -> Real {
+        self.cost
+    }
+}

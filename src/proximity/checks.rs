@@ -1,0 +1,63 @@
+//! What every engine refuses.
+
+use super::{MeshError, ProximityError};
+use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// A margin that can be kept.
+pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
+    if margin.is_nan() || margin < 0.0 { Err(ProximityError::BadMargin { margin }) } else { Ok(()) }
+}
+
+/// A pose that keeps every link within range.
+pub(super) fn check_pose(robot: &Chain, pose: &Pose) -> Result<(), ProximityError> {
+    if !pose.is_finite() {
+        return Err(ProximityError::PoseNotFinite);
+    }
+    // The capsule around all links spares looking at each.
+    if let Some(LinkNode::Inner { bound, .. }) = robot.link_tree().first() {
+        let reach = |point: Vector| (pose * point).abs().max_element();
+        if reach(bound.start).max(reach(bound.end)) + bound.radius <= COORDINATE_LIMIT {
+            return Ok(());
+        }
+    }
+    for (link, place) in robot.links().iter().enumerate() {
+        check_ends(link, [pose * place.start(), pose * place.end()])?;
+    }
+    Ok(())
+}
+
+/// A link whose ends, in the mesh's frame, are within range.
+pub(super) fn check_ends(link: usize, ends: [Vector; 2]) -> Result<(), ProximityError> {
+    if ends.into_iter().all(in_range) {
+        Ok(())
+    } else {
+        Err(ProximityError::OutOfRange { link, limit: COORDINATE_LIMIT })
+    }
+}
+
+/// Vertices that are all within range.
+pub(super) fn check_vertices(vertices: &[Vector]) -> Result<(), MeshError> {
+    match vertices.iter().position(|&point| !in_range(point)) {
+        Some(vertex) => check_vertex(vertex, vertices[vertex]),
+        None => Ok(()),
+    }
+}
+
+/// A vertex within range; `vertex` is its place in the mesh.
+pub(super) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError> {
+    for value in point.to_array() {
+        if !value.is_finite() {
+            return Err(MeshError::NotFinite { vertex, value });
+        }
+        if value.abs() > COORDINATE_LIMIT {
+            return Err(MeshError::OutOfRange { vertex, value, limit: COORDINATE_LIMIT });
+        }
+    }
+    Ok(())
+}
+
+/// Written so that NaN is out of range too.
+fn in_range(point: Vector) -> bool {
+    point.abs().cmple(Vector::splat(COORDINATE_LIMIT)).all()
+}

@@ -1,0 +1,8 @@
+//! Every triangle against every link, as the paper does on parallel hardware.
+
+mod blocks;
+mod engine;
+mod kernels;
+mod scan;
+
+pub use engine::{Exhaustive, SearchPrecision};

@@ -1,0 +1,114 @@
+//! One link against a pack of triangles, in the precision of the search: which of them may be nearer than a bound.
+
+use super::search_frame::SearchLink;
+use super::triangle_block::splat;
+use crate::distance::lanes::Pack;
+use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
+
+/// What a pack of triangles is to a link. All distances are counted from the axis: the link's own and the radius.
+pub(super) struct Nearer<L> {
+    /// Which may be nearer than a bound, one bit per lane.
+    pub nearer: u64,
+    /// Bounds on how near they are: twice the axis distance where no flat cap decides.
+    pub lower: L,
+    pub upper: L,
+}
+
+/// A link in every lane.
+#[derive(Clone, Copy)]
+pub(super) struct LinkLanes<L: Scalar> {
+    pub start: Vec3<L>,
+    length: L,
+    /// Seen from its start.
+    pub link: Link<L>,
+    has_flat_cap: bool,
+}
+
+impl<L: Pack> LinkLanes<L> {
+    #[inline(always)]
+    pub(super) fn new(token: L::Token, link: &SearchLink<L::Element>) -> Self {
+        let radius = L::splat(token, link.radius);
+        let (yes, no) = (radius.zero().le(radius.zero()), radius.zero().lt(radius.zero()));
+        Self {
+            start: splat(token, link.start),
+            length: L::splat(token, link.length),
+            link: Link {
+                end: splat(token, link.along),
+                axis: splat(token, link.axis),
+                radius,
+                flat: [if link.flat[0] { yes } else { no }, if link.flat[1] { yes } else { no }],
+            },
+            has_flat_cap: link.flat[0] || link.flat[1],
+        }
+    }
+
+    /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
+    #[inline(always)]
+    pub(super) fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {
+        let relative = point - self.start;
+        let t = relative.dot(self.link.axis).max(self.length.zero()).min(self.length);
+        relative.along(self.link.axis, -t)
+    }
+
+    /// Upper bounds on the axis limits of what is in spheres: some point of it is that near.
+    #[inline(always)]
+    pub(super) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
+        // Any point of a triangle is an upper bound on F; beyond a flat cap that is one on the distance alone.
+        let beyond = if self.has_flat_cap { self.link.radius } else { self.length.zero() };
+        self.offset_from_axis(centre).norm() + radius + beyond
+    }
+
+    /// Which spheres around triangles come within `limit` of the axis, as bits.
+    #[inline(always)]
+    pub(super) fn meets_spheres(&self, centre: Vec3<L>, radius: L, limit: L) -> u64 {
+        let reach = limit + radius;
+        L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
+    }
+
+    /// Which triangles are not ruled out by the plane before the axis whose normal leads from the axis to the triangle's
+    /// centre, as bits.
+    #[inline(always)]
+    pub(super) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
+        let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
+        let v = self.offset_from_axis(centre);
+        let axis = v.dot(self.start) + self.link.reach_along(v);
+        let ahead = (v.dot(a).min(v.dot(b)).min(v.dot(c)) - axis).max(limit.zero());
+        // A centre on the axis rules nothing out, nor does what falls below the range.
+        L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
+    }
+
+    /// Which triangles may be nearer than the bound whose axis limit is `limit`.
+    #[inline(always)]
+    pub(super) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
+        let face = face.seen_from(self.start);
+        let axial = Axial::new(&self.link, &face);
+        let axis = axial.axis_squared.sqrt();
+        let nearer = L::bits(axis.lt(limit));
+        if nearer == 0 || !self.has_flat_cap {
+            return Nearer { nearer, lower: axis, upper: axis };
+        }
+        let (lower, upper) = axial.cap_bounds(&self.link, &face);
+        let beyond_cap = axial.beyond_flat_cap();
+        let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
+        let upper = beyond_cap.select(upper + self.link.radius, axis);
+        Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
+    }
+
+    /// The distances of triangles with every disc that decides one: the paper's work for a pair.
+    #[inline(always)]
+    pub(super) fn distances(&self, face: &Face<L>) -> L {
+        let face = face.seen_from(self.start);
+        let axial = Axial::new(&self.link, &face);
+        if self.has_flat_cap && L::bits(axial.beyond_flat_cap()) != 0 {
+            axial.with_caps(&self.link, &face).distance
+        } else {
+            (axial.axis_squared.sqrt() - self.link.radius).max(self.length.zero())
+        }
+    }
+}
+
+/// The magnitudes of the coordinates.
+#[inline(always)]
+pub(super) fn magnitudes<L: Pack>(vector: Vec3<L>) -> Vec3<L> {
+    Vec3::new(vector.x.abs(), vector.y.abs(), vector.z.abs())
+}

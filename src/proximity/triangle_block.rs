@@ -1,0 +1,56 @@
+//! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be loaded in packs.
+
+use super::mesh::Mesh;
+use super::search_frame::SearchFrame;
+use crate::distance::Vec3;
+use crate::distance::lanes::{Lane, Pack};
+
+/// How many triangles stand together: the widest pack, so that any narrower one divides it.
+pub(super) const BLOCK: usize = 16;
+
+/// Writes the corners of a triangle into its lane of a block.
+pub(super) fn place_triangle<E: Lane>(
+    frame: &SearchFrame,
+    mesh: &Mesh,
+    triangle: u32,
+    rows: &mut [E],
+    lane: usize,
+) {
+    for (corner, point) in mesh.corners(triangle).into_iter().enumerate() {
+        let point: [E; 3] = frame.point(point).into();
+        for (axis, value) in point.into_iter().enumerate() {
+            rows[(3 * corner + axis) * BLOCK + lane] = value;
+        }
+    }
+}
+
+// Functions and not closures below a dispatch: a closure may escape inlining, and its code would then be compiled
+// without the instruction set.
+
+/// One point in every lane.
+#[inline(always)]
+pub(super) fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L> {
+    Vec3::new(L::splat(token, point.x), L::splat(token, point.y), L::splat(token, point.z))
+}
+
+/// Three coordinates from the rows `row` to `row + 2`.
+#[inline(always)]
+pub(super) fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
+    let rows = &rows[row * BLOCK + lane..];
+    Vec3::new(L::load(token, rows), L::load(token, &rows[BLOCK..]), L::load(token, &rows[2 * BLOCK..]))
+}
+
+/// Three vertices from the first nine rows.
+#[inline(always)]
+pub(super) fn load_vertices<L: Pack>(token: L::Token, rows: &[L::Element], lane: usize) -> [Vec3<L>; 3] {
+    [load(token, rows, 0, lane), load(token, rows, 3, lane), load(token, rows, 6, lane)]
+}
+
+/// Writes three coordinates to the rows `row` to `row + 2`.
+#[inline(always)]
+pub(super) fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usize, lane: usize) {
+    let rows = &mut rows[row * BLOCK + lane..];
+    vector.x.store(rows);
+    vector.y.store(&mut rows[BLOCK..]);
+    vector.z.store(&mut rows[2 * BLOCK..]);
+}

@@ -1,0 +1,144 @@
+//! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision of the search.
+//!
+//! A pack bounds all children of a node at once, and all triangles of a leaf at once. Children stand behind their
+//! parents in memory, so that walking the nodes backwards refits them.
+
+use super::bound::NodeBound;
+use super::node::{Child, Leaf, Node, WIDTH};
+use crate::distance::lanes::{Lane, Pack};
+use crate::proximity::mesh::Mesh;
+use crate::proximity::parallel::each;
+use crate::proximity::search_frame::SearchFrame;
+use crate::proximity::triangle_block::BLOCK;
+use fearless_simd::{Level, dispatch};
+
+/// How many leaves one thread takes over at a time.
+const SHARE: usize = 64;
+
+/// The hierarchy of a mesh.
+#[derive(Clone)]
+pub(super) struct WideBvh<E> {
+    pub frame: SearchFrame,
+    pub nodes: Vec<Node<E>>,
+    pub leaves: Vec<Leaf<E>>,
+    /// The leaf of each triangle.
+    pub leaf_of: Vec<u32>,
+}
+
+impl<E: Lane> WideBvh<E> {
+    /// The hierarchy of a mesh with at least one triangle.
+    pub(super) fn new(level: Level, mesh: &Mesh) -> Self {
+        let mut tree = Self {
+            frame: SearchFrame::new(mesh),
+            nodes: vec![Node::empty()],
+            leaves: Vec::with_capacity(mesh.len().div_ceil(BLOCK / 2)),
+            leaf_of: vec![0; mesh.len()],
+        };
+        let centroid = |triangle: u32| {
+            let [a, b, c] = mesh.corners(triangle);
+            // Halved first, lest the sum of three far corners overflow.
+            (a * 0.5 + b * 0.5 + c * 0.5).to_array()
+        };
+        let mut items: Vec<_> =
+            (0..mesh.len() as u32).map(|triangle| (triangle, centroid(triangle))).collect();
+        tree.split(0, &mut items);
+        tree.refit(level, mesh);
+        tree
+    }
+
+    /// Divides the triangles of a node among its children: the largest part in two, until there are 16 parts or
+    /// all are of the size of a full subtree.
+    fn split(&mut self, node: usize, items: &mut [Item]) {
+        let unit = full_subtree(items.len());
+        let mut parts = vec![items];
+        while parts.len() < WIDTH {
+            let Some(largest) = (0..parts.len()).max_by_key(|&part| parts[part].len()) else { break };
+            if parts[largest].len() <= unit {
+                break;
+            }
+            let part = parts.swap_remove(largest);
+            let (low, high) = halve(part, unit);
+            parts.extend([low, high]);
+        }
+        for part in parts {
+            let child = if part.len() <= BLOCK {
+                self.leaves.push(Leaf::of(|lane| part[lane].0, part.len()));
+                let leaf = self.leaves.len() as u32 - 1;
+                part.iter().for_each(|&(triangle, _)| self.leaf_of[triangle as usize] = leaf);
+                Child::Leaf(leaf)
+            } else {
+                self.nodes.push(Node::empty());
+                let child = self.nodes.len() - 1;
+                self.split(child, part);
+                Child::Node(child as u32)
+            };
+            self.nodes[node].push(child);
+        }
+    }
+
+    /// Takes over the positions of the vertices; the division stays.
+    pub(super) fn refit(&mut self, level: Level, mesh: &Mesh) {
+        self.frame = SearchFrame::new(mesh);
+        let frame = &self.frame;
+        each(&mut self.leaves.chunks_mut(SHARE).collect::<Vec<_>>(), |_, leaves| {
+            leaves.iter_mut().for_each(|leaf| leaf.fill(frame, mesh));
+        });
+        // Nearly all bounds are those of leaves, and these do not wait for one another.
+        let leaves = &self.leaves;
+        each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
+            dispatch!(level, simd => bound_leaves::<E::Pack<_>>(simd, leaves, nodes));
+        });
+        for node in (0..self.nodes.len()).rev() {
+            for (child, below) in self.nodes[node].children().enumerate() {
+                if let Child::Node(below) = below {
+                    let bound = NodeBound::of_children(self.nodes[below as usize].bounds_in_use());
+                    self.nodes[node].set_bound(child, &bound);
+                }
+            }
+        }
+    }
+}
+
+/// Bounds those children that are leaves.
+#[inline(always)]
+fn bound_leaves<L: Pack>(token: L::Token, leaves: &[Leaf<L::Element>], nodes: &mut [Node<L::Element>])
+where
+    L::Element: Lane,
+{
+    for node in nodes {
+        for (child, below) in node.children().enumerate() {
+            if let Child::Leaf(leaf) = below {
+                node.set_bound(child, &NodeBound::of_leaf::<L>(token, &leaves[leaf as usize].rows));
+            }
+        }
+    }
+}
+
+/// A triangle and (one and a half times) its centroid.
+type Item = (u32, [f64; 3]);
+
+/// How many triangles each child of a node with `count` triangles should hold, so that the nodes near the leaves,
+/// which are nearly all, are full: 16, 256, 4096 ...
+fn full_subtree(count: usize) -> usize {
+    let mut unit = BLOCK;
+    // A few children of two units each are better than another level.
+    while unit * WIDTH * 3 / 2 < count {
+        unit *= WIDTH;
+    }
+    unit
+}
+
+/// Two halves along the longest side of the centroids' box; the lower one is a multiple of `unit`.
+fn halve(items: &mut [Item], unit: usize) -> (&mut [Item], &mut [Item]) {
+    let side = |axis: usize| {
+        let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), item| {
+            (low.min(item.1[axis]), high.max(item.1[axis]))
+        });
+        high - low
+    };
+    let sides = [side(0), side(1), side(2)];
+    let axis = (0..3).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
+    let middle = (items.len() / 2).next_multiple_of(unit).min(items.len() - 1);
+    items.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]));
+    items.split_at_mut(middle)
+}

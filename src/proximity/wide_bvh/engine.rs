@@ -1,0 +1,228 @@
+//! Proximity by a bounding volume hierarchy.
+
+use super::queries::{Hierarchy, RobotSearch, Scratch};
+use crate::Chain;
+use crate::proximity::checks::check_margin;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::parallel::in_shares;
+use crate::proximity::placed::PlacedRobot;
+use crate::proximity::{LinkProximity, MeshError, Proximity, ProximityError, Work};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
+use std::sync::Arc;
+
+/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
+/// triangles.
+///
+/// The engine keeps the mesh and a hierarchy of its own, 16 children and 16 triangles wide, in single precision;
+/// what rounding leaves in question is measured in double precision, so the answers are those of
+/// [`Exhaustive`](crate::proximity::Exhaustive). Where single precision is too coarse, because a triangle or the robot
+/// lies very far out, a second hierarchy in double precision takes its place; it is built when first needed.
+///
+/// The engine remembers its last answers, which bound the next query: any robot and pose may follow, and small motions
+/// are answered fastest. [`BvhSearch::forget`] makes it cold again.
+///
+/// A clone shares mesh and hierarchy and has a memory of its own, still cold: one for each thread costs nothing. Where
+/// [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others keep theirs.
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity}};
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, 0.0, 5.0)], &[0.5])?;
+/// std::thread::scope(|scope| {
+///     for turn in 0..2 {
+///         let (mut search, robot) = (search.clone(), &robot);
+///         scope.spawn(move || search.clears(robot, &Pose::rotation(Vector::X * f64::from(turn)), 1.0));
+///     }
+/// });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct BvhSearch {
+    level: Level,
+    hierarchy: Arc<Hierarchy>,
+    memory: Memory,
+    /// One for each share of a batch.
+    batch: Vec<Memory>,
+}
+
+/// What one query leaves for the next.
+#[derive(Clone, Default)]
+struct Memory {
+    scratch: Scratch,
+    /// The closest triangle of each link at the last query.
+    last: Vec<u32>,
+    /// The closest link and its triangle at the last query for the minimum.
+    last_minimum: Option<(usize, u32)>,
+}
+
+impl Memory {
+    fn forget(&mut self) {
+        self.last.clear();
+        self.last_minimum = None;
+    }
+}
+
+impl Clone for BvhSearch {
+    fn clone(&self) -> Self {
+        Self {
+            level: self.level,
+            hierarchy: Arc::clone(&self.hierarchy),
+            memory: Memory::default(),
+            batch: Vec::new(),
+        }
+    }
+}
+
+impl std::fmt::Debug for BvhSearch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BvhSearch").field("triangles", &self.hierarchy.mesh.len()).finish_non_exhaustive()
+    }
+}
+
+impl BvhSearch {
+    /// An engine for `mesh`, whose vertices and triangles are copied.
+    ///
+    /// # Errors
+    /// The mesh has no triangles, or a vertex is not finite or out of range.
+    pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        let level = Level::new();
+        let hierarchy = Arc::new(Hierarchy::new(level, Mesh::new(mesh)?));
+        Ok(Self { level, hierarchy, memory: Memory::default(), batch: Vec::new() })
+    }
+
+    /// Forgets the last answers, so that the next query starts without bounds.
+    pub fn forget(&mut self) {
+        self.memory.forget();
+    }
+
+    /// How much was computed since the engine was built, batches left out.
+    pub fn work(&self) -> Work {
+        self.memory.scratch.work
+    }
+
+    /// The answers about many robots, on all cores.
+    fn batch<T: Send>(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<T>,
+        unanswered: impl Fn() -> T,
+        answer: impl Fn(&mut Query, &mut T) + Sync,
+    ) -> Result<(), ProximityError> {
+        // All are checked before the first is answered.
+        if let Some(error) = robots.iter().find_map(|(robot, pose)| PlacedRobot::new(robot, pose).err()) {
+            out.clear();
+            return Err(error);
+        }
+        out.resize_with(robots.len(), unanswered);
+        let (level, hierarchy) = (self.level, &*self.hierarchy);
+        in_shares(robots, out, &mut self.batch, |memory, robots, out| {
+            memory.forget();
+            for ((robot, pose), out) in robots.iter().zip(out) {
+                let robot = PlacedRobot::new(robot, pose)?;
+                answer(&mut Query { level, hierarchy, memory, robot }, out);
+            }
+            Ok(())
+        })
+    }
+
+    fn query<'a>(&'a mut self, robot: &'a Chain, pose: &'a Pose) -> Result<Query<'a>, ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        Ok(Query { level: self.level, hierarchy: &self.hierarchy, memory: &mut self.memory, robot })
+    }
+}
+
+/// One robot asked about, with what the last one left.
+struct Query<'a> {
+    level: Level,
+    hierarchy: &'a Hierarchy,
+    memory: &'a mut Memory,
+    robot: PlacedRobot<'a>,
+}
+
+impl Query<'_> {
+    fn per_link(&mut self, out: &mut Vec<LinkProximity>) {
+        out.clear();
+        let Memory { scratch, last, .. } = &mut *self.memory;
+        let Self { level, hierarchy, robot, .. } = *self;
+        RobotSearch { level, hierarchy, scratch, robot }.per_link(last, out);
+        last.clear();
+        last.extend(out.iter().map(|answer| answer.triangle));
+    }
+
+    fn minimum(&mut self) -> LinkProximity {
+        let last = self.memory.last_minimum;
+        let (link, nearest) = self.search().minimum(last);
+        self.memory.last_minimum = Some((link, nearest.triangle));
+        nearest.report(link)
+    }
+
+    fn clears(&mut self, margin: Real) -> bool {
+        self.search().clears(margin)
+    }
+
+    fn search(&mut self) -> RobotSearch<'_> {
+        let Self { level, hierarchy, robot, .. } = *self;
+        RobotSearch { level, hierarchy, scratch: &mut self.memory.scratch, robot }
+    }
+}
+
+impl Proximity for BvhSearch {
+    fn per_link(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        self.query(robot, pose)?.per_link(out);
+        Ok(())
+    }
+
+    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
+        Ok(self.query(robot, pose)?.minimum())
+    }
+
+    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
+        check_margin(margin)?;
+        Ok(self.query(robot, pose)?.clears(margin))
+    }
+
+    fn per_link_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Vec<LinkProximity>>,
+    ) -> Result<(), ProximityError> {
+        self.batch(robots, out, Vec::new, |query, out| query.per_link(out))
+    }
+
+    fn minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        self.batch(robots, out, LinkProximity::unanswered, |query, out| *out = query.minimum())
+    }
+
+    fn clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<bool>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.batch(robots, out, || false, |query, out| *out = query.clears(margin))
+    }
+
+    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.hierarchy.mesh.check_moved(vertices)?;
+        let hierarchy = Arc::make_mut(&mut self.hierarchy);
+        hierarchy.mesh.set_vertices(vertices);
+        hierarchy.refit(self.level);
+        Ok(())
+    }
+}

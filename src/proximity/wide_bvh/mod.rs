@@ -1,0 +1,10 @@
+//! Search through a hierarchy 16 children wide, a pack of them at a time.
+
+mod bound;
+mod build;
+mod engine;
+mod node;
+mod queries;
+mod traverse;
+
+pub use engine::BvhSearch;

@@ -1,0 +1,118 @@
+//! A node of the hierarchy with its up to 16 children, and a leaf with its up to 16 triangles.
+
+use super::bound::{BOUND_ROWS, NodeBound, NodeBounds};
+use crate::distance::Vec3;
+use crate::distance::lanes::{Lane, Pack};
+use crate::proximity::mesh::Mesh;
+use crate::proximity::search_frame::SearchFrame;
+use crate::proximity::triangle_block::{BLOCK, load, place_triangle};
+
+/// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.
+pub(super) const WIDTH: usize = BLOCK;
+
+/// A child's number, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Child {
+    Node(u32),
+    Leaf(u32),
+}
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+
+    pub(super) fn pack(self) -> u32 {
+        match self {
+            Self::Node(node) => node,
+            Self::Leaf(leaf) => leaf | Self::LEAF,
+        }
+    }
+
+    pub(super) fn unpack(packed: u32) -> Self {
+        if packed & Self::LEAF == 0 { Self::Node(packed) } else { Self::Leaf(packed & !Self::LEAF) }
+    }
+}
+
+/// Up to 16 children and what bounds them.
+#[derive(Clone)]
+pub(super) struct Node<E> {
+    /// Rows of centre, half extents and normal (x, y, z each), thickness and radius; see [`NodeBounds`].
+    rows: [E; BOUND_ROWS * WIDTH],
+    pub children: [u32; WIDTH],
+    count: usize,
+}
+
+/// Up to 16 triangles.
+#[derive(Clone)]
+pub(super) struct Leaf<E> {
+    /// Rows of the coordinates of three vertices; lanes without a triangle repeat the last one.
+    pub rows: [E; 9 * BLOCK],
+    pub triangles: [u32; BLOCK],
+}
+
+impl<E: Lane> Node<E> {
+    /// Bounds far beyond anything, so that unused children are never near.
+    pub(super) fn empty() -> Self {
+        let rows =
+            std::array::from_fn(
+                |slot| if slot < 3 * WIDTH { E::round(1.0e9 * E::FARTHEST) } else { E::default() },
+            );
+        Self { rows, children: [0; WIDTH], count: 0 }
+    }
+
+    pub(super) fn push(&mut self, child: Child) {
+        self.children[self.count] = child.pack();
+        self.count += 1;
+    }
+
+    pub(super) fn set_bound(&mut self, child: usize, bound: &NodeBound<E>) {
+        let rows = [bound.centre, bound.half, bound.normal].map(<[E; 3]>::from);
+        let rows = rows.into_iter().flatten().chain([bound.thickness, bound.radius]);
+        for (row, value) in rows.enumerate() {
+            self.rows[row * WIDTH + child] = value;
+        }
+    }
+
+    fn bound(&self, child: usize) -> NodeBound<E> {
+        let at = |row: usize| self.rows[row * WIDTH + child];
+        let point = |row: usize| Vec3::new(at(row), at(row + 1), at(row + 2));
+        NodeBound { centre: point(0), half: point(3), normal: point(6), thickness: at(9), radius: at(10) }
+    }
+
+    /// The children in use.
+    pub(super) fn children(&self) -> impl Iterator<Item = Child> + Clone + use<E> {
+        let children = self.children;
+        (0..self.count).map(move |child| Child::unpack(children[child]))
+    }
+
+    /// The bounds of the children in use, one by one.
+    pub(super) fn bounds_in_use(&self) -> impl Iterator<Item = NodeBound<E>> + Clone + '_ {
+        (0..self.count).map(|child| self.bound(child))
+    }
+
+    /// The bounds of the children from `lane` on.
+    #[inline(always)]
+    pub(super) fn bounds<L: Pack<Element = E>>(&self, token: L::Token, lane: usize) -> NodeBounds<L> {
+        NodeBounds {
+            centre: load(token, &self.rows, 0, lane),
+            half: load(token, &self.rows, 3, lane),
+            normal: load(token, &self.rows, 6, lane),
+            thickness: L::load(token, &self.rows[9 * WIDTH + lane..]),
+            radius: L::load(token, &self.rows[10 * WIDTH + lane..]),
+        }
+    }
+}
+
+impl<E: Lane> Leaf<E> {
+    /// Of up to 16 triangles and at least one; the last is repeated in the lanes that are left.
+    pub(super) fn of(triangles: impl Fn(usize) -> u32, count: usize) -> Self {
+        let triangles = std::array::from_fn(|lane| triangles(lane.min(count - 1)));
+        Self { rows: [E::default(); 9 * BLOCK], triangles }
+    }
+
+    /// Takes over where the triangles are.
+    pub(super) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
+        for lane in 0..BLOCK {
+            place_triangle(frame, mesh, self.triangles[lane], &mut self.rows, lane);
+        }
+    }
+}

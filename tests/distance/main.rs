@@ -1,0 +1,12 @@
+//! The narrow phase: every pair of simple shapes, in every precision.
+
+mod against_parry;
+mod cases;
+mod census;
+mod certificate;
+mod discs;
+mod errata;
+mod errata_links;
+mod lanes;
+mod metamorphic;
+mod slivers;

@@ -1,0 +1,4 @@
+//! What a user meets first: the programs, and under which terms all of it may be used.
+
+mod licences;
+mod programs;

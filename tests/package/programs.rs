@@ -1,0 +1,110 @@
+//! The example programs as a user meets them: bad input gives one line and an error code, good input a picture.
+
+use continuum_testing::programs::{self, colours, file, place, read, room};
+use std::path::PathBuf;
+
+fn example(name: &str) -> PathBuf {
+    programs::example(env!("CARGO_MANIFEST_DIR"), name, if cfg!(feature = "gpu") { "gpu" } else { "" })
+}
+
+/// The output of an example that succeeds.
+fn succeed(name: &str, arguments: &[&str]) -> String {
+    programs::succeed(example(name), arguments)
+}
+
+/// An example must refuse these arguments with one line that says this.
+fn refuse(name: &str, arguments: &[&str], expected: &str) {
+    programs::refuse(example(name), arguments, expected);
+}
+
+#[test]
+fn programs_answer_bad_input_with_one_line_and_an_error_code() {
+    let empty = &file("hollow.obj", "v 0 0 0\n");
+    let nan = &file("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
+    let tiny = &file("tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    let sheet = &file("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", empty], "no triangles"),
+        (&["--mesh", nan], "vertex 2"),
+        (&["--mesh", tiny, "--scale", "1e200"], "larger unit"),
+        (&["--mesh", tiny], "no room"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--mesh", empty, "--scale", "-1"], "positive number"),
+        (&["--triangle", "1"], "--triangle"),
+        (&["--triangles", "none"], "'none'"),
+        (&["--triangles", "100"], "6000..=20000000"),
+        (&["--base", "1,2"], "three numbers"),
+        (&["--base", "1,2,inf"], "three numbers"),
+        (&["--axis", "0,0,0"], "a direction needs a length"),
+        (&["--model", "cone"], "capsule, cylinder, modified"),
+        (&["--tolerance", "-0.1"], "at least 0"),
+        (&["--steps", "0"], "1..=100000"),
+        (&["--scale", "2"], "--mesh"),
+    ] {
+        refuse("ventricle", arguments, expected);
+    }
+    #[cfg(not(feature = "gpu"))]
+    refuse("ventricle", &["--engine", "gpu"], "--features gpu");
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--push", "101"], "from 0 to 100"),
+        (&["--links", "2"], "3..=60"),
+    ] {
+        refuse("rapier_ventricle", arguments, expected);
+    }
+    for name in ["ventricle", "rapier_ventricle"] {
+        assert!(succeed(name, &["--help"]).contains("--mesh"));
+    }
+}
+
+#[test]
+fn programs_draw_their_pictures() {
+    let room = room("room.obj");
+    let arguments =
+        ["--mesh", &room, "--model", "capsule", "--tolerance", "0.2", "--steps", "3", "--out", "drawn"];
+    let out = succeed("ventricle", &arguments);
+    assert!(out.contains("12 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
+    for line in ["parry distance(Cylinder, TriMesh)", "search, cold", "search, warm", "exhaustive"] {
+        assert!(out.contains(line), "{out}");
+    }
+    succeed("figure7", &["--out", "drawn/seven.png"]);
+    for name in ["drawn/ventricle.png", "drawn/seven.png"] {
+        assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
+    }
+}
+
+#[test]
+fn the_robot_is_pushed_recorded_and_filmed() {
+    let _ = std::fs::remove_dir_all(place("pushed"));
+    let out =
+        succeed("rapier_ventricle", &["--links", "5", "--push", "0.5", "--frames", "2", "--out", "pushed"]);
+    let steps: usize = out.split(" steps: ").next().unwrap().parse().unwrap();
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+        let rows: Vec<_> = read(name).lines().skip(1).map(numbers).collect();
+        assert!(rows.iter().flatten().all(|number| number.is_finite()), "{name}");
+        rows
+    };
+    let whole = rows("pushed/steps.csv");
+    assert!(steps > 1000 && whole.len() == steps, "{} rows: {out}", whole.len());
+    // step, time, out, pushed, links, clearance, closest link, links held, force, and two deviations.
+    assert!(whole.iter().enumerate().all(|(place, row)| row.len() == 11 && row[0] == (place + 1) as f64));
+    assert!(whole.is_sorted_by_key(|row| row[2]) && whole.is_sorted_by_key(|row| row[3]));
+    let last = &whole[steps - 1];
+    assert!(last[2] > 20.0 && last[3] == 0.5 && last[4] == 5.0, "{last:?}");
+    let links = rows("pushed/links.csv");
+    assert_eq!(links.len() as f64, whole.iter().map(|row| row[4]).sum::<f64>());
+    for (row, of_links) in whole.iter().zip(links.chunk_by(|a, b| a[0] == b[0])) {
+        let nearest = of_links.iter().map(|link| link[2]).fold(f64::INFINITY, f64::min);
+        assert!(row[0] == of_links[0][0] && row[5] == nearest && nearest > 0.0, "{row:?}");
+    }
+    let pictures: Vec<_> =
+        std::fs::read_dir(place("pushed")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let frames = pictures.iter().filter(|name| name.to_str().unwrap().starts_with("frame_")).count();
+    assert!((2..=3).contains(&frames), "{pictures:?}");
+    for name in ["pushed/sheet.png", "pushed/frame_000.png"] {
+        assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
+    }
+}

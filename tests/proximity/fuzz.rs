@@ -1,0 +1,57 @@
+//! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something (fuzz/corpus).
+
+use continuum_testing::Random;
+use std::fs;
+use std::path::Path;
+
+fn try_bytes(name: &str, body: fn(&[u8]), count: usize) {
+    let mut random = Random::new(1);
+    for _ in 0..count {
+        let bytes: Vec<_> = (0..random.below(400)).map(|_| random.bits() as u8).collect();
+        body(&bytes);
+    }
+    for bytes in corpus(name) {
+        body(&bytes);
+        // What is all but right gets further than noise does: another of its bytes here and there, or a digit.
+        for _ in 0..count {
+            let mut near = bytes.clone();
+            for _ in 0..=random.below(2) {
+                let [to, from] = [0; 2].map(|_| random.below(bytes.len() as u32) as usize);
+                near[to] = if random.below(2) == 0 { bytes[from] } else { b'0' + random.below(10) as u8 };
+            }
+            body(&near);
+        }
+    }
+}
+
+/// Everything that once broke something.
+fn corpus(name: &str) -> impl Iterator<Item = Vec<u8>> {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(name);
+    let entries = fs::read_dir(corpus).expect("a corpus").map(|entry| entry.expect("an entry"));
+    entries.map(|entry| fs::read(entry.path()).expect("a file"))
+}
+
+#[test]
+fn link_triangle() {
+    try_bytes("link_triangle", continuum_fuzzing::link_triangle, 3000);
+}
+
+#[test]
+fn chain_mesh() {
+    try_bytes("chain_mesh", continuum_fuzzing::chain_mesh, 1000);
+}
+
+#[test]
+fn constructors() {
+    try_bytes("constructors", continuum_fuzzing::constructors, 3000);
+}
+
+#[test]
+fn mesh_file() {
+    try_bytes("mesh_file", continuum_fuzzing::mesh_file, 3000);
+}
+
+#[test]
+fn root_finders() {
+    try_bytes("root_finders", continuum_fuzzing::root_finders, 2000);
+}

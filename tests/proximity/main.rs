@@ -1,0 +1,11 @@
+//! Robot against mesh: every engine, and the proofs of its answers.
+
+mod agreement;
+mod certify;
+mod chain_cases;
+mod far_parts;
+mod fuzz;
+mod large;
+mod patches;
+mod scenes;
+mod thin_links;
