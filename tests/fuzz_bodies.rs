@@ -55,6 +55,11 @@ fn constructors() {
 }
 
 #[test]
+fn dispatcher() {
+    try_bytes("dispatcher", bodies::dispatcher, 1000);
+}
+
+#[test]
 fn mesh_file() {
     try_bytes("mesh_file", bodies::mesh_file, 3000);
 }

@@ -5,7 +5,7 @@ use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
 use super::robot_halfspace::RobotHalfSpace;
-use super::robot_pair::RobotPair;
+use super::robot_pair::{RobotPair, in_range, links_of};
 use super::watched::Watched;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -14,6 +14,7 @@ use parry3d_f64::query::{
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
 use parry3d_f64::shape::Shape;
+use std::ops::RangeInclusive;
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
@@ -94,7 +95,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
-            Parts::None => self.0.intersection_test(pos12, g1, g2),
+            Parts::None => self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2),
         }
     }
 
@@ -117,7 +118,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => FieldPair { dispatcher: self, field, pos12, other: g2 }.distance(),
             Parts::Voxels(_) => Err(Unsupported),
             Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
-            Parts::None => self.0.distance(pos12, g1, g2),
+            Parts::None => self.inner(pos12, g1, g2)?.distance(pos12, g1, g2),
         }
     }
 
@@ -150,7 +151,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
             }
-            Parts::None => self.0.contact(pos12, g1, g2, prediction),
+            Parts::None => self.inner(pos12, g1, g2)?.contact(pos12, g1, g2, prediction),
         }
     }
 
@@ -182,7 +183,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist.max(0.0)),
+            Parts::None => self.inner(pos12, g1, g2)?.closest_points(pos12, g1, g2, max_dist.max(0.0)),
         }
     }
 
@@ -197,9 +198,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         check_margin(options.max_time_of_impact)?;
         check_margin(options.target_distance)?;
-        if !local_vel12.is_finite() {
-            return Err(Unsupported);
-        }
+        in_range(local_vel12)?;
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
         }
@@ -210,9 +209,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
-            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
-                details::cast_shapes_voxels_shape(watched, pos12, local_vel12, voxels, g2, options)
-            }),
+            Parts::Voxels(voxels) => field::cast_voxels(self, (pos12, local_vel12), voxels, g2, options),
             Parts::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -220,12 +217,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             }
             Parts::None => match LinkTriangle::of(g1, g2)? {
                 Some(pair) => {
+                    self.inner(pos12, g1, g2)?;
                     let (s1, s2) = pair.support_maps();
                     let hit =
                         details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
                     Ok(hit)
                 }
-                None => self.0.cast_shapes(pos12, local_vel12, g1, g2, options),
+                None => self.inner(pos12, g1, g2)?.cast_shapes(pos12, local_vel12, g1, g2, options),
             },
         }
     }
@@ -244,24 +242,35 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
         }
+        // parry's tolerances are absolute in time too: late times would leave it no way to meet them.
+        if (start_time, end_time) != (0.0, 1.0) {
+            let duration = end_time - start_time;
+            if duration < 0.0 {
+                return Ok(None);
+            }
+            let [from1, from2] = [motion1, motion2].map(|motion| NonlinearRigidMotion {
+                start: motion.position_at_time(start_time),
+                linvel: motion.linvel * duration,
+                angvel: motion.angvel * duration,
+                ..*motion
+            });
+            let hit = self.cast_shapes_nonlinear(&from1, g1, &from2, g2, 0.0, 1.0, stop_at_penetration)?;
+            let at = |share: Real| start_time + share * duration;
+            return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
+        }
         let times = (start_time, end_time);
         let moving = ((motion1, g1), (motion2, g2));
         if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
             return Ok(hit);
         }
         match Parts::of(g1, g2) {
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                details::cast_shapes_nonlinear_composite_shape_shape(
-                    watched,
-                    motion1,
-                    parts,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )
-            }),
+            Parts::Composite(parts) => field::cast_parts_nonlinear(
+                self,
+                (motion1, parts),
+                (motion2, g2),
+                (start_time, end_time),
+                stop_at_penetration,
+            ),
             Parts::Field(field) => field::cast_nonlinear(
                 self,
                 (motion1, field),
@@ -269,18 +278,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
-                details::cast_shapes_nonlinear_voxels_shape(
-                    watched,
-                    motion1,
-                    voxels,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )
-            }),
+            Parts::Voxels(voxels) => field::cast_voxels_nonlinear(
+                self,
+                (motion1, voxels),
+                (motion2, g2),
+                (start_time, end_time),
+                stop_at_penetration,
+            ),
             Parts::OfSecond => {
                 let hit = self.cast_shapes_nonlinear(
                     motion2,
@@ -305,6 +309,28 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         }
     }
 }
+
+impl<L> ContinuumDispatcher<L> {
+    /// The dispatcher for a pair that cannot be taken apart, nor is answered here.
+    ///
+    /// # Errors
+    /// [`Unsupported`] for a link out of the range of parry's iterations: squares of squares of lengths leave that of
+    /// f64, and then they panic or answer NaN.
+    pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
+        if links_of(g1).or(links_of(g2)).is_none() {
+            return Ok(&self.0);
+        }
+        let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
+        let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
+        let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
+        let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
+        if is_finite && ITERATED_RANGE.contains(&largest) { Ok(&self.0) } else { Err(Unsupported) }
+    }
+}
+
+/// From 2^-200 to 2^200.
+const ITERATED_RANGE: RangeInclusive<Real> =
+    Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 200) << 52);
 
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
