@@ -21,17 +21,26 @@ use std::ops::RangeInclusive;
 /// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers,
 /// because parry's own dispatcher never comes back from within a composite shape. Put yours in as `L`.
 ///
-/// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
-/// |---|---|
-/// | `distance`, `closest_points`, `intersection_test` | exact |
-/// | `contact` | exact; where the two overlap, the shortest translation that separates link and triangle |
-/// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints |
+/// A link, or a chain, in either order against a
+///
+/// | | `Triangle`, `TriMesh`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
+/// |---|---|---|---|---|
+/// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `intersection_test` | exact | exact | exact | parry's GJK |
+/// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
+/// | `cast_shapes` | parry's: within 1e-5 | exact | parry's: within 1e-5 | parry's: within 1e-5 |
+/// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | parry's, on polygons that stand for the link's surface |
+///
+/// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
+/// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond
+/// 2^200 or below 2^-200, are refused in the last column.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
-/// `Intersecting`, and a margin is kept only by what is further away than it.
-///
-/// Manifolds against other convex shapes are parry's, on polygons that stand for the link's surface.
+/// `Intersecting`, and a margin is kept only by what is further away than it. A nonlinear cast that does not stop at
+/// the start answers for what touches there when the link's core would meet the other shape: half of what keeps the
+/// link from being through is left then.
 ///
 /// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
 /// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about
@@ -40,8 +49,8 @@ use std::ops::RangeInclusive;
 ///
 /// # Errors
 /// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
-/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN,
-/// and for the queries that parry has not got for voxels.
+/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a rotation that is not of unit
+/// length, for a margin that is NaN, and for the queries that parry has not got for voxels.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
