@@ -127,7 +127,10 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => FieldPair { dispatcher: self, field, pos12, other: g2 }.distance(),
             Parts::Voxels(_) => Err(Unsupported),
             Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
-            Parts::None => self.inner(pos12, g1, g2)?.distance(pos12, g1, g2),
+            Parts::None => {
+                let answer = self.inner(pos12, g1, g2)?.distance(pos12, g1, g2)?;
+                check_margin(answer.distance).map(|()| answer)
+            }
         }
     }
 
@@ -160,7 +163,10 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
             }
-            Parts::None => self.inner(pos12, g1, g2)?.contact(pos12, g1, g2, prediction),
+            Parts::None => {
+                let contact = self.inner(pos12, g1, g2)?.contact(pos12, g1, g2, prediction)?;
+                check_margin(contact.map_or(0.0, |contact| contact.dist)).map(|()| contact)
+            }
         }
     }
 
@@ -232,7 +238,11 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                         details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
                     Ok(hit)
                 }
-                None => self.inner(pos12, g1, g2)?.cast_shapes(pos12, local_vel12, g1, g2, options),
+                None => {
+                    let inner = self.inner(pos12, g1, g2)?;
+                    let hit = inner.cast_shapes(pos12, local_vel12, g1, g2, options)?;
+                    check_margin(hit.map_or(0.0, |hit| hit.time_of_impact)).map(|()| hit)
+                }
             },
         }
     }
