@@ -49,6 +49,7 @@
 //! # Source
 //! Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots on Parallel Computing Hardware", is *the
 //! paper* in these pages. Its formulas are used with corrections, which stand where they apply.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

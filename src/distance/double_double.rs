@@ -4,7 +4,7 @@
 //! most 4 v^2 of their value, products by 5 v^2, quotients and roots by less than 16 v^2 (Joldes, Muller and Popescu
 //! 2017), as long as nothing overflows or falls below 1e-290.
 
-use super::Scalar;
+use super::scalar::{Scalar, Sealed};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number of about 106 bits: a reference for the kernels, and what
@@ -98,6 +98,8 @@ impl Div for DoubleDouble {
         Self::from(first) + second.into() + (rest.high / other.high).into()
     }
 }
+
+impl Sealed for DoubleDouble {}
 
 impl Scalar for DoubleDouble {
     type Mask = bool;

@@ -3,7 +3,7 @@
 //! The width is that of the instruction set chosen at run time by [`fearless_simd::dispatch!`]. A constant needs
 //! the instruction set's token, which every pack carries; hence [`Scalar::lit`] takes a `self`.
 
-use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar};
+use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};
 use fearless_simd::prelude::*;
 use fearless_simd::{Select, Simd};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -60,6 +60,9 @@ macro_rules! lanes {
                 Self(!self.0)
             }
         }
+
+        impl<S: Simd> Sealed for $LaneMask<S> {}
+        impl<S: Simd> Sealed for $Lanes<S> {}
 
         impl<S: Simd> Mask<$Lanes<S>> for $LaneMask<S> {
             #[inline(always)]

@@ -49,6 +49,8 @@ pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
 pub use point_triangle::point_triangle;
+#[doc(hidden)]
+pub use scalar::Sealed;
 pub use scalar::{Mask, Scalar};
 pub use segment_disc::{LineDisc, segment_disc, segment_disc_by};
 pub use segment_segment::segment_segment;
@@ -60,6 +62,8 @@ pub use triangle_modified_cylinder::{
 pub use vec3::Vec3;
 
 /// The distance between two shapes and a pair of points that realises it.
+///
+/// There is no more to say of a pair, and routes of one's own make such answers: it will not grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest<T> {
     /// The distance, 0 where the shapes have a point in common.

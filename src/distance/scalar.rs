@@ -5,18 +5,33 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A truth value for each lane of a [`Scalar`].
-pub trait Mask<T>: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+/// Keeps [`Scalar`] and [`Mask`] from being implemented elsewhere, so that they can grow. The project's own tests and
+/// studies do: their numbers count or imitate lanes.
+#[doc(hidden)]
+pub trait Sealed {}
+
+impl Sealed for bool {}
+impl Sealed for f32 {}
+impl Sealed for f64 {}
+
+/// A truth value for each lane of a [`Scalar`]. It is sealed.
+pub trait Mask<T>: Sealed + Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// `yes` where the mask is true, `no` elsewhere.
     fn select(self, yes: T, no: T) -> T;
 }
 
-/// A real number, or a pack of them, that the narrow phase can compute with.
+/// A real number, or a pack of them, that the narrow phase can compute with. It is sealed.
 ///
 /// Implemented for `f32` and `f64`. Only IEEE operations are used (and fused multiply-add where an
 /// implementation says so in [`Scalar::mul_add`]), so scalar answers are the same on every machine.
 pub trait Scalar:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Sealed
+    + Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// The result of a comparison.
     type Mask: Mask<Self>;

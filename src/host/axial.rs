@@ -57,7 +57,7 @@ pub(super) fn axis_or_x(link: &ModifiedCylinder) -> Vector {
 
 /// A link, scaled and seen from its start point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axial {
+pub(super) struct AxialFrame {
     /// Unit axis; any unit vector when the length is zero.
     pub axis: Vector,
     /// End point minus start point, in scaled units.
@@ -69,7 +69,7 @@ pub(super) struct Axial {
     up: Real,
 }
 
-impl Axial {
+impl AxialFrame {
     /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing when
     /// `point` is not finite.
     pub fn around(link: &ModifiedCylinder, point: Vector) -> Option<(Self, Vector)> {

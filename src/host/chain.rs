@@ -7,10 +7,9 @@
 //! nearest surface of any link, also where that surface lies within another link. So the depth of a point
 //! inside is never overstated. Whether a point is inside is exact everywhere.
 //!
-//! Contact manifolds see one surface: a cap that a neighbour covers makes no contacts (see
+//! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes them (see
 //! [`joint`](super::joint)).
 
-use super::joint::Joints;
 use crate::robot::length;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -108,15 +107,15 @@ impl CompositeShape for Chain {
 
 impl TypedCompositeShape for Chain {
     type PartShape = ModifiedCylinder;
-    type PartNormalConstraints = Joints;
+    type PartNormalConstraints = ();
 
     fn map_typed_part_at<T>(
         &self,
         shape_id: u32,
-        mut f: impl FnMut(Option<&Pose>, &ModifiedCylinder, Option<&Joints>) -> T,
+        mut f: impl FnMut(Option<&Pose>, &ModifiedCylinder, Option<&()>) -> T,
     ) -> Option<T> {
         let link = self.links().get(shape_id as usize)?;
-        Some(f(None, link, Joints::of(self.links(), shape_id as usize).as_ref()))
+        Some(f(None, link, None))
     }
 
     fn map_untyped_part_at<T>(
@@ -124,9 +123,7 @@ impl TypedCompositeShape for Chain {
         shape_id: u32,
         mut f: impl FnMut(Option<&Pose>, &dyn Shape, Option<&dyn NormalConstraints>) -> T,
     ) -> Option<T> {
-        self.map_typed_part_at(shape_id, |pose, link, joints| {
-            f(pose, link, joints.map(|joints| joints as &dyn NormalConstraints))
-        })
+        self.map_typed_part_at(shape_id, |pose, link, _| f(pose, link, None))
     }
 }
 

@@ -2,36 +2,27 @@
 //!
 //! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on around the
 //! cap to the cap's point furthest along the normal. A surface that is only touched by the crest cannot be
-//! touched by anything else of barrel or cap, so these count:
+//! touched by anything else of barrel or cap. Its ends are what the link stands on (see
+//! [`footing`](super::footing)); these count as well:
 //!
-//! 1. **Its ends**, where the triangle is below them.
-//! 2. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge is left out:
+//! 1. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge is left out:
 //!    that point speaks for it, and one beside it would hinder the cap from rolling.
-//! 3. **An edge along it**, with the two ends of what is beside the barrel.
+//! 2. **An edge along it**, with the two ends of what is beside the barrel.
 
-use super::axial::unit_across;
-use super::feature;
-use super::link_manifold::{Meeting, SAME_POINT, crest_end};
-use crate::Cap;
+use super::feature::{self, SAME_POINT};
+use super::footing::{self, centre, leans_round, outward};
+use super::meeting::Meeting;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
 /// An edge that stays within this share of the radius from the crest lies along it.
 const ALONG_CREST: Real = 0.01;
-/// The sine of the lean below which an upright link has no crest: its azimuth would be rounding.
-const UPRIGHT: Real = 1e-6;
 /// The share of its radius around a round cap's lowest point in which no edge counts.
 const LOWEST: Real = 0.25;
 
-/// Adds the points of the crest.
+/// Adds the points where edges meet the crest.
 pub(super) fn collect(meeting: &mut Meeting) {
     let Some(crest) = Crest::of(meeting) else { return };
-    for end in 0..2 {
-        // A round cap that leans towards the triangle ends in its own lowest point.
-        if !crest.leans_round(meeting, end) {
-            meeting.add_above_face(meeting.centre(end) + crest.lateral * crest.radius, crest_end(end));
-        }
-    }
     for (j, (v, w)) in meeting.edges().into_iter().enumerate() {
         let edge = PackedFeatureId::edge(j as u32);
         if let Some(ends) = crest.along_barrel(v, w) {
@@ -71,15 +62,11 @@ struct Crest {
 impl Crest {
     fn of(meeting: &Meeting) -> Option<Self> {
         let (link, normal, axis) = (meeting.link, meeting.normal, meeting.link.axis());
-        let lateral = unit_across(normal, axis).filter(|_| axis != Vector::ZERO)?;
+        let lateral = footing::lateral(link, normal)?;
         let (across, slope) = (normal.dot(lateral), normal.dot(axis));
         let (radius, length) = (link.radius(), link.length());
         let side = axis.cross(lateral);
-        (across >= UPRIGHT).then_some(Self { axis, normal, lateral, side, across, slope, radius, length })
-    }
-
-    fn leans_round(&self, meeting: &Meeting, end: usize) -> bool {
-        meeting.link.caps()[end] == Cap::Round && self.normal.dot(meeting.outward(end)) >= 0.0
+        Some(Self { axis, normal, lateral, side, across, slope, radius, length })
     }
 
     /// How far the barrel is from a point of the triangle, back along the normal.
@@ -94,7 +81,7 @@ impl Crest {
         q.dot(self.axis) - (q.dot(self.lateral) - self.radius) / self.across * self.slope
     }
 
-    /// Case 3: the ends of an edge along the crest, as far as it is beside the barrel.
+    /// Case 2: the ends of an edge along the crest, as far as it is beside the barrel.
     fn along_barrel(&self, v: Vector, w: Vector) -> Option<[Vector; 2]> {
         let (at_v, at_w) = (self.along(v), self.along(w));
         let share = |z: Real| (z - at_v) / (at_w - at_v);
@@ -112,27 +99,27 @@ impl Crest {
         (from <= to && ends.iter().all(is_near)).then_some(ends)
     }
 
-    /// Case 2: where an edge crosses the plane.
+    /// Case 1: where an edge crosses the plane.
     fn across(&self, v: Vector, w: Vector) -> Option<Vector> {
         let (y0, y1) = (v.dot(self.side), w.dot(self.side));
         ((y0 <= 0.0) != (y1 <= 0.0)).then(|| v.lerp(w, y0 / (y0 - y1)))
     }
 
-    /// Case 2: how far the crest is from a point of its plane, back along the normal, if it is there.
+    /// Case 1: how far the crest is from a point of its plane, back along the normal, if it is there.
     fn below(&self, meeting: &Meeting, q: Vector) -> Option<Real> {
         let z = self.along(q);
         if (0.0..=self.length).contains(&z) {
             return Some(self.drop(q));
         }
         let end = usize::from(z > self.length);
-        let offset = q - meeting.centre(end);
+        let offset = q - centre(meeting.link, end);
         let height = offset.dot(self.normal);
         let aside = (offset - self.normal * height).length();
-        let is_on_cap =
-            self.leans_round(meeting, end) && (LOWEST * self.radius..self.radius).contains(&aside);
+        let is_on_cap = leans_round(meeting.link, self.normal, end)
+            && (LOWEST * self.radius..self.radius).contains(&aside);
         let on_cap = height - ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
         // From where the barrel begins to the cap's lowest point.
-        let outward = meeting.outward(end);
+        let outward = outward(meeting.link, end);
         let beyond = (offset - self.normal * on_cap).dot(outward);
         let is_between = (0.0..=self.radius * self.normal.dot(outward)).contains(&beyond);
         (is_on_cap && is_between).then_some(on_cap)

@@ -1,8 +1,11 @@
 //! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
 
 use super::field::{self, FieldPair};
+use super::link_cast;
+use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
-use super::robot_pair::{RobotPair, links_of};
+use super::robot_halfspace::RobotHalfSpace;
+use super::robot_pair::RobotPair;
 use super::watched::Watched;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -10,7 +13,7 @@ use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
-use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+use parry3d_f64::shape::Shape;
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
@@ -52,6 +55,7 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 #[derive(Clone, Debug)]
 pub struct ContinuumDispatcher<L = DefaultQueryDispatcher>(pub L);
 
+/// For parry's own dispatcher alone, which is no `Default` itself.
 impl Default for ContinuumDispatcher {
     fn default() -> Self {
         Self(DefaultQueryDispatcher)
@@ -67,6 +71,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<ShapeIntersection, Unsupported> {
         check_pose(pos12)?;
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.intersection_test();
+        }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.intersection_test();
         }
         // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
@@ -96,6 +103,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.distance();
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.distance();
+        }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => {
                 let answer = Watched::ask(self, |watched| {
@@ -121,6 +131,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         check_margin(prediction)?;
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+            return pair.contact(prediction);
+        }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.contact(prediction);
         }
         match Parts::of(g1, g2) {
@@ -153,6 +166,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.closest_points(max_dist);
+        }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 // The search wants parts strictly nearer than its bound.
@@ -166,7 +182,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist),
+            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist.max(0.0)),
         }
     }
 
@@ -184,6 +200,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if !local_vel12.is_finite() {
             return Err(Unsupported);
         }
+        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            return pair.cast_shapes(local_vel12, options);
+        }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 details::cast_shapes_composite_shape_shape(watched, pos12, local_vel12, parts, g2, options)
@@ -199,8 +218,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match as_link_and_triangle(g1, g2)? {
-                Some((s1, s2)) => {
+            Parts::None => match LinkTriangle::of(g1, g2)? {
+                Some(pair) => {
+                    let (s1, s2) = pair.support_maps();
                     let hit =
                         details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
                     Ok(hit)
@@ -223,6 +243,11 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         for motion in [motion1, motion2] {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
+        }
+        let times = (start_time, end_time);
+        let moving = ((motion1, g1), (motion2, g2));
+        if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
+            return Ok(hit);
         }
         match Parts::of(g1, g2) {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
@@ -268,57 +293,27 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 )?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match as_link_and_triangle(g1, g2)? {
-                Some((s1, s2)) => Watched::ask(self, |watched| {
-                    let mode = if stop_at_penetration {
-                        details::NonlinearShapeCastMode::StopAtPenetration
-                    } else {
-                        details::NonlinearShapeCastMode::directional_toi(g1, g2)
-                    };
-                    details::cast_shapes_nonlinear_support_map_support_map(
-                        watched, motion1, s1, g1, motion2, s2, g2, start_time, end_time, mode,
-                    )
-                }),
-                None => self.0.cast_shapes_nonlinear(
-                    motion1,
-                    g1,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                ),
-            },
+            Parts::None => self.0.cast_shapes_nonlinear(
+                motion1,
+                g1,
+                motion2,
+                g2,
+                start_time,
+                end_time,
+                stop_at_penetration,
+            ),
         }
     }
 }
 
-/// A pose that every shape can be moved by.
+/// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
     let largest = pose.translation.abs().max_element();
-    if pose.is_finite() && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
+    let is_rigid = pose.is_finite() && pose.rotation.is_normalized();
+    if is_rigid && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
 }
 
 /// A number that distances or times can be compared with.
 pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
-}
-
-/// The support maps of a link and a triangle in either order, if the shapes are that; refused if the triangle
-/// is not finite.
-pub(super) fn as_link_and_triangle<'a>(
-    g1: &'a dyn Shape,
-    g2: &'a dyn Shape,
-) -> Result<Option<(&'a dyn SupportMap, &'a dyn SupportMap)>, Unsupported> {
-    let is_finite = |triangle: &Triangle| triangle.vertices().iter().all(|vertex| vertex.is_finite());
-    let triangle = match (links_of(g1), links_of(g2)) {
-        (Some(_), None) => g2.as_triangle(),
-        (None, Some(_)) => g1.as_triangle(),
-        _ => None,
-    };
-    match triangle {
-        Some(triangle) if !is_finite(triangle) => Err(Unsupported),
-        Some(_) => Ok(g1.as_support_map().zip(g2.as_support_map())),
-        None => Ok(None),
-    }
 }

@@ -1,60 +1,110 @@
-//! Which way the links of a chain may be touched.
+//! Which contacts of a chain's links are those of its joints.
 //!
-//! At a joint the caps of two links lie inside each other. What a wall touches there is the neighbour, so a
-//! cap that its neighbour covers makes no contacts of its own: a contact's normal may not point into the
-//! neighbour. With `outward` along the link's axis beyond the end, and `onward` along the neighbour's away from
-//! the joint:
+//! At a joint the ends of two links lie inside each other. What a wall touches there is the neighbour, and the
+//! normal of a cap inside it would catch on the wall that the chain slides along. So such a point makes no contact,
+//! but *only while the neighbour makes one at least as deep*: of all links that touch the same part of the wall, the
+//! points are gone through from the deepest, and one is hidden where
 //!
-//! 1. **A narrower neighbour** leaves part of the cap bare: every normal is fine.
-//! 2. **A round cap** shows in the gap that a bend opens: not where a normal points both outward and onward.
-//! 3. **A flat cap** does not show: not where a normal points outward.
+//! 1. its normal leans out over the end of the link that it is at: sideways contacts stay, also where two links lie
+//!    on the same floor;
+//! 2. it lies inside another link, or on its surface;
+//! 3. that link has kept a point against the same part, which is at least as deep.
 //!
-//! Such a normal is turned to the nearest one that is fine. Sideways contacts keep their normals to the last
-//! digit but that; of the others, no point of the link is left that has the wall along the new normal.
+//! What is left of a link's points counts if the nearest of them is within the prediction, as ever. So the deepest point is never hidden, whatever the joint looks like: a bend, a step in the radius, links shorter
+//! than their caps.
 
-use super::axial::unit_across;
-use crate::{Cap, ModifiedCylinder};
-use parry3d_f64::math::Vector;
-use parry3d_f64::query::details::NormalConstraints;
+use super::feature::SAME_POINT;
+use crate::ModifiedCylinder;
+use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::query::{ContactManifold, PointQuery};
 
-/// What the neighbours of a link forbid at its start and end.
-#[derive(Clone, Copy, Debug)]
-pub struct Joints([Option<Joint>; 2]);
+/// The cosine between normal and axis from which a point leans out over an end: more than rounding.
+const LEANS: Real = 1e-9;
 
-#[derive(Clone, Copy, Debug)]
-struct Joint {
-    outward: Vector,
-    onward: Vector,
-    is_round: bool,
+/// Which of the two shapes of a pair the chain is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    First,
+    Second,
 }
 
-impl Joints {
-    /// The joints of link `index`.
-    pub(super) fn of(links: &[ModifiedCylinder], index: usize) -> Option<Self> {
-        let link = links.get(index)?;
-        let before = index.checked_sub(1).and_then(|index| links.get(index));
-        let joint = |neighbour: Option<&ModifiedCylinder>, sign, end: usize| {
-            let neighbour = neighbour.filter(|neighbour| neighbour.radius() >= link.radius())?;
-            let is_round = link.caps()[end] == Cap::Round;
-            Some(Joint { outward: link.axis() * sign, onward: neighbour.axis() * sign, is_round })
+impl Side {
+    /// The link and the part of the other shape that a manifold is between.
+    fn names<M, C>(self, manifold: &ContactManifold<M, C>) -> (usize, u32) {
+        let (link, other) = match self {
+            Self::First => (manifold.subshape1, manifold.subshape2),
+            Self::Second => (manifold.subshape2, manifold.subshape1),
         };
-        Some(Self([joint(before, -1.0, 0), joint(links.get(index + 1), 1.0, 1)]))
+        (link as usize, other)
+    }
+
+    fn normal<M, C>(self, manifold: &ContactManifold<M, C>) -> Vector {
+        if self == Self::First { manifold.local_n1 } else { manifold.local_n2 }
     }
 }
 
-impl NormalConstraints for Joints {
-    fn project_local_normal_mut(&self, normal: &mut Vector) -> bool {
-        for joint in self.0.into_iter().flatten() {
-            let (outward, onward) = (normal.dot(joint.outward), normal.dot(joint.onward));
-            if outward <= 0.0 || (joint.is_round && onward <= 0.0) {
-                continue;
-            }
-            let across = if joint.is_round && onward < outward { joint.onward } else { joint.outward };
-            match unit_across(*normal, across) {
-                Some(turned) => *normal = turned,
-                None => return false,
+/// Takes the points that joints hide out of the manifolds of the chain of these `links`.
+pub(super) fn hide_inner_points<M, C>(
+    links: &[ModifiedCylinder],
+    side: Side,
+    prediction: Real,
+    manifolds: &mut [ContactManifold<M, C>],
+) {
+    if links.len() < 2 {
+        return;
+    }
+    let mut order: Vec<usize> = (0..manifolds.len()).filter(|&m| !manifolds[m].points.is_empty()).collect();
+    order.sort_by_key(|&m| {
+        let (link, other) = side.names(&manifolds[m]);
+        (other, link)
+    });
+    let (mut points, mut hidden, mut touching) = (Vec::new(), Vec::new(), Vec::new());
+    for group in order.chunk_by(|&m, &n| side.names(&manifolds[m]).1 == side.names(&manifolds[n]).1) {
+        if group.len() < 2 {
+            continue;
+        }
+        points.clear();
+        touching.clear();
+        for &m in group {
+            points.extend(manifolds[m].points.iter().enumerate().map(|(p, point)| (point.dist, m, p)));
+        }
+        // Of equals the first link goes first.
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for &(_, m, p) in &points {
+            let manifold = &manifolds[m];
+            let (index, _) = side.names(manifold);
+            let point = &manifold.points[p];
+            let at = if side == Side::First { point.local_p1 } else { point.local_p2 };
+            let Some(link) = links.get(index) else { continue };
+            let is_covered = |other: usize| other != index && is_inside(at, &links[other], link);
+            if leans_out(link, at, side.normal(manifold)) && touching.iter().any(|&other| is_covered(other)) {
+                hidden.push((m, p));
+            } else if !touching.contains(&index) {
+                touching.push(index);
             }
         }
-        true
     }
+    // From the last of each manifold, so that the others keep their places.
+    hidden.sort_unstable_by(|a, b| b.cmp(a));
+    for of_one in hidden.chunk_by(|a, b| a.0 == b.0) {
+        let points = &mut manifolds[of_one[0].0].points;
+        for &(_, p) in of_one {
+            points.remove(p);
+        }
+        if points.iter().all(|point| point.dist > prediction) {
+            points.clear();
+        }
+    }
+}
+
+/// Case 1.
+fn leans_out(link: &ModifiedCylinder, at: Vector, normal: Vector) -> bool {
+    let lean = normal.dot(link.axis());
+    let from_middle = (at - link.start()).dot(link.axis()) - 0.5 * link.length();
+    lean.abs() > LEANS && (lean > 0.0) == (from_middle > 0.0)
+}
+
+/// Case 2.
+fn is_inside(at: Vector, other: &ModifiedCylinder, link: &ModifiedCylinder) -> bool {
+    other.distance_to_local_point(at, true) <= SAME_POINT * (link.length() + link.radius())
 }

@@ -1,17 +1,21 @@
 //! Contact manifolds: which pairs of parts meet, and who answers for each.
 //!
-//! A robot and a mesh are taken apart [here](super::mesh_manifold). Other pairs are taken apart as everywhere in
+//! A robot and a mesh are taken apart [here](super::robot_mesh_manifold). Other pairs are taken apart as everywhere in
 //! this folder, by parry's routines for the shapes that it knows, because they keep the manifolds of a pair from
 //! one step to the next. What is left is
-//! - a link against a triangle, answered [here](super::link_manifold), exactly;
+//! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
+//! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
 //! - a link against another convex shape, answered by `L`: parry clips the polygons that stand for the link's
 //!   surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
 //!   small link does not rest on a stale one, it is told each time that the shapes have changed.
 
 use super::dispatcher::{ContinuumDispatcher, check_margin, check_pose};
+use super::joint::Side;
+use super::link_triangle::LinkTriangle;
 use super::robot_pair::links_of;
 use super::watched::Watched;
-use super::{link_manifold, mesh_manifold};
+use super::{joint, link_halfspace_manifold, link_triangle_manifold, robot_mesh_manifold};
+use crate::Chain;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
 use parry3d_f64::query::{
@@ -38,9 +42,66 @@ where
         check_margin(prediction)?;
         // parry loosens boxes by the prediction, and wants it positive.
         let prediction = prediction.max(0.0);
-        if mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {
+        if !robot_mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {
+            self.update_by_parts(pos12, (g1, g2), prediction, manifolds, workspace)?;
+        }
+        for (shape, side) in [(g1, Side::First), (g2, Side::Second)] {
+            if let Some(chain) = shape.as_shape::<Chain>() {
+                joint::hide_inner_points(chain.links(), side, prediction, manifolds);
+            }
+        }
+        Ok(())
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        check_pose(pos12)?;
+        check_margin(prediction)?;
+        let constraints = (normal_constraints1, normal_constraints2);
+        if let Some(pair) = LinkTriangle::of(g1, g2)? {
+            return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);
+        }
+        if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
             return Ok(());
         }
+        if links_of(g1).or(links_of(g2)).is_some() {
+            manifold.mark_shapes_deformed();
+        }
+        self.0.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            normal_constraints1,
+            normal_constraints2,
+            prediction,
+            manifold,
+        )
+    }
+}
+
+impl<L> ContinuumDispatcher<L> {
+    /// Takes the shapes apart by parry's routines.
+    fn update_by_parts<M, C>(
+        &self,
+        pos12: &Pose,
+        (g1, g2): (&dyn Shape, &dyn Shape),
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported>
+    where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+        L: PersistentQueryDispatcher<M, C>,
+    {
         let pos21 = pos12.inverse();
         let parts = (g1.as_composite_shape(), g2.as_composite_shape());
         let fields = (g1.as_heightfield(), g2.as_heightfield());
@@ -88,36 +149,6 @@ where
             }
             Ok(())
         })?
-    }
-
-    fn contact_manifold_convex_convex(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        normal_constraints1: Option<&dyn NormalConstraints>,
-        normal_constraints2: Option<&dyn NormalConstraints>,
-        prediction: Real,
-        manifold: &mut ContactManifold<M, C>,
-    ) -> Result<(), Unsupported> {
-        check_pose(pos12)?;
-        check_margin(prediction)?;
-        let constraints = (normal_constraints1, normal_constraints2);
-        if link_manifold::update(pos12, (g1, g2), constraints, prediction, manifold)? {
-            return Ok(());
-        }
-        if links_of(g1).or(links_of(g2)).is_some() {
-            manifold.mark_shapes_deformed();
-        }
-        self.0.contact_manifold_convex_convex(
-            pos12,
-            g1,
-            g2,
-            normal_constraints1,
-            normal_constraints2,
-            prediction,
-            manifold,
-        )
     }
 }
 

@@ -3,23 +3,30 @@
 
 mod axial;
 mod chain;
+mod closing;
 mod crest;
 mod dispatcher;
 mod ellipse;
 mod feature;
 mod field;
+mod footing;
 mod joint;
-mod link_contact;
-mod link_manifold;
+mod link_cast;
+mod link_halfspace_manifold;
+mod link_triangle;
+mod link_triangle_manifold;
 mod manifold;
 mod mass;
-mod mesh_manifold;
+mod meeting;
 mod mesh_search;
 mod parts;
 mod point;
 #[cfg(feature = "rapier")]
 pub mod rapier;
 mod ray;
+mod rim;
+mod robot_halfspace;
+mod robot_mesh_manifold;
 mod robot_pair;
 mod separation;
 mod shape;

@@ -15,7 +15,7 @@
 //!
 //! On the axis every direction away from it is equally close; one of them is taken.
 
-use super::axial::{Axial, perpendicular, unit, unit_across};
+use super::axial::{AxialFrame, perpendicular, unit, unit_across};
 use super::feature;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
@@ -33,7 +33,7 @@ struct Nearest {
 
 /// The closest point of the surface; nothing when `point` is not finite.
 fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
-    let (frame, from_start) = Axial::around(link, point)?;
+    let (frame, from_start) = AxialFrame::around(link, point)?;
     let from_end = from_start - frame.span;
     let z = from_start.dot(frame.axis);
     let beyond = from_end.dot(frame.axis);
@@ -81,7 +81,7 @@ fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
 }
 
 /// Case 1: the point at `offset` from the centre of a flat end, `height` above its disc.
-fn above_disc(frame: &Axial, centre: Vector, offset: Vector, height: Real, end: usize) -> Nearest {
+fn above_disc(frame: &AxialFrame, centre: Vector, offset: Vector, height: Real, end: usize) -> Nearest {
     let lateral = offset - frame.axis * offset.dot(frame.axis);
     let rho = lateral.length();
     let excess = rho - frame.radius;

@@ -21,7 +21,7 @@
 //! the radius never has to be told apart from the square of a far origin's distance. The direction need not
 //! have length 1; time is in units of it.
 
-use super::axial::{Axial, perpendicular, power_of_two, unit, unit_across};
+use super::axial::{AxialFrame, perpendicular, power_of_two, unit, unit_across};
 use super::feature;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
@@ -40,7 +40,7 @@ struct Crossing {
 
 /// A line, seen from the middle of the link, in the units of `frame`.
 struct Line<'a> {
-    frame: &'a Axial,
+    frame: &'a AxialFrame,
     caps: [Cap; 2],
     /// The point of the line closest to the middle of the axis, relative to that middle.
     point: Vector,
@@ -54,7 +54,7 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(frame: &'a Axial, caps: [Cap; 2], point: Vector, direction: Vector) -> Self {
+    fn new(frame: &'a AxialFrame, caps: [Cap; 2], point: Vector, direction: Vector) -> Self {
         let axis = frame.axis;
         let (height, rise) = (point.dot(axis), direction.dot(axis));
         Self {
@@ -141,7 +141,7 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
     if !ray.dir.is_finite() {
         return None;
     }
-    let (frame, from_start) = Axial::around(link, ray.origin)?;
+    let (frame, from_start) = AxialFrame::around(link, ray.origin)?;
     let (at_origin, feature) = link.project_local_point_and_get_feature(ray.origin);
     let inside = at_origin.is_inside;
     if inside && solid {

@@ -4,12 +4,11 @@
 //! where it is and the robot is moved into its frame. Answers go back to the frames of the two shapes at the
 //! end.
 
-use super::link_contact::{self, LinkContact};
+use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{Until, search};
-use crate::distance::{Vec3, triangle_modified_cylinder};
 use crate::proximity::{Nearest, PlacedLink};
 use crate::robot::COORDINATE_LIMIT;
-use crate::{Cap, Chain, ModifiedCylinder};
+use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
 use parry3d_f64::shape::{Shape, TriMesh, Triangle};
@@ -118,18 +117,10 @@ impl<'a> RobotPair<'a> {
         let mut best: Option<NearestPair> = None;
         for (index, link) in self.links.iter().enumerate() {
             let link = self.placed(link)?;
-            let flat = link.caps().map(|cap| cap == Cap::Flat);
-            let (start, end) = (to_vec3(link.start()), to_vec3(link.end()));
-            let closest = triangle_modified_cylinder(triangle.map(to_vec3), start, end, link.radius(), flat);
-            let is_nearer = best.as_ref().is_none_or(|best| closest.distance < best.distance);
-            if closest.distance <= margin && is_nearer {
-                best = Some(NearestPair {
-                    link: index,
-                    triangle: 0,
-                    distance: closest.distance,
-                    on_robot: Vector::from_array(closest.point2.into()),
-                    on_surface: Vector::from_array(closest.point1.into()),
-                });
+            let (distance, on_robot, on_surface) = link_triangle::closest(&link, triangle);
+            let is_nearer = best.as_ref().is_none_or(|best| distance < best.distance);
+            if distance <= margin && is_nearer {
+                best = Some(NearestPair { link: index, triangle: 0, distance, on_robot, on_surface });
             }
         }
         Ok(best)
@@ -166,7 +157,7 @@ impl<'a> RobotPair<'a> {
     }
 
     fn contact_of(&self, link: usize, triangle: u32) -> Result<LinkContact, Unsupported> {
-        link_contact::contact(&self.placed(&self.links[link])?, self.triangle(triangle)?).ok_or(Unsupported)
+        link_triangle::contact(&self.placed(&self.links[link])?, self.triangle(triangle)?).ok_or(Unsupported)
     }
 
     /// The triangles whose boxes meet the link's.
@@ -239,12 +230,8 @@ fn within(margin: Real) -> Result<Real, Unsupported> {
 }
 
 /// The largest coordinate, if all are within the range that is answered.
-fn in_range(point: Vector) -> Result<Real, Unsupported> {
+pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
     let largest = point.abs().max_element();
     // Written so that NaN is out of range too.
     if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
-}
-
-fn to_vec3(vector: Vector) -> Vec3<f64> {
-    Vec3::from(vector.to_array())
 }

@@ -11,7 +11,8 @@
 //! against shapes that this crate has no closed form for; no distance, contact or ray uses them.
 
 use super::axial::{axis_or_x, perpendicular, unit, unit_across};
-use super::feature;
+use super::feature::{self, crest_end};
+use super::footing::centre;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, SupportMap};
@@ -50,10 +51,6 @@ impl PolygonalFeatureMap for ModifiedCylinder {
     }
 }
 
-fn centre(link: &ModifiedCylinder, end: usize) -> Vector {
-    if end == 0 { link.start() } else { link.end() }
-}
-
 /// The polygon of unit direction `dir` with a corner at `azimuth`.
 fn feature_at(link: &ModifiedCylinder, axis: Vector, dir: Vector, azimuth: Vector) -> PolygonalFeature {
     let lean = axis.dot(dir);
@@ -64,10 +61,9 @@ fn feature_at(link: &ModifiedCylinder, axis: Vector, dir: Vector, azimuth: Vecto
     if link.caps()[end] == Cap::Flat && lean.abs() >= 0.5 {
         let across = axis.cross(azimuth);
         for (corner, offset) in [azimuth, across, -azimuth, -across].into_iter().enumerate() {
-            let id = feature::SQUARE + (4 * end + corner) as u32;
             polygon.vertices[corner] = centre(link, end) + offset * radius;
-            polygon.vids[corner] = PackedFeatureId::vertex(id);
-            polygon.eids[corner] = PackedFeatureId::edge(id);
+            polygon.vids[corner] = feature::square_corner(end, corner);
+            polygon.eids[corner] = PackedFeatureId::edge(feature::SQUARE + (4 * end + corner) as u32);
         }
         polygon.fid = feature::CAP[end].into();
         polygon.num_vertices = 4;
@@ -77,7 +73,7 @@ fn feature_at(link: &ModifiedCylinder, axis: Vector, dir: Vector, azimuth: Vecto
             let on_ball = link.caps()[corner] == Cap::Round && leans_out;
             let offset = if on_ball { dir } else { azimuth };
             polygon.vertices[corner] = centre(link, corner) + offset * radius;
-            polygon.vids[corner] = PackedFeatureId::vertex(corner as u32);
+            polygon.vids[corner] = crest_end(corner);
         }
         polygon.vertices[2] = polygon.vertices[1];
         polygon.vertices[3] = polygon.vertices[1];

@@ -57,6 +57,7 @@ impl Mesh {
         &self.vertices
     }
 
+    #[cfg(feature = "gpu")]
     pub(crate) fn indices(&self) -> &[[u32; 3]] {
         &self.indices
     }

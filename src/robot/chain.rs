@@ -65,8 +65,7 @@ impl Chain {
     ///
     /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
     /// where a round cap does not stick out of such a face. A radius that is meant to be constant must be so to
-    /// the last bit: any increase is a step. A joint exactly one radius from a face is round; distances that differ by
-    /// less than 2^-46 of themselves count as equal there.
+    /// the last bit: any increase is a step. A joint exactly one radius from a face is round.
     ///
     /// # Errors
     /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or

@@ -30,8 +30,7 @@ use parry3d_f64::math::{Real, Vector};
 /// no point of either is further than that from the other (Hausdorff distance). No other choice of points with
 /// these properties has fewer links. `tolerance` is in the unit of the points. With 0, only points exactly on the
 /// new segments go, and the centreline keeps its shape; points meant to be on an oblique straight line seldom are
-/// after rounding, so give those the rounding error as tolerance. A deviation that exceeds the tolerance by less than
-/// 2^-46 of it counts as within.
+/// after rounding, so give those the rounding error as tolerance.
 ///
 /// Repeated points are dropped first, together with the radius of the segment without length between them. (If
 /// that radius differs from a neighbour's the point counts as a change of radius.) A new segment always has a

@@ -3,7 +3,7 @@
 
 use continuum_testing::distance_cases;
 use continuum_testing::kernels::{Input, KERNELS};
-use parry_continuum::distance::{Mask, Scalar, Vec3};
+use parry_continuum::distance::{Mask, Scalar, Sealed, Vec3};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Two numbers that know nothing of each other.
@@ -82,6 +82,9 @@ impl Not for PairMask {
         Self(self.0.map(|lane| !lane))
     }
 }
+
+impl Sealed for PairMask {}
+impl Sealed for Pair {}
 
 impl Mask<Pair> for PairMask {
     fn select(self, yes: Pair, no: Pair) -> Pair {

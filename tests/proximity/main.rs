@@ -1,6 +1,7 @@
 //! Robot against mesh: every engine, and the proofs of its answers.
 
 mod agreement;
+mod allocations;
 mod certify;
 mod chain_cases;
 mod far_parts;

@@ -1,7 +1,7 @@
 //! A number that counts what is done with it.
 
 use crate::Number;
-use parry_continuum::distance::Scalar;
+use parry_continuum::distance::{Scalar, Sealed};
 use polynomial_roots::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -83,6 +83,8 @@ impl<T: Scalar> Neg for Counted<T> {
         Self(-self.0)
     }
 }
+
+impl<T> Sealed for Counted<T> {}
 
 impl<T: Number> Scalar for Counted<T> {
     type Mask = bool;

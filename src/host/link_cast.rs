@@ -1,0 +1,279 @@
+//! When a moving link meets a moving convex shape: conservative advancement, never late.
+//!
+//! Both travel and turn at constant speeds. While they are apart there is a plane between them that touches the other
+//! shape, the *wall*: that of their contact. It moves and turns with the wall, which stays behind it whatever
+//! happens. So the link is clear for as long as [`closing`](super::closing) proves that its two ends stay on their
+//! side. Then the two are measured again. Close to each other the steps are Newton's, from the safe side. They end
+//! where the two are as close as [`TOUCHING`] of their size or rounding.
+//!
+//! (parry's cast bisects for a root along a direction, which need not be the first, within tolerances of its own that
+//! late times cannot resolve: there it does not come back.)
+//!
+//! **What touches at the start.** A host that does not stop there wants to know when the link would go through: rapier
+//! does, for fast bodies, and takes a hit at the very start for none. So what is cast is the link's *core*: the inside
+//! of its axis, swollen by half of the room that it has. A core is clear at the start unless the link is through
+//! already, and where it meets the wall half of the room is left. (parry's cast says that the link is held at the
+//! start, which frees it: it then passes a mesh with the end that did not touch.)
+
+use super::axial::unit;
+use super::closing::{Closing, Reach, Support};
+use super::footing::{centre, outward};
+use super::link_triangle::{self, LinkTriangle};
+use super::robot_pair::{in_range, links_of};
+use crate::{Cap, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{
+    ClosestPoints, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported,
+};
+use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+
+/// The share of a link's size at which it counts as touching a triangle or a half-space.
+const TOUCHING: Real = 1e-9;
+/// The same for other shapes, whose contacts come from iterations.
+const ITERATED: Real = 1e-5;
+/// What rounding leaves of the largest coordinate.
+const ROUNDING: Real = 64.0 * Real::EPSILON;
+/// More than any motion takes that is not a grazing one. After that the moment reached is the answer: early, not late.
+const MOST_STEPS: usize = 200;
+
+/// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the other a half-space,
+/// in either order. `dispatcher` tells the contacts with walls other than triangles and half-spaces.
+///
+/// # Errors
+/// [`Unsupported`] for what is not finite, out of range, or refused by the dispatcher.
+pub(super) fn cast(
+    dispatcher: &impl QueryDispatcher,
+    (motion1, g1): (&NonlinearRigidMotion, &dyn Shape),
+    (motion2, g2): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+    stop_at_penetration: bool,
+) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
+    let Some((links, wall, robot_is_first)) = pair(g1, g2)? else { return Ok(None) };
+    let (robot, motion) = if robot_is_first { (motion1, motion2) } else { (motion2, motion1) };
+    let cast = Cast { dispatcher, robot, wall, motion, start_time, end_time };
+    let mut first: Option<ShapeCastHit> = None;
+    for (index, link) in links.iter().enumerate() {
+        let Some(hit) = cast.of(link, stop_at_penetration)? else { continue };
+        if first.is_none_or(|first| hit.time_of_impact < first.time_of_impact) {
+            first = Some(ShapeCastHit { subshape1: index as u32, ..hit });
+        }
+    }
+    Ok(Some(first.map(|hit| if robot_is_first { hit } else { hit.swapped() })))
+}
+
+/// The links of the robot, the wall, and whether the robot is first.
+type RobotAndWall<'a> = (&'a [ModifiedCylinder], Wall<'a>, bool);
+
+fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<'a>>, Unsupported> {
+    if let Some(pair) = LinkTriangle::of(g1, g2)? {
+        let link = std::slice::from_ref(pair.link);
+        return Ok(Some((link, Wall::Triangle(pair.triangle), pair.link_is_first)));
+    }
+    for (robot, wall, robot_is_first) in [(g1, g2, true), (g2, g1, false)] {
+        let Some(links) = links_of(robot) else { continue };
+        if let Some(half_space) = wall.as_halfspace() {
+            let normal = unit(half_space.normal).ok_or(Unsupported)?;
+            return Ok(Some((links, Wall::HalfSpace(normal), robot_is_first)));
+        }
+        if let (Some(link), Some(support)) = (robot.as_shape(), wall.as_support_map()) {
+            return Ok(Some((std::slice::from_ref(link), Wall::Convex(wall, support), robot_is_first)));
+        }
+    }
+    Ok(None)
+}
+
+enum Wall<'a> {
+    Triangle(&'a Triangle),
+    /// Its unit normal.
+    HalfSpace(Vector),
+    Convex(&'a dyn Shape, &'a dyn SupportMap),
+}
+
+/// A robot and a wall on their ways.
+struct Cast<'a, D> {
+    dispatcher: &'a D,
+    robot: &'a NonlinearRigidMotion,
+    wall: Wall<'a>,
+    motion: &'a NonlinearRigidMotion,
+    start_time: Real,
+    end_time: Real,
+}
+
+/// A link and the plane that holds the wall, at one moment.
+struct Moment {
+    time: Real,
+    /// Of the robot and of the wall, in the world.
+    poses: [Pose; 2],
+    distance: Real,
+    /// What the distance must exceed to count.
+    touching: Real,
+    /// In the link's frame, and where the wall's own plane is, there too.
+    on_link: Vector,
+    on_wall: Vector,
+    /// From the link to the wall, in the link's frame.
+    normal: Vector,
+}
+
+impl<D: QueryDispatcher> Cast<'_, D> {
+    /// The first hit, the link's side first.
+    fn of(&self, link: &ModifiedCylinder, stop_at_start: bool) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let start = self.at(self.start_time, link)?;
+        if start.distance > start.touching {
+            return self.advance(link, start);
+        }
+        if stop_at_start {
+            return Ok(Some(start.hit(ShapeCastStatus::PenetratingOrWithinTargetDist)));
+        }
+        let Some(core) = self.core(link)? else { return Ok(None) };
+        let start = self.at(self.start_time, &core)?;
+        self.advance(&core, start)
+    }
+
+    /// What must not touch the wall if the link does at the start: nothing if it is through already.
+    fn core(&self, link: &ModifiedCylinder) -> Result<Option<ModifiedCylinder>, Unsupported> {
+        let inset = link.radius().min(0.25 * link.length());
+        let trimmed = [0, 1].map(|end| match link.caps()[end] {
+            Cap::Round => centre(link, end),
+            Cap::Flat => centre(link, end) - outward(link, end) * inset,
+        });
+        let capsule =
+            |radius| ModifiedCylinder::capsule(trimmed[0], trimmed[1], radius).map_err(|_| Unsupported);
+        let start = self.at(self.start_time, &capsule(0.0)?)?;
+        let radius = 0.5 * start.distance.min(link.radius());
+        if radius > 2.0 * start.touching { capsule(radius).map(Some) } else { Ok(None) }
+    }
+
+    /// The first moment from this on at which the two touch.
+    fn advance(&self, link: &ModifiedCylinder, start: Moment) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let mut now = start;
+        for _ in 0..MOST_STEPS {
+            if now.distance <= now.touching {
+                return Ok(Some(now.hit(ShapeCastStatus::Converged)));
+            }
+            let left = self.end_time - now.time;
+            let clear = self.clear_for(link, &now, left);
+            if clear >= left {
+                return Ok(None);
+            }
+            let next = now.time + clear;
+            if next.is_nan() || next <= now.time {
+                break;
+            }
+            now = self.at(next, link)?;
+        }
+        Ok(Some(now.hit(ShapeCastStatus::OutOfIterations)))
+    }
+
+    fn at(&self, time: Real, link: &ModifiedCylinder) -> Result<Moment, Unsupported> {
+        let poses = [self.robot.position_at_time(time), self.motion.position_at_time(time)];
+        let pos12 = poses[0].inv_mul(&poses[1]);
+        let mut largest = link.radius();
+        for place in [poses[0].translation, poses[1].translation, link.start(), link.end()] {
+            largest = largest.max(in_range(place)?);
+        }
+        let size = link.length() + link.radius();
+        let (distance, on_link, on_wall, normal, share);
+        match self.wall {
+            Wall::Triangle(triangle) => {
+                let corners = triangle.vertices().map(|vertex| pos12 * vertex);
+                for corner in corners {
+                    largest = largest.max(in_range(corner)?);
+                }
+                let contact = link_triangle::contact(link, corners).ok_or(Unsupported)?;
+                (distance, on_link, normal) = (contact.distance, contact.on_link, contact.normal);
+                (on_wall, share) = (contact.on_triangle, TOUCHING);
+            }
+            Wall::HalfSpace(plane) => {
+                normal = pos12.rotation * -plane;
+                on_link = link.local_support_point_toward(normal);
+                distance = (pos12.translation - on_link).dot(normal);
+                (on_wall, share) = (on_link + normal * distance, TOUCHING);
+            }
+            Wall::Convex(shape, support) => {
+                share = ITERATED;
+                let points = match self.dispatcher.closest_points(&pos12, link, shape, Real::MAX)? {
+                    ClosestPoints::Disjoint => return Err(Unsupported),
+                    ClosestPoints::WithinMargin(point, other) => Some((point, pos12 * other)),
+                    ClosestPoints::Intersecting => None,
+                };
+                let apart = points.and_then(|(point, other)| Some((point, other, unit(other - point)?)));
+                if let Some((point, other, way)) = apart {
+                    // The two themselves say how far apart they are along it.
+                    let before = (support.support_point_toward(&pos12, -way) - other).dot(way);
+                    (on_link, on_wall, normal) = (point, other + way * before, way);
+                    distance = (on_wall - link.local_support_point_toward(way)).dot(way);
+                } else {
+                    let contact = self.dispatcher.contact(&pos12, link, shape, 0.0)?;
+                    (on_link, on_wall, normal) = match contact {
+                        Some(contact) => (contact.point1, pos12 * contact.point2, contact.normal1),
+                        None => (link.start(), link.start(), Vector::X),
+                    };
+                    distance = 0.0;
+                }
+            }
+        }
+        let touching = share * size + ROUNDING * largest;
+        if !(normal.is_finite() && distance.is_finite()) {
+            return Err(Unsupported);
+        }
+        Ok(Moment { time, poses, distance, touching, on_link, on_wall, normal })
+    }
+
+    /// A time until which the link stays before the wall's plane, at most `span`.
+    fn clear_for(&self, link: &ModifiedCylinder, now: &Moment, span: Real) -> Real {
+        let [robot_pose, wall_pose] = now.poses;
+        let normal = robot_pose.rotation * now.normal;
+        let axis = robot_pose.rotation * link.axis();
+        let (spin, turn) = (self.robot.angvel, self.motion.angvel);
+        let drift = self.motion.linvel - self.robot.linvel;
+        // How the axis turns.
+        let tilt = spin - axis * spin.dot(axis);
+        let (tilts, turns) = (tilt.length(), turn.length());
+        let mut clear = span;
+        for end in 0..2 {
+            let outward = robot_pose.rotation * outward(link, end);
+            let is_round = link.caps()[end] == Cap::Round;
+            let (reach, cap_bend) = if is_round && normal.dot(outward) >= 0.0 {
+                (Reach::Radius(link.radius()), 0.0)
+            } else {
+                let turning = normal.cross(tilt - turn);
+                let support = Support { radius: link.radius(), outward, is_round, normal, turning };
+                let bend = (tilts + turns) * (tilts + turns) + tilts * (spin.length() + turns);
+                (Reach::Support(support), 0.5 * link.radius() * bend)
+            };
+            // Seen from the wall's centre of rotation, from which its plane is as far at all times.
+            let place = robot_pose * centre(link, end) - wall_pose * self.motion.local_center;
+            let swing = spin.cross(robot_pose.rotation * (centre(link, end) - self.robot.local_center));
+            let fastest = drift.length() + swing.length();
+            let furthest = place.length() + fastest * span;
+            clear = clear.min(
+                Closing {
+                    gap: (now.on_wall - centre(link, end)).dot(now.normal),
+                    rate: (drift - swing).dot(normal) - turn.cross(normal).dot(place),
+                    bend: cap_bend
+                        + 0.5 * spin.length() * swing.length()
+                        + turns * (fastest + 0.5 * turns * furthest),
+                    reach,
+                }
+                .stays_open(clear),
+            );
+        }
+        clear
+    }
+}
+
+impl Moment {
+    fn hit(&self, status: ShapeCastStatus) -> ShapeCastHit {
+        let link_to_wall = self.poses[1].inv_mul(&self.poses[0]);
+        ShapeCastHit {
+            time_of_impact: self.time,
+            witness1: self.on_link,
+            witness2: link_to_wall * self.on_wall,
+            normal1: self.normal,
+            normal2: link_to_wall.rotation * -self.normal,
+            status,
+            subshape1: 0,
+            subshape2: 0,
+        }
+    }
+}

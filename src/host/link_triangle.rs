@@ -1,0 +1,195 @@
+//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart, and along
+//! what.
+//!
+//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the
+//! direction `n`. Moving the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is.
+//! So every `n` gives a lower bound on the distance while they are apart (the best `n` attains it), and a
+//! translation that separates them when they overlap (the best `n` gives the least).
+//!
+//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they
+//!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
+//!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
+//!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal.
+//! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so
+//!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
+//!    distance `F`.
+//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
+//!    [`separation`](super::separation), where the least translation must be. Moved apart by it the two touch,
+//!    and the touching points are the contact's.
+
+use super::axial::{perpendicular, power_of_two, unit, unit_across};
+use super::separation;
+use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
+use crate::{Cap, ModifiedCylinder};
+use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::query::Unsupported;
+use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+
+/// A link and a finite triangle, in either order.
+pub(super) struct LinkTriangle<'a> {
+    pub link: &'a ModifiedCylinder,
+    pub triangle: &'a Triangle,
+    pub link_is_first: bool,
+}
+
+impl<'a> LinkTriangle<'a> {
+    /// The pair, if the shapes are one.
+    ///
+    /// # Errors
+    /// [`Unsupported`] if the triangle is not finite.
+    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
+        let (first, second) = (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>());
+        let (link, triangle, link_is_first) = match (first, second) {
+            (Some(link), None) => (link, g2.as_triangle(), true),
+            (None, Some(link)) => (link, g1.as_triangle(), false),
+            _ => return Ok(None),
+        };
+        triangle.map(|triangle| Self::new(link, triangle, link_is_first)).transpose()
+    }
+
+    /// # Errors
+    /// [`Unsupported`] if the triangle is not finite.
+    pub fn new(
+        link: &'a ModifiedCylinder,
+        triangle: &'a Triangle,
+        link_is_first: bool,
+    ) -> Result<Self, Unsupported> {
+        let is_finite = triangle.vertices().iter().all(|vertex| vertex.is_finite());
+        if is_finite { Ok(Self { link, triangle, link_is_first }) } else { Err(Unsupported) }
+    }
+
+    /// The support maps in the pair's order.
+    pub fn support_maps(&self) -> (&'a dyn SupportMap, &'a dyn SupportMap) {
+        if self.link_is_first { (self.link, self.triangle) } else { (self.triangle, self.link) }
+    }
+}
+
+/// Where a link and a triangle meet, in the frame of both.
+pub(super) struct LinkContact {
+    /// Distance, or minus the length of the least separating translation.
+    pub distance: Real,
+    /// A point of the link; beyond the triangle if they overlap.
+    pub on_link: Vector,
+    /// A point of the triangle, `distance` from the other along the normal.
+    pub on_triangle: Vector,
+    /// Unit vector from the link to the triangle.
+    pub normal: Vector,
+}
+
+/// Distance and closest points of a link and a triangle in one frame, the link's first.
+pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
+    let flat = link.flat();
+    let (start, end) = (Vec3::from(link.start()), Vec3::from(link.end()));
+    let closest = triangle_modified_cylinder(triangle.map(Vec3::from), start, end, link.radius(), flat);
+    (closest.distance, Vector::from(closest.point2), Vector::from(closest.point1))
+}
+
+/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave the range
+/// of f64.
+pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<LinkContact> {
+    let local = Local::new(link, triangle)?;
+    let found = local.contact();
+    Some(LinkContact {
+        distance: found.distance * local.unit,
+        on_link: local.origin + found.on_link * local.unit,
+        on_triangle: local.origin + found.on_triangle * local.unit,
+        normal: found.normal,
+    })
+}
+
+/// The problem from the link's start, in a unit that brings its numbers near one.
+pub(super) struct Local {
+    /// The link's start in the caller's frame.
+    pub origin: Vector,
+    /// How long a local unit is to the caller.
+    pub unit: Real,
+    pub link: ModifiedCylinder,
+    pub triangle: [Vector; 3],
+}
+
+impl Local {
+    /// Nothing if the numbers leave the range of f64.
+    pub fn new(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<Self> {
+        let origin = link.start();
+        let span = link.end() - origin;
+        let offsets = triangle.map(|vertex| vertex - origin);
+        let extent = offsets.iter().fold(span.abs(), |most, offset| most.max(offset.abs())).max_element();
+        let (down, unit) = power_of_two(extent.max(link.radius()));
+        let end = span * down;
+        // A link too short for the scene is as good as a ball.
+        let caps = if end == Vector::ZERO { [Cap::Round; 2] } else { link.caps() };
+        let link = ModifiedCylinder::new(Vector::ZERO, end, link.radius() * down, caps).ok()?;
+        let triangle = offsets.map(|offset| offset * down);
+        triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
+    }
+
+    /// The contact, in local units.
+    pub fn contact(&self) -> LinkContact {
+        let (distance, on_link, on_triangle) = closest(&self.link, self.triangle);
+        let radius = self.link.radius();
+        let axis_distance = segment_triangle(
+            [Vec3::from(self.link.start()), Vec3::from(self.link.end())],
+            self.triangle.map(Vec3::from),
+        );
+        let on_axis = Vector::from(axis_distance.point1);
+        let from_axis = Vector::from(axis_distance.point2) - on_axis;
+        let outward = unit(from_axis);
+
+        // Case 1.
+        if distance > 0.0 {
+            let (_, normal) = self.widest_gap([unit(on_triangle - on_link), outward]);
+            return LinkContact { distance, on_link, on_triangle, normal };
+        }
+        // Case 2.
+        if let (Some(_), [Cap::Round, Cap::Round]) = (outward, self.link.caps()) {
+            let (_, normal) = self.widest_gap([outward, None]);
+            let distance = (axis_distance.distance - radius).min(0.0);
+            let on_triangle = on_axis + from_axis;
+            return LinkContact { distance, on_link: on_axis + normal * radius, on_triangle, normal };
+        }
+        // Case 3.
+        let mut best = self.widest_gap([outward, None]);
+        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
+        let (gap, normal) = best;
+        let distance = gap.min(0.0);
+        let (_, on_link, on_moved) =
+            closest(&self.link, self.triangle.map(|vertex| vertex - normal * distance));
+        LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal }
+    }
+
+    /// The largest gap and its direction, among the features' normals and `more`, as they are and made
+    /// perpendicular to the edges and the axis.
+    fn widest_gap(&self, more: [Option<Vector>; 2]) -> (Real, Vector) {
+        let [a, b, c] = self.triangle;
+        let edges = [b - a, c - b, a - c];
+        let axis = self.link.axis();
+        let face = face_normal(self.triangle);
+        // Some direction across whatever direction there is, should nothing else be left.
+        let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
+        let edges = edges.map(unit);
+        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
+        let lines = [face, unit(axis), Some(across)].into_iter().chain(products).flatten();
+        let more = more.into_iter().flatten();
+        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
+        let turned = more.clone().flat_map(|n| straight().map(move |line| unit_across(n, line)));
+
+        let mut best = (Real::NEG_INFINITY, across);
+        // The first of equals stays, so `more` goes first.
+        for n in more.chain(turned.flatten()).chain(lines.flat_map(|n| [n, -n])) {
+            best = self.wider(best, n);
+        }
+        best
+    }
+
+    /// The best direction so far or `n`, whichever has the larger gap.
+    fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
+        let reach = self.link.local_support_point(n);
+        let gap = self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min);
+        if gap > best.0 { (gap, n) } else { best }
+    }
+}
+
+/// The unit normal of a triangle whose numbers are near one, if it has one.
+pub(super) fn face_normal(triangle: [Vector; 3]) -> Option<Vector> {
+    unit(Vector::from(Face::new(triangle.map(Vec3::from)).normal()))
+}

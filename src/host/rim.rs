@@ -1,0 +1,49 @@
+//! A flat cap that faces a triangle: what of the triangle's outline lies below its disc.
+//!
+//! Points of the triangle are taken back along the normal onto the disc's plane. A corner that lands on the disc
+//! counts, and so do the two points where an edge comes below the rim and leaves it.
+
+use super::feature;
+use super::footing::{centre, faces_flat, outward};
+use super::meeting::Meeting;
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::PackedFeatureId;
+
+/// Adds the corners and crossings below the flat caps that face along the normal.
+pub(super) fn collect(meeting: &mut Meeting) {
+    for end in 0..2 {
+        if faces_flat(meeting.link, meeting.normal, end) {
+            collect_below(meeting, end);
+        }
+    }
+}
+
+fn collect_below(meeting: &mut Meeting, end: usize) {
+    let (link, normal) = (meeting.link, meeting.normal);
+    let (centre, outward, radius) = (centre(link, end), outward(link, end), link.radius());
+    let height = |q: Vector| (q - centre).dot(outward) / normal.dot(outward);
+    let on_plane = |q: Vector| q - centre - normal * height(q);
+    for (corner, q) in meeting.triangle.into_iter().enumerate() {
+        if on_plane(q).length() <= radius {
+            let names = (feature::CAP[end].into(), PackedFeatureId::vertex(corner as u32));
+            meeting.add(centre + on_plane(q), height(q), names.0, names.1);
+        }
+    }
+    for (j, (v, w)) in meeting.edges().into_iter().enumerate() {
+        let (from, way) = (on_plane(v), on_plane(w) - on_plane(v));
+        let squared = way.length_squared();
+        let middle = -from.dot(way) / squared;
+        let gap = (from + way * middle).length();
+        // Not for an edge that the normal runs along.
+        if squared > 0.0 && gap < radius {
+            let half = ((radius - gap) * (radius + gap) / squared).sqrt();
+            for (share, name) in [middle - half, middle + half].into_iter().zip(feature::RIM_ENDS[end]) {
+                if 0.0 < share && share < 1.0 {
+                    let q = v.lerp(w, share);
+                    let names = (PackedFeatureId::edge(name), PackedFeatureId::edge(j as u32));
+                    meeting.add(centre + on_plane(q), height(q), names.0, names.1);
+                }
+            }
+        }
+    }
+}

@@ -1,3 +1,0 @@
-//! What the host's tests share with all others.
-
-pub use continuum_testing::*;

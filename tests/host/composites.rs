@@ -1,0 +1,130 @@
+//! Queries on composites are the best of those on their parts.
+
+use crate::dispatcher::ROUNDING;
+use crate::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
+use continuum_testing::Random;
+use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
+use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastOptions};
+use parry_continuum::parry::shape::{Shape, SharedShape, Voxels};
+use parry_continuum::{Chain, ContinuumDispatcher};
+
+/// Every pair of a robot and a composite, with the poses that bring them near each other.
+pub fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, SharedShape, Pose)> {
+    let mut pairs: Vec<(&'static str, SharedShape, SharedShape, Pose)> = vec![];
+    let chain = tube(random);
+    let link = SharedShape::new(chain.links()[1]);
+    let chain = SharedShape::new(chain);
+    for robot in [link, chain] {
+        for (name, other) in [
+            ("compound", SharedShape::new(heap(random))),
+            ("mesh", SharedShape::new(floor_mesh())),
+            ("field", SharedShape::new(floor_field())),
+            ("polyline", SharedShape::new(zigzag(random))),
+            ("chain", SharedShape::new(tube(random))),
+        ] {
+            let place = Pose::new(Vector::new(0.0, random.between(-0.2, 0.7), 0.0), random.direction());
+            pairs.push((name, robot.clone(), other, place.inverse()));
+        }
+    }
+    pairs
+}
+
+/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked for one by
+/// one.
+#[test]
+fn composites_get_the_best_of_their_parts() {
+    let dispatcher = ContinuumDispatcher::default();
+    let mut random = Random::new(42);
+    let mut visits = std::collections::BTreeMap::new();
+    for _ in 0..40 {
+        for (name, robot, other, pos12) in composites(&mut random) {
+            for (first, second, pos12) in [(&robot, &other, pos12), (&other, &robot, pos12.inverse())] {
+                let (g1, g2): (&dyn Shape, &dyn Shape) = (&**first, &**second);
+                let pair = |id1: u32, id2: u32| {
+                    let (parts1, parts2) = (parts(g1), parts(g2));
+                    let part1 = parts1.into_iter().find(|part| part.0 == id1).unwrap();
+                    let part2 = parts2.into_iter().find(|part| part.0 == id2).unwrap();
+                    (part1.1.inv_mul(&(pos12 * part2.1)), part1.2, part2.2)
+                };
+                let mut least = Real::INFINITY;
+                for (_, pose1, part1) in parts(g1) {
+                    for (_, pose2, part2) in parts(g2) {
+                        let pose = pose1.inv_mul(&(pos12 * pose2));
+                        least = least.min(dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance);
+                    }
+                }
+                // GJK answers for the pairs that are not ours, at its own accuracy.
+                let tolerance = if matches!(name, "mesh" | "field") { ROUNDING } else { 1e-5 };
+
+                let answer = dispatcher.distance(&pos12, g1, g2).unwrap();
+                assert!((answer.distance - least).abs() <= tolerance, "{name}: {answer:?} for {least}");
+                let (pose, part1, part2) = pair(answer.subshape1, answer.subshape2);
+                let again = dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance;
+                assert!(
+                    (again - least).abs() <= tolerance,
+                    "{name}: ids of {answer:?}, but {again} for {least}"
+                );
+
+                let meets = dispatcher.intersection_test(&pos12, g1, g2).unwrap();
+                assert_eq!(meets.intersecting, least == 0.0, "{name}: {meets:?} for {least}");
+                if meets.intersecting {
+                    let (pose, part1, part2) = pair(meets.subshape1, meets.subshape2);
+                    let again = dispatcher.intersection_test(&pose, &*part1, &*part2).unwrap().intersecting;
+                    assert!(again, "{name}: {meets:?} {:?} {:?}", part1.shape_type(), part2.shape_type());
+                }
+
+                let contact = dispatcher.contact(&pos12, g1, g2, least + 0.01).unwrap();
+                let contact = contact.unwrap_or_else(|| panic!("{name}: no contact at {least}"));
+                assert!(
+                    (contact.dist.max(0.0) - least).abs() <= tolerance.max(1e-5),
+                    "{name}: {contact:?} {least}"
+                );
+                let (pose, part1, part2) = pair(contact.subshape1, contact.subshape2);
+                let again = dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance;
+                assert!((again - least).abs() <= tolerance.max(1e-5), "{name}: {contact:?}, but {again}");
+
+                if least > 0.0 {
+                    let near = dispatcher.closest_points(&pos12, g1, g2, least + 1e-4).unwrap();
+                    let ClosestPoints::WithinMargin(p1, p2) = near else {
+                        panic!("{name}: {near:?} at {least}")
+                    };
+                    assert!(((p1 - pos12 * p2).length() - least).abs() <= tolerance, "{name}");
+                    let far = dispatcher.closest_points(&pos12, g1, g2, 0.9 * least).unwrap();
+                    assert_eq!(far, ClosestPoints::Disjoint, "{name}");
+                    assert_eq!(dispatcher.contact(&pos12, g1, g2, 0.9 * least).unwrap(), None, "{name}");
+                } else {
+                    let near = dispatcher.closest_points(&pos12, g1, g2, 1.0).unwrap();
+                    assert_eq!(near, ClosestPoints::Intersecting, "{name}");
+                }
+                let tally = visits.entry(name).or_insert([0; 2]);
+                tally[usize::from(least == 0.0)] += 1;
+            }
+        }
+    }
+    assert!(visits.len() == 5 && visits.values().flatten().all(|&n| n >= 5), "{visits:?}");
+}
+
+#[test]
+fn voxels_are_met_and_cast_against_but_have_no_distance() {
+    let voxels =
+        Voxels::new(Vector::ONE, &[IVector::new(0, 0, 0), IVector::new(1, 0, 0), IVector::new(3, 0, 0)]);
+    let robot = Chain::cylinders(&[-Vector::Y, Vector::ZERO, Vector::Y], &[0.25, 0.25]).unwrap();
+    let dispatcher = ContinuumDispatcher::default();
+    for (x, meets) in [(0.5, true), (2.5, false), (3.5, true), (-0.5, false)] {
+        let place = Pose::from_translation(Vector::new(x, 0.5, 0.5));
+        let found = dispatcher.intersection_test(&place, &voxels, &robot).unwrap();
+        let swapped = dispatcher.intersection_test(&place.inverse(), &robot, &voxels).unwrap();
+        assert_eq!((found.intersecting, swapped.intersecting), (meets, meets), "at {x}");
+        if meets {
+            assert_eq!((found.subshape1, found.subshape2), (swapped.subshape2, swapped.subshape1));
+        }
+        assert!(dispatcher.distance(&place, &voxels, &robot).is_err());
+        assert!(dispatcher.distance(&place.inverse(), &robot, &voxels).is_err());
+        assert!(dispatcher.contact(&place, &voxels, &robot, 1.0).is_err());
+        assert!(dispatcher.closest_points(&place, &voxels, &robot, 1.0).is_err());
+    }
+    let place = Pose::from_translation(Vector::new(-2.0, 0.5, 0.5));
+    let hit =
+        dispatcher.cast_shapes(&place, Vector::X, &voxels, &robot, ShapeCastOptions::default()).unwrap();
+    assert!((hit.unwrap().time_of_impact - 1.75).abs() < 1e-4, "{hit:?}");
+}

@@ -1,0 +1,87 @@
+//! A control loop allocates nothing once it runs: centreline, chain, queries.
+
+use continuum_scene::{ctr, ventricle};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
+use parry_continuum::{Chain, simplify};
+
+/// A robot that sways.
+fn sway(points: &[Vector], tick: u32, moved: &mut Vec<Vector>) {
+    let swing = 0.02 * f64::from(tick % 50);
+    moved.clear();
+    moved.extend(points.iter().map(|&point| point + Vector::new(swing * point.z * 0.1, 0.0, 0.0)));
+}
+
+/// How often a loop allocates after its first rounds.
+fn steady_state(mut tick: impl FnMut(u32)) -> u64 {
+    (0..100).for_each(&mut tick);
+    allocation_counter::measure(|| (100..200).for_each(&mut tick)).count_total
+}
+
+#[test]
+fn a_control_loop_allocates_nothing() {
+    let (vertices, indices) = ventricle::mesh(6_000);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
+    let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
+    let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
+    let mut chain = Chain::from_centreline(&points, &line.radii).unwrap();
+    let (mut moved, mut answers) = (Vec::new(), Vec::new());
+
+    let mut search = BvhSearch::new(&mesh).unwrap();
+    let mut seen = Vec::new();
+    let search = steady_state(|tick| {
+        sway(&points, tick, &mut moved);
+        chain.set_centreline(&moved, &line.radii).unwrap();
+        let least = search.minimum(&chain, &pose).unwrap();
+        search.per_link(&chain, &pose, &mut answers).unwrap();
+        search.clears(&chain, &pose, 0.5).unwrap();
+        if tick < 50 {
+            seen.push(least.distance);
+        }
+    });
+    assert_eq!(search, 0);
+    seen.dedup();
+    assert_eq!(seen.len(), 50, "the robot moves");
+
+    // One thread: waking others may allocate.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let mut exhaustive = Exhaustive::<f32>::new(&mesh).unwrap();
+    let exhaustive = pool.install(|| {
+        steady_state(|tick| {
+            sway(&points, tick, &mut moved);
+            chain.set_centreline(&moved, &line.radii).unwrap();
+            exhaustive.minimum(&chain, &pose).unwrap();
+        })
+    });
+    assert_eq!(exhaustive, 0);
+
+    // The counter counts.
+    assert!(steady_state(|_| drop(simplify(&points, &line.radii, 0.1))) > 100);
+}
+
+/// A chain that is filled again is the chain that is made anew, and keeps what it was if the new line is bad.
+#[test]
+fn a_chain_is_filled_again() {
+    let lines = [
+        (vec![[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [1.0, 0.0, 5.0], [1.0, 1.0, 9.0]], vec![1.25, 0.5, 0.5]),
+        (vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0]], vec![0.2, 0.9, 0.2]),
+        (vec![[5.0, 0.0, 0.0], [5.0, 2.0, 0.0]], vec![0.1]),
+    ];
+    let line = |number: usize| -> (Vec<Vector>, &[f64]) {
+        (lines[number].0.iter().map(|&point| Vector::from_array(point)).collect(), &lines[number].1)
+    };
+    let (points, radii) = line(0);
+    let mut chain = Chain::from_centreline(&points, radii).unwrap();
+    for number in [1, 2, 0, 2, 1] {
+        let (points, radii) = line(number);
+        let anew = Chain::from_centreline(&points, radii).unwrap();
+        chain.set_centreline(&points, radii).unwrap();
+        assert_eq!(chain, anew);
+        assert_eq!(chain.local_aabb(), anew.local_aabb());
+        assert!(chain.set_centreline(&points[..1], radii).is_err());
+        assert!(chain.set_centreline(&vec![Vector::X; points.len()], radii).is_err());
+        assert_eq!(chain, anew);
+    }
+}

@@ -1,0 +1,9 @@
+//! Links and chains in rapier worlds.
+
+mod beam;
+mod chain;
+mod drop;
+mod fast;
+mod rest;
+mod setup;
+mod units;
