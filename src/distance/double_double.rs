@@ -3,6 +3,8 @@
 //! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001). With v = 2^-53, sums err by at
 //! most 4 v^2 of their value, products by 5 v^2, quotients and roots by less than 16 v^2 (Joldes, Muller and Popescu
 //! 2017), as long as nothing overflows or falls below 1e-290.
+//!
+//! The operations are called, not inlined: they take long enough, and a kernel has thousands of them to be compiled.
 
 use super::scalar::{Scalar, Sealed};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -58,6 +60,7 @@ fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = Self;
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         let (s, t) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
         let s = quick_two_sum(s.high, s.low + t.high);
@@ -81,6 +84,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let high = self.high * other.high;
         let low = self.high.mul_add(other.high, -high);
@@ -90,6 +94,7 @@ impl Mul for DoubleDouble {
 
 impl Div for DoubleDouble {
     type Output = Self;
+    #[inline(never)]
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self - other * first.into();
@@ -119,6 +124,7 @@ impl Scalar for DoubleDouble {
     fn abs(self) -> Self {
         if self.is_less(Self::ZERO) { -self } else { self }
     }
+    #[inline(never)]
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::ZERO;
