@@ -3,7 +3,7 @@
 //! Each function has the name of its twin in this crate and does the same in the same order, in WGSL that is one text
 //! for both precisions.
 
-use crate::Complex;
+use crate::{Complex, bairstow, closed_form, companion, jenkins_traub};
 use parry_continuum::gpu::{Batch, BatchKernel, Gpu, GpuError, Precision, wgsl};
 use parry_continuum::proximity::DeviceFailure;
 use std::time::Duration;
@@ -14,6 +14,7 @@ macro_rules! shaders {
 
 /// A method of this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Finder {
     /// [`ClosedForm`](crate::ClosedForm), up to degree 4.
     ClosedForm,
@@ -35,29 +36,56 @@ impl Finder {
 /// `approximate(monic: ptr<function, Coefficients>, degree: u32)`, and what that finds: `root_count`, `root_re` and
 /// `root_im`. [`VECTORS`](wgsl::VECTORS) belong to it.
 pub fn approximate(finder: Finder, precision: Precision, degree: u16) -> String {
-    // Powers of what is larger may be infinite; and the steps of the iterations that start in single precision.
-    let (largest, steps) = match precision {
-        Precision::F32 => (2.0_f64.powi(126), 2),
-        Precision::F64 => (2.0_f64.powi(1022), 3),
-    };
     let (name, text) = match finder {
         Finder::ClosedForm => ("closed_form", shaders!("closed_form")),
         Finder::Bairstow => ("bairstow", shaders!("division", "direction", "bairstow")),
         Finder::Companion => ("companion", shaders!("companion")),
         Finder::JenkinsTraub => ("jenkins_traub", shaders!("division", "direction", "jenkins_traub")),
     };
+    let constants = constants(precision, degree);
+    let roots = shaders!("roots");
     format!(
-        "const COEFFICIENTS = {}u;
-const LARGEST = real({largest:e});
-const ROOT_STEPS = {steps}u;
-{}{text}
+        "{constants}{roots}{text}
 fn approximate(monic: ptr<function, Coefficients>, degree: u32) {{
     {name}(monic, degree);
 }}
-",
-        u32::from(degree) + 1,
-        shaders!("roots"),
+"
     )
+}
+
+/// What the shaders and their twins both know.
+fn constants(precision: Precision, degree: u16) -> String {
+    // Powers of what is larger may be infinite; and the steps of the iterations that start in single precision.
+    let (largest, root_steps) = match precision {
+        Precision::F32 => (2.0_f64.powi(126), 2),
+        Precision::F64 => (2.0_f64.powi(1022), 3),
+    };
+    let [first_x, first_y] = bairstow::FIRST_DIRECTION;
+    let [turn_cosine, turn_sine] = bairstow::TURN;
+    let whole = [
+        ("COEFFICIENTS", usize::from(degree) + 1),
+        ("ROOT_STEPS", root_steps),
+        ("BAIRSTOW_STEPS", bairstow::STEPS),
+        ("BAIRSTOW_GUESSES", bairstow::GUESSES),
+        ("FACTOR_STEPS", closed_form::FACTOR_STEPS),
+        ("COMPANION_SWEEPS", companion::SWEEPS),
+        ("NO_SHIFT_STEPS", jenkins_traub::NO_SHIFT_STEPS),
+        ("DIRECTIONS", jenkins_traub::DIRECTIONS),
+        ("LINEAR_STEPS", jenkins_traub::LINEAR_STEPS),
+        ("QUADRATIC_STEPS", jenkins_traub::QUADRATIC_STEPS),
+    ];
+    let real = [
+        ("LARGEST", largest),
+        ("DIVISION_ROUNDINGS", bairstow::ROUNDINGS),
+        ("FACTOR_ROUNDINGS", closed_form::FACTOR_ROUNDINGS),
+        ("FIRST_X", first_x),
+        ("FIRST_Y", first_y),
+        ("TURN_COSINE", turn_cosine),
+        ("TURN_SINE", turn_sine),
+    ];
+    let whole = whole.map(|(name, value)| format!("const {name} = {value}u;\n"));
+    let real = real.map(|(name, value)| format!("const {name} = real({value:e});\n"));
+    whole.concat() + &real.concat()
 }
 
 /// The highest degree of which a record's size can be told.
@@ -65,9 +93,9 @@ const MOST: u16 = u16::MAX / 2;
 
 /// The roots of many polynomials at once, a GPU thread each, for coefficients of comparable size.
 ///
-/// The approximations come as they are: unlike on the CPU, nothing is cut into pieces,
-/// tested or polished afterwards. In double precision, where shading languages have no cosine or cube root, the
-/// closed form starts these in single precision and refines them.
+/// The approximations come as they are: unlike on the CPU, nothing is cut into pieces, tested or polished afterwards. In
+/// double precision, where shading languages have no cosine or cube root, the closed form starts these in single
+/// precision and refines them.
 #[derive(Debug)]
 pub struct GpuRoots {
     degree: usize,

@@ -1,8 +1,5 @@
 // Bairstow's method: the twin of bairstow.rs, which has the derivation.
 
-const BAIRSTOW_STEPS = 40u;
-const BAIRSTOW_GUESSES = 40u;
-
 // u and v of a quadratic factor, if one was found.
 struct QuadraticFactor {
     found: bool,
@@ -47,7 +44,7 @@ fn bairstow_refine(p: ptr<function, Coefficients>, degree: u32, start_u: real, s
     var v = start_v;
     for (var step = 0u; step < BAIRSTOW_STEPS; step++) {
         var first = by_quadratic(p, degree, u, v);
-        if (division_is_exact(&first, degree, u, v, real(8.0))) {
+        if (division_is_exact(&first, degree, u, v, DIVISION_ROUNDINGS)) {
             return QuadraticFactor(true, u, v);
         }
         var quotient = first.quotient;

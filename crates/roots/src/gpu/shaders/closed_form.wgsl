@@ -161,8 +161,8 @@ fn factors_lack(f: Factors, a: real, b: real, c: real, d: real) -> Lack {
 fn factors_refined(start: Factors, a: real, b: real, c: real, d: real) -> Factors {
     var best = start;
     var lack = factors_lack(best, a, b, c, d);
-    for (var i = 0u; i < 20u; i++) {
-        if (lack.worst <= real(2.0) * UNIT_ROUNDOFF) {
+    for (var i = 0u; i < FACTOR_STEPS; i++) {
+        if (lack.worst <= FACTOR_ROUNDINGS * UNIT_ROUNDOFF) {
             break;
         }
         let du = best.u1 - best.u0;

@@ -1,7 +1,5 @@
 // The eigenvalues of the companion matrix: the twin of companion.rs, which has the derivation.
 
-const COMPANION_SWEEPS = 80u;
-
 var<private> matrix: array<Coefficients, ROOM>;
 
 fn companion(monic: ptr<function, Coefficients>, degree: u32) {

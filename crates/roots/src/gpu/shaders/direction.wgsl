@@ -1,11 +1,13 @@
-// Where the iterations start: on a circle, at 49 degrees and, after each failure, 94 degrees on.
+// Where the iterations start: on a circle, and after each failure elsewhere on it. The twins are first_direction and
+// turned in bairstow.rs.
 
 fn first_direction() -> vec2<real> {
-    return vec2<real>(real(0.6560590289905073), real(0.754709580222772));
+    return vec2<real>(FIRST_X, FIRST_Y);
 }
 
 fn turned(direction: vec2<real>) -> vec2<real> {
-    let cosine = real(-0.0697564737441253);
-    let sine = real(0.9975640502598242);
-    return vec2<real>(cosine * direction.x - sine * direction.y, sine * direction.x + cosine * direction.y);
+    return vec2<real>(
+        TURN_COSINE * direction.x - TURN_SINE * direction.y,
+        TURN_SINE * direction.x + TURN_COSINE * direction.y,
+    );
 }

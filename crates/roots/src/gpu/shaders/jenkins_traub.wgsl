@@ -1,10 +1,5 @@
 // Jenkins and Traub's algorithm: the twin of jenkins_traub.rs, which has the description.
 
-const NO_SHIFT_STEPS = 5u;
-const DIRECTIONS = 20u;
-const LINEAR_STEPS = 10u;
-const QUADRATIC_STEPS = 20u;
-
 // A factor, z - u or z^2 + u z + v, and what is left without it; degree 0 where there is none.
 struct Factor {
     degree: u32,
@@ -182,7 +177,7 @@ fn linear_stage(p: ptr<function, Coefficients>, n: u32, start: Coefficients, roo
     for (var step = 0u; step < LINEAR_STEPS; step++) {
         let of_p = by_linear(p, n, s);
         var quotient = of_p.quotient;
-        let limit = magnitude(&quotient, n - 1u, abs(s)) * abs(s) * (real(8.0) * UNIT_ROUNDOFF);
+        let limit = magnitude(&quotient, n - 1u, abs(s)) * abs(s) * (DIVISION_ROUNDINGS * UNIT_ROUNDOFF);
         if (is_within(abs(of_p.value), limit)) {
             return Factor(1u, s, real(0.0), quotient);
         }
@@ -216,7 +211,7 @@ fn quadratic_stage(p: ptr<function, Coefficients>, n: u32, start: Coefficients, 
             break;
         }
         var of_p = by_quadratic(p, n, u, v);
-        if (division_is_exact(&of_p, n, u, v, real(8.0))) {
+        if (division_is_exact(&of_p, n, u, v, DIVISION_ROUNDINGS)) {
             return Factor(2u, u, v, of_p.quotient);
         }
         var of_k = by_quadratic(&k, n - 1u, u, v);
