@@ -36,9 +36,9 @@ mod triangle_modified_cylinder;
 mod vec3;
 
 pub(crate) use face::Face;
-#[cfg(feature = "gpu")]
-pub(crate) use frame::Frame;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
+#[cfg(feature = "gpu")]
+pub(crate) use scalar::CBRT_BITS_F32;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 #[doc(hidden)] // for the comparison of instruction sets

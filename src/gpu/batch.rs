@@ -1,128 +1,230 @@
-//! Many small problems at once, a thread each: what the narrow phase's pairs and the root finders share.
+//! Many small problems at once, a thread each.
 
-use super::GpuError;
 use super::clock::{Clock, READINGS};
+use super::failures::Watch;
 use super::opened::Gpu;
-use super::shaders::Kernel;
+use super::record::{Record, record};
+use super::wgsl::Shader;
+use super::{GpuError, Precision};
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 
 /// Threads of a workgroup.
-const THREADS: u64 = 64;
+pub(super) const THREADS: u32 = 64;
+/// Problems of a submission at most.
+const MOST_PROBLEMS: u64 = 1 << 22;
+/// As many submissions have numbers of their own, which single precision holds.
+const SUBMISSIONS: u32 = (1 << f32::MANTISSA_DIGITS) - 1;
 
-/// A kernel that turns records of numbers into records of numbers.
-pub(super) struct Batch {
+record! {
+    /// What kernels/batch.wgsl reads first.
+    Head {
+        problems: u32,
+        submission: u32,
+    }
+}
+
+/// A function in WGSL that answers one problem, for a [`Batch`].
+#[derive(Clone, Copy, Debug)]
+pub struct BatchKernel<'a> {
+    /// For messages.
+    name: &'a str,
+    text: &'a str,
+    problem: u16,
+    answer: u16,
+}
+
+impl<'a> BatchKernel<'a> {
+    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem from
+    /// `problems[problem]` on, so many as `problem` says here (at least 1), and writes those of its answer from
+    /// `answers[answer]` on, so many as `answer` says. All are of the type `real`, which is `f32` or `f64`.
+    pub const fn new(name: &'a str, text: &'a str, problem: u16, answer: u16) -> Self {
+        Self { name, text, problem, answer }
+    }
+
+    /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
+    pub fn shader(&self, precision: Precision) -> Shader {
+        Shader::batch(precision, self.text, self.problem(), self.answer())
+    }
+
+    /// Numbers of a problem.
+    fn problem(&self) -> u32 {
+        u32::from(self.problem).max(1)
+    }
+
+    /// Numbers of an answer, which begins with the number of its submission.
+    fn answer(&self) -> u32 {
+        u32::from(self.answer) + 1
+    }
+}
+
+/// A kernel on a GPU that answers many problems at once, a thread each.
+pub struct Batch {
     gpu: Gpu,
-    layout: BindGroupLayout,
-    kernel: ComputePipeline,
-    /// Numbers of a problem and of an answer.
+    watch: Watch,
+    pub(super) layout: BindGroupLayout,
+    pub(super) kernel: ComputePipeline,
+    /// Numbers of a problem, and of an answer with what comes before it.
     problem: u64,
     answer: u64,
-    buffers: Option<Buffers>,
-    bytes: Vec<u8>,
-    pub device_time: Option<Duration>,
+    submission: u32,
+    room: Option<Room>,
+    device_time: Option<Duration>,
 }
 
 /// Buffers for so many problems.
-struct Buffers {
-    room: u64,
-    problems: Buffer,
-    answers: Buffer,
+struct Room {
+    problems: u64,
+    head: Buffer,
+    problem_buffer: Buffer,
+    answer_buffer: Buffer,
     readback: Buffer,
     clock: Option<Clock>,
     group: BindGroup,
 }
 
-impl Batch {
-    pub(super) fn new(
-        gpu: &Gpu,
-        kernel: Kernel,
-        coefficients: u32,
-        constants: &[(&str, f64)],
-        problem: u64,
-        answer: u64,
-    ) -> Result<Self, GpuError> {
-        let layout = gpu.0.device.layout(&[Some(false), Some(true)]);
-        let kernel = gpu.0.device.compile(kernel, coefficients, &layout, constants)?;
-        let gpu = gpu.clone();
-        Ok(Self { gpu, layout, kernel, problem, answer, buffers: None, bytes: Vec::new(), device_time: None })
+impl std::fmt::Debug for Batch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { gpu, problem, answer, .. } = self;
+        f.debug_struct("Batch")
+            .field("gpu", gpu)
+            .field("problem", problem)
+            .field("answer", &(answer - 1))
+            .finish_non_exhaustive()
     }
+}
 
-    /// Solves as many problems as `numbers` are for; the answers' numbers go to `take`.
+impl Batch {
+    /// Makes ready for a kernel.
     ///
     /// # Errors
-    /// The device has failed.
-    pub(super) fn run(
+    /// The driver does not compile it.
+    pub fn new(gpu: &Gpu, kernel: &BatchKernel) -> Result<Self, GpuError> {
+        let device = &gpu.0.device;
+        let layout = device.layout(&[None, Some(false), Some(true)]);
+        Ok(Self {
+            watch: device.failures.watch(),
+            kernel: device.compile(kernel.name, &kernel.shader(device.precision), &layout, &[])?,
+            layout,
+            problem: kernel.problem().into(),
+            answer: kernel.answer().into(),
+            submission: 0,
+            room: None,
+            device_time: None,
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Answers as many problems as `numbers` make, in their order; `take` gets the numbers of each answer.
+    ///
+    /// # Errors
+    /// The GPU has failed. Answers that `take` has got by then are right.
+    pub fn run(
         &mut self,
-        numbers: impl Iterator<Item = Real>,
-        take: &mut dyn FnMut(&mut dyn Iterator<Item = Real>),
+        numbers: impl IntoIterator<Item = Real>,
+        mut take: impl FnMut(&[Real]),
     ) -> Result<(), DeviceFailure> {
-        let gpu = self.gpu.0.clone();
-        let (device, size) = (&gpu.device, gpu.device.precision.size());
+        let gpu = self.gpu.clone();
+        let device = &gpu.0.device;
         self.device_time = device.tick.map(|_| Duration::ZERO);
-        let mut bytes = std::mem::take(&mut self.bytes);
-        bytes.clear();
-        numbers.for_each(|number| device.precision.write(number, &mut bytes));
-        let record = (self.problem * size) as usize;
-        let largest = device.largest_binding() / (self.problem.max(self.answer) * size);
-        let most = largest.min(1 << 22) as usize * record;
-        for bytes in bytes.chunks(most.max(record)) {
-            self.submit(bytes, (bytes.len() / record) as u64, take)?;
+        let mut bytes = Vec::new();
+        numbers.into_iter().for_each(|number| device.precision.write(number, &mut bytes));
+        let record = self.problem * device.precision.size();
+        bytes.truncate(bytes.len() - bytes.len() % record as usize);
+        let largest = device.largest_binding() / (self.problem.max(self.answer) * device.precision.size());
+        let most = largest.clamp(1, MOST_PROBLEMS) * record;
+        for bytes in bytes.chunks(most as usize) {
+            self.submit(bytes, bytes.len() as u64 / record, &mut take)?;
         }
-        self.bytes = bytes;
         Ok(())
+    }
+
+    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
+    pub fn device_time(&self) -> Option<Duration> {
+        self.device_time
     }
 
     fn submit(
         &mut self,
         bytes: &[u8],
-        count: u64,
-        take: &mut dyn FnMut(&mut dyn Iterator<Item = Real>),
+        problems: u64,
+        take: &mut impl FnMut(&[Real]),
     ) -> Result<(), DeviceFailure> {
-        let gpu = self.gpu.0.clone();
-        let device = &gpu.device;
-        // The kernel takes the number of problems from the buffer's size.
-        let buffers = match self.buffers.take() {
-            Some(buffers) if buffers.room == count => buffers,
-            _ => self.make_buffers(count),
+        let gpu = self.gpu.clone();
+        let device = &gpu.0.device;
+        // On failure the buffers are gone, and made anew for the next problems.
+        let room = match self.room.take() {
+            Some(room) if room.problems == problems => room,
+            _ => self.make_room(problems),
         };
-        device.queue.write_buffer(&buffers.problems, 0, bytes);
+        self.submission = self.submission % SUBMISSIONS + 1;
+        let submission = self.submission;
+        let mut head = Vec::new();
+        Head { problems: problems as u32, submission }.write(device.precision, &mut head);
+        device.queue.write_buffer(&room.head, 0, &head);
+        device.queue.write_buffer(&room.problem_buffer, 0, bytes);
         let mut encoder = device.device.create_command_encoder(&Default::default());
-        let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
+        let timestamp_writes = room.clock.as_ref().map(Clock::writes);
         let mut pass =
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_pipeline(&self.kernel);
-        pass.set_bind_group(0, &buffers.group, &[]);
-        let workgroups = count.div_ceil(THREADS) as u32;
+        pass.set_bind_group(0, &room.group, &[0]);
+        let workgroups = problems.div_ceil(THREADS.into()) as u32;
         let wide = workgroups.min(device.limits.max_compute_workgroups_per_dimension);
         pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
         drop(pass);
-        let answers = count * self.answer * device.precision.size();
-        encoder.copy_buffer_to_buffer(&buffers.answers, 0, &buffers.readback, READINGS, Some(answers));
-        if let Some(clock) = &buffers.clock {
-            clock.copy(&mut encoder, &buffers.readback);
+        let size = problems * self.answer * device.precision.size();
+        encoder.copy_buffer_to_buffer(&room.answer_buffer, 0, &room.readback, READINGS, Some(size));
+        if let Some(clock) = &room.clock {
+            clock.copy(&mut encoder, &room.readback);
         }
-        let time = &mut self.device_time;
-        device.run_and_read(encoder.finish(), &buffers.readback, READINGS + answers, |bytes| {
+        let (time, answer) = (&mut self.device_time, self.answer as usize);
+        device.run_and_read(&mut self.watch, encoder.finish(), &room.readback, READINGS + size, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
             *time = time.zip(device.time_between(readings)).map(|(sum, more)| sum + more);
-            take(&mut device.precision.read(bytes));
+            read(device.precision, bytes, answer, submission, take)
         })?;
-        self.buffers = Some(buffers);
+        self.room = Some(room);
         Ok(())
     }
 
-    fn make_buffers(&self, count: u64) -> Buffers {
+    fn make_room(&self, problems: u64) -> Room {
         let device = &self.gpu.0.device;
-        let (problem, answer) =
-            (self.problem * device.precision.size(), self.answer * device.precision.size());
-        let problems = device.buffer(count * problem, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        let answers = device.buffer(count * answer, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let readback =
-            device.buffer(READINGS + count * answer, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        let group = device.group(&self.layout, &[problems.as_entire_binding(), answers.as_entire_binding()]);
-        Buffers { room: count, problems, answers, readback, clock: Clock::new(device), group }
+        let size = device.precision.size();
+        let head =
+            device.buffer(Head::size(device.precision), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let problem_buffer =
+            device.buffer(problems * self.problem * size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let answers = problems * self.answer * size;
+        let answer_buffer = device.buffer(answers, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let readback = device.buffer(READINGS + answers, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let group = device
+            .group(&self.layout, &[&head, &problem_buffer, &answer_buffer].map(Buffer::as_entire_binding));
+        Room { problems, head, problem_buffer, answer_buffer, readback, clock: Clock::new(device), group }
     }
+}
+
+/// Takes the answers, each of which begins with the submission's number if it was written for that.
+///
+/// # Errors
+/// One was not.
+fn read(
+    precision: Precision,
+    bytes: &[u8],
+    answer: usize,
+    submission: u32,
+    take: &mut impl FnMut(&[Real]),
+) -> Result<(), DeviceFailure> {
+    let mut numbers = Vec::with_capacity(answer);
+    for answer in bytes.chunks_exact(answer * precision.size() as usize) {
+        numbers.clear();
+        numbers.extend(precision.read(answer));
+        match numbers.split_first() {
+            Some((&written_for, numbers)) if written_for == Real::from(submission) => take(numbers),
+            _ => return Err(DeviceFailure::Unanswered),
+        }
+    }
+    Ok(())
 }

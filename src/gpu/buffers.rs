@@ -1,9 +1,12 @@
 //! The buffers of a query, which serve every query of the same shape.
 
+use super::Precision;
 use super::clock::{Clock, READINGS};
+use super::link::LinkRecord;
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
-use super::plan::{BLOCK_BOUNDS, CAPACITY, Plan};
+use super::plan::{BLOCK_BOUNDS, CAPACITY, Plan, Round, SLOT};
+use super::record::Record;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Buffers that serve any query with this plan, of at most these sizes.
@@ -20,26 +23,32 @@ pub(super) struct Buffers {
     pub groups: Vec<BindGroup>,
 }
 
-/// Numbers of a link.
-const LINK: u64 = 16;
-/// Bytes of a round's description.
-const ROUND: u64 = 32;
-
 impl Buffers {
+    /// Bytes of what is found for so many links, but for the distances.
+    pub(super) fn found_size(links: usize, mesh: &DeviceMesh) -> u64 {
+        (links * mesh.parts.len()) as u64 * u64::from(SLOT) * 4
+    }
+
+    /// Bytes of the distances.
+    pub(super) fn distances_size(links: usize, mesh: &DeviceMesh, precision: Precision) -> u64 {
+        (links * mesh.parts.len()) as u64 * u64::from(CAPACITY) * precision.size()
+    }
+
     pub(super) fn new(gpu: &Opened, mesh: &DeviceMesh, plan: Plan) -> Self {
         let device = &gpu.device;
         let (links, parts) = (plan.links_per_submission as u64, mesh.parts.len() as u64);
-        let (size, slots) = (device.precision.size(), links * parts);
         let rounds = links.div_ceil(u64::from(plan.links_per_round));
-        let alignment = u64::from(device.limits.min_uniform_buffer_offset_alignment);
         let blocks: u64 = mesh.parts.iter().map(|part| u64::from(plan.blocks(part.triangles))).sum();
-        let (found, distances) = (slots * (CAPACITY as u64 + 1) * 4, slots * CAPACITY as u64 * size);
+        let found = Self::found_size(plan.links_per_submission, mesh);
+        let distances = Self::distances_size(plan.links_per_submission, mesh, device.precision);
 
         let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let rounds = device
-            .buffer(rounds * parts * alignment.max(ROUND), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let link_buffer = device.buffer(links * LINK * size, up);
+        let rounds = device.buffer(
+            rounds * parts * device.uniform_stride::<Round>(),
+            BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        );
+        let link_buffer = device.buffer(links * LinkRecord::size(device.precision), up);
         let limits = device.buffer(links * 4, up);
         let block_bounds =
             device.buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
@@ -54,7 +63,7 @@ impl Buffers {
                 let round = wgpu::BufferBinding {
                     buffer: &rounds,
                     offset: 0,
-                    size: std::num::NonZeroU64::new(ROUND),
+                    size: std::num::NonZeroU64::new(Round::size(device.precision)),
                 };
                 device.group(
                     &gpu.query_layout,

@@ -1,7 +1,8 @@
 //! An opened GPU.
 
-use super::failures::Failures;
-use super::shaders::{self, Kernel};
+use super::failures::{Failures, Watch};
+use super::record::Record;
+use super::wgsl::Shader;
 use super::{GpuError, Precision};
 use crate::proximity::DeviceFailure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,6 +27,7 @@ impl std::fmt::Display for Adapter {
 }
 
 /// A device, its queue, and what one has to know of it.
+#[derive(Debug)]
 pub(super) struct Device {
     pub adapter: Adapter,
     pub precision: Precision,
@@ -87,34 +89,30 @@ impl Device {
         Ok(Self { adapter: named, precision, limits: device.limits(), device, queue, tick, failures })
     }
 
-    /// Compiles a kernel in this device's precision, for polynomials of so many coefficients if it is about any.
+    /// Compiles a kernel; `name` is for messages.
     pub(super) fn compile(
         &self,
-        kernel: Kernel,
-        coefficients: u32,
+        name: &str,
+        kernel: &Shader,
         layout: &wgpu::BindGroupLayout,
         constants: &[(&str, f64)],
     ) -> Result<wgpu::ComputePipeline, GpuError> {
-        let real = match self.precision {
-            Precision::F32 => shaders::REAL_F32,
-            Precision::F64 => shaders::REAL_F64,
-        };
         let scopes = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
             .map(|filter| self.device.push_error_scope(filter));
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(kernel.name),
-            source: wgpu::ShaderSource::Wgsl(kernel.source(real, coefficients).into()),
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(kernel.text.as_str().into()),
         });
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(kernel.name),
+            label: Some(name),
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(kernel.name),
+            label: Some(name),
             layout: Some(&layout),
             module: &module,
-            entry_point: Some(kernel.name),
+            entry_point: Some(kernel.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants,
                 zero_initialize_workgroup_memory: false,
@@ -128,7 +126,7 @@ impl Device {
             None => Ok(pipeline),
             Some(error) => Err(GpuError::Shader {
                 adapter: self.adapter.to_string(),
-                kernel: kernel.name,
+                kernel: name.into(),
                 message: error.to_string(),
             }),
         }
@@ -186,18 +184,25 @@ impl Device {
         self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
     }
 
-    /// Submits commands and reads `size` bytes of `from`, a buffer for reading, once they are done.
+    /// Bytes from one uniform of a kind to the next in a buffer.
+    pub(super) fn uniform_stride<R: Record>(&self) -> u64 {
+        R::size(self.precision).next_multiple_of(self.limits.min_uniform_buffer_offset_alignment.into())
+    }
+
+    /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they are done.
     ///
     /// # Errors
-    /// The device has failed.
+    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says that there is nothing
+    /// to read.
     pub(super) fn run_and_read(
         &self,
+        watch: &mut Watch,
         commands: wgpu::CommandBuffer,
         from: &wgpu::Buffer,
         size: u64,
-        read: impl FnOnce(&[u8]),
+        read: impl FnOnce(&[u8]) -> Result<(), DeviceFailure>,
     ) -> Result<(), DeviceFailure> {
-        self.failures.check()?;
+        watch.check()?;
         let submission = self.queue.submit([commands]);
         let failures = self.failures.clone();
         from.map_async(wgpu::MapMode::Read, 0..size, move |mapped| {
@@ -205,21 +210,21 @@ impl Device {
                 failures.report(DeviceFailure::Refused);
             }
         });
-        self.wait(submission)?;
-        match from.get_mapped_range(0..size) {
+        self.wait(submission);
+        watch.check()?;
+        let answer = match from.get_mapped_range(0..size) {
             Ok(bytes) => read(&bytes),
-            Err(_) => self.failures.report(DeviceFailure::Refused),
-        }
+            Err(_) => Err(DeviceFailure::Unanswered),
+        };
         from.unmap();
-        self.failures.check()
+        answer
     }
 
-    fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), DeviceFailure> {
+    fn wait(&self, submission: wgpu::SubmissionIndex) {
         // `wgpu` panics when it finds a device lost while it waits; here that is an error like any other.
         let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
         if !matches!(catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))), Ok(Ok(_))) {
             self.failures.report(DeviceFailure::Lost);
         }
-        self.failures.check()
     }
 }

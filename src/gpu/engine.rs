@@ -1,20 +1,25 @@
 //! Exhaustive proximity on the GPU.
 
+use super::candidates::Candidate;
 use super::device::Adapter;
-use super::link::PlacedLink;
+use super::link::DeviceLink;
 use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
-use super::opened::{Discs, Gpu};
-use super::query::{Candidate, Query};
+use super::opened::Gpu;
+use super::plan::Tuning;
+use super::query::Query;
+use super::wgsl::CONVEX;
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, Found, LinkProximity, MeshError, Probe, Proximity, ProximityError, check_margin,
-    check_moved, check_vertices, place,
+    DeviceFailure, LinkProximity, Mesh, MeshError, Nearest, PlacedLink, PlacedRobot, Proximity,
+    ProximityError, SearchFrame, check_margin,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::ops::Range;
 use std::time::Duration;
+use wgpu::ComputePipeline;
 
 /// Proximity queries that visit every triangle, on the GPU.
 ///
@@ -38,20 +43,20 @@ use std::time::Duration;
 /// ```
 pub struct GpuExhaustive {
     gpu: Gpu,
-    mesh: DeviceMesh,
-    vertices: Vec<Vector>,
-    indices: Vec<[u32; 3]>,
-    /// The largest coordinate of the mesh.
-    reach: Real,
-    /// What every pair costs; None with culling.
-    every_pair: Option<Discs>,
+    mesh: Mesh,
+    frame: SearchFrame,
+    tuning: Tuning,
+    /// None after a failure: what is left on the device then is not known, so that it is made anew.
+    on_device: Option<DeviceMesh>,
+    /// The kernel without culling, where that is wanted.
+    every_pair: Option<ComputePipeline>,
     answered_on_cpu: u64,
     query: Query,
-    /// The robot that is being placed.
-    probes: Vec<Probe>,
-    /// Every link of the query, and its place among `placed` unless it is too far out for the device.
-    links: Vec<(Probe, Option<usize>)>,
-    placed: Vec<PlacedLink>,
+    /// Every link of the query, and its place among `device_links` unless it is too far out for the device.
+    links: Vec<(PlacedLink, Option<usize>)>,
+    device_links: Vec<DeviceLink>,
+    /// The links of each robot.
+    robots: Vec<Range<usize>>,
 }
 
 // A planner may own an engine on a thread of its own.
@@ -59,6 +64,16 @@ const _: () = {
     const fn is_send<T: Send>() {}
     is_send::<GpuExhaustive>();
 };
+
+impl std::fmt::Debug for GpuExhaustive {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GpuExhaustive")
+            .field("gpu", &self.gpu)
+            .field("triangles", &self.mesh.len())
+            .field("answered_on_cpu", &self.answered_on_cpu)
+            .finish_non_exhaustive()
+    }
+}
 
 impl GpuExhaustive {
     /// An engine for `mesh` on the fastest GPU of this machine, searching in this precision.
@@ -75,35 +90,33 @@ impl GpuExhaustive {
     /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit into the GPU's
     /// memory; or the GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
-        Self::in_parts(gpu, mesh, usize::MAX)
+        Self::tuned(gpu, mesh, Tuning::default())
     }
 
-    /// As [`GpuExhaustive::on`], with at most `most` triangles in a buffer.
-    pub(super) fn in_parts(gpu: &Gpu, mesh: &TriMesh, most: usize) -> Result<Self, GpuError> {
-        if mesh.indices().is_empty() {
-            return Err(MeshError::Empty.into());
-        }
-        let reach = check_vertices(mesh.vertices())?;
-        let device_mesh = match DeviceMesh::new(&gpu.0, mesh.vertices(), mesh.indices(), most) {
-            Ok(mesh) => mesh,
+    pub(super) fn tuned(gpu: &Gpu, mesh: &TriMesh, tuning: Tuning) -> Result<Self, GpuError> {
+        let mesh = Mesh::new(mesh)?;
+        let mut watch = gpu.0.device.failures.watch();
+        let on_device = DeviceMesh::new(&gpu.0, &mesh, tuning.part);
+        match watch.check() {
+            Ok(()) => {}
             Err(DeviceFailure::OutOfMemory) => {
                 let adapter = gpu.adapter().to_string();
-                return Err(GpuError::MeshTooLarge { adapter, triangles: mesh.indices().len() });
+                return Err(GpuError::MeshTooLarge { adapter, triangles: mesh.len() });
             }
             Err(failure) => return Err(failure.into()),
-        };
+        }
         Ok(Self {
             gpu: gpu.clone(),
-            mesh: device_mesh,
-            vertices: mesh.vertices().to_vec(),
-            indices: mesh.indices().to_vec(),
-            reach,
+            frame: SearchFrame::new(&mesh),
+            mesh,
+            tuning,
+            on_device: Some(on_device),
             every_pair: None,
             answered_on_cpu: 0,
-            query: Query::default(),
-            probes: Vec::new(),
+            query: Query::new(tuning, watch),
             links: Vec::new(),
-            placed: Vec::new(),
+            device_links: Vec::new(),
+            robots: Vec::new(),
         })
     }
 
@@ -124,16 +137,17 @@ impl GpuExhaustive {
             self.every_pair = None;
             return Ok(());
         }
-        self.compute_every_pair(Discs::Convex)
+        self.compute_every_pair(CONVEX)
     }
 
-    /// As `set_culling(false)`, with the discs by the paper's routes or by ours. The answers are the same.
+    /// As `set_culling(false)`, by another route from a segment to a disc: WGSL with the function
+    /// `segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius: real) -> Closest` for a
+    /// disc around the origin with a unit normal. The answers are the same if what it finds is never too near.
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
-    pub fn compute_every_pair(&mut self, discs: Discs) -> Result<(), GpuError> {
-        self.gpu.0.every_pair(discs)?;
-        self.every_pair = Some(discs);
+    pub fn compute_every_pair(&mut self, route: &str) -> Result<(), GpuError> {
+        self.every_pair = Some(self.gpu.0.every_pair(route)?);
         Ok(())
     }
 
@@ -150,77 +164,115 @@ impl GpuExhaustive {
     }
 
     #[cfg(test)]
-    pub(super) fn mesh(&self) -> &DeviceMesh {
-        &self.mesh
+    pub(super) fn on_device(&self) -> Option<&DeviceMesh> {
+        self.on_device.as_ref()
     }
 
-    /// Makes ready for the links of new robots.
-    fn clear(&mut self) {
-        self.links.clear();
-        self.placed.clear();
-    }
-
-    /// Adds a robot's links; only triangles within `margin` are of interest if there is one.
-    fn place(&mut self, robot: &Chain, pose: &Pose, margin: Option<Real>) -> Result<(), ProximityError> {
-        place(robot.links(), pose, self.reach, &mut self.probes)?;
-        for probe in &self.probes {
-            let bound = margin.map(|margin| probe.beyond(margin));
-            let placed = PlacedLink::new(probe, &self.mesh.frame, bound, self.gpu.precision());
-            self.links.push((*probe, placed.is_some().then_some(self.placed.len())));
-            self.placed.extend(placed);
+    /// Places the robots' links and has the device find their candidates. Only triangles within `margin` are of interest
+    /// if there is one.
+    fn search<'a>(
+        &mut self,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        margin: Option<Real>,
+    ) -> Result<(), ProximityError> {
+        let Self { links, device_links, robots: ranges, .. } = self;
+        links.clear();
+        device_links.clear();
+        ranges.clear();
+        for (robot, pose) in robots {
+            let first = links.len();
+            for link in PlacedRobot::new(robot, pose)?.placed_links() {
+                let on_device = DeviceLink::new(&link, &self.frame, margin, self.gpu.precision());
+                links.push((link, on_device.is_some().then_some(device_links.len())));
+                device_links.extend(on_device);
+            }
+            ranges.push(first..links.len());
         }
+        if device_links.is_empty() {
+            return Ok(());
+        }
+        let gpu = &*self.gpu.0;
+        let mut mesh =
+            self.on_device.take().unwrap_or_else(|| DeviceMesh::new(gpu, &self.mesh, self.tuning.part));
+        mesh.update(gpu, &self.frame, &self.mesh);
+        let nearest = self.every_pair.as_ref().unwrap_or(&gpu.nearest);
+        self.query.run(gpu, &mesh, device_links, nearest)?;
+        self.on_device = Some(mesh);
         Ok(())
     }
 
-    /// Has the device find the candidates of all links.
-    fn search(&mut self) -> Result<(), DeviceFailure> {
-        let gpu = &*self.gpu.0;
-        // Compiled when culling was switched off.
-        let every_pair = self.every_pair.and_then(|discs| gpu.every_pair(discs).ok());
-        let nearest = every_pair.unwrap_or(&gpu.nearest);
-        self.query.run(gpu, &self.mesh, &self.placed, nearest)
-    }
-
     /// What the device knows of a link: its candidates, if it could tell all that matter.
-    fn candidates(&self, link: usize) -> Option<(&PlacedLink, &[Candidate])> {
-        let place = self.links[link].1?;
-        let placed = &self.placed[place];
-        let (candidates, too_many) = self.query.candidates(place);
+    fn candidates(&self, place: usize) -> Option<(&DeviceLink, &[Candidate])> {
+        let number = self.links[place].1?;
+        let link = &self.device_links[number];
+        let (candidates, too_many) = self.query.candidates(number);
         // Without a margin there is always one.
-        let complete = !too_many && (placed.has_margin() || !candidates.is_empty());
-        complete.then_some((placed, candidates))
+        let complete = !too_many && (link.has_margin() || !candidates.is_empty());
+        complete.then_some((link, candidates))
     }
 
-    /// The nearest triangle of a link among those strictly nearer than `bound`, which is in the probe's units.
-    fn nearest(&mut self, link: usize, bound: Real) -> Option<Found> {
-        let probe = &self.links[link].0;
-        let Some((placed, candidates)) = self.candidates(link) else {
-            let found = nearest_of_all(probe, bound, &self.vertices, &self.indices);
+    /// The nearest triangle of a link among those at most `bound` away.
+    fn nearest(&mut self, place: usize, bound: Real) -> Option<Nearest> {
+        let link = &self.links[place].0;
+        let Some((device_link, candidates)) = self.candidates(place) else {
+            let nearest = nearest_of_all(link, bound, &self.mesh);
             self.answered_on_cpu += 1;
-            return found;
+            return nearest;
         };
         // What the device computed errs, for the least of them and for any other.
-        let limit = least_distance(candidates) + 2.0 * placed.error();
+        let limit = least_distance(candidates) + 2.0 * device_link.error();
         let near = candidates.iter().filter(|candidate| candidate.distance <= limit);
-        nearest_of(probe, near.map(|candidate| candidate.triangle), bound, &self.vertices, &self.indices)
+        nearest_of(link, near.map(|candidate| candidate.triangle), bound, &self.mesh)
     }
 
-    /// The nearest triangle of a link. Some triangle is always the nearest.
-    fn answer(&mut self, number: usize, link: usize) -> LinkProximity {
-        let found = self.nearest(link, Real::INFINITY);
-        let (probe, _) = &self.links[link];
-        let found = found.unwrap_or_else(|| self.first_triangle(probe));
-        probe.report(number, &found)
+    /// A lower bound on a link's distance by what the device computed.
+    fn at_least(&self, place: usize) -> Real {
+        self.candidates(place).map_or(0.0, |(link, candidates)| link.at_least(least_distance(candidates)))
     }
 
-    fn first_triangle(&self, probe: &Probe) -> Found {
-        let corners = self.indices[0].map(|index| self.vertices[index as usize]);
-        Found { triangle: 0, closest: probe.closest(corners) }
+    /// The nearest triangle of each link of a robot.
+    fn answers(&mut self, robot: usize, out: &mut Vec<LinkProximity>) {
+        for (link, place) in self.robots[robot].clone().enumerate() {
+            // Some triangle is always the nearest; this is any other.
+            let nearest = self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
+            out.push(nearest.report(link));
+        }
     }
 
-    /// A lower bound on a link's distance, in the probe's units, by what the device computed.
-    fn at_least(&self, link: usize) -> Real {
-        self.candidates(link).map_or(0.0, |(placed, candidates)| placed.at_least(least_distance(candidates)))
+    fn first_triangle(&self, place: usize) -> Nearest {
+        self.links[place].0.measure(0, self.mesh.corners(0))
+    }
+
+    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
+    fn least(&mut self, robot: usize) -> LinkProximity {
+        let places = self.robots[robot].clone();
+        let first = places.start;
+        let mut best: Option<LinkProximity> = None;
+        // The likeliest link first: its distance rules out most others.
+        let likeliest =
+            places.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(first);
+        for place in std::iter::once(likeliest).chain(places.filter(|&place| place != likeliest)) {
+            let bound = best.map_or(Real::INFINITY, |best| best.distance);
+            if self.at_least(place) <= bound
+                && let Some(nearest) = self.nearest(place, bound)
+            {
+                let other = nearest.report(place - first);
+                let key = |answer: &LinkProximity| (answer.triangle, answer.link);
+                let is_nearer = |best: LinkProximity| {
+                    other.distance < best.distance
+                        || (other.distance <= best.distance && key(&other) < key(&best))
+                };
+                if best.is_none_or(is_nearer) {
+                    best = Some(other);
+                }
+            }
+        }
+        best.unwrap_or_else(|| self.first_triangle(first).report(0))
+    }
+
+    /// Whether a robot keeps its distance.
+    fn is_clear(&mut self, robot: usize, margin: Real) -> bool {
+        self.robots[robot].clone().all(|place| self.nearest(place, margin).is_none())
     }
 }
 
@@ -232,70 +284,72 @@ impl Proximity for GpuExhaustive {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        self.clear();
-        self.place(robot, pose, None)?;
-        self.search()?;
-        for link in 0..self.links.len() {
-            let answer = self.answer(link, link);
-            out.push(answer);
-        }
+        self.search(std::iter::once((robot, pose)), None)?;
+        self.answers(0, out);
         Ok(())
     }
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        self.clear();
-        self.place(robot, pose, None)?;
-        self.search()?;
-        // The likeliest link first: its distance rules out most others.
-        let links = 0..self.links.len();
-        let likeliest =
-            links.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(0);
-        let mut best = (0, self.first_triangle(&self.links[0].0));
-        for link in std::iter::once(likeliest).chain(links.filter(|&link| link != likeliest)) {
-            let bound = best.1.closest.distance;
-            if self.at_least(link) < bound
-                && let Some(found) = self.nearest(link, bound)
-            {
-                best = (link, found);
-            }
-        }
-        Ok(self.links[best.0].0.report(best.0, &best.1))
+        self.search(std::iter::once((robot, pose)), None)?;
+        Ok(self.least(0))
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
         check_margin(margin)?;
-        self.clear();
-        self.place(robot, pose, Some(margin))?;
-        self.search()?;
-        let bound = self.links[0].0.beyond(margin);
-        Ok((0..self.links.len()).all(|link| self.nearest(link, bound).is_none()))
+        self.search(std::iter::once((robot, pose)), Some(margin))?;
+        Ok(self.is_clear(0, margin))
     }
 
     fn per_link_batch(
         &mut self,
-        robots: &[(Chain, Pose)],
+        robots: &[(&Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
     ) -> Result<(), ProximityError> {
-        self.clear();
-        for (robot, pose) in robots {
-            self.place(robot, pose, None)?;
-        }
-        self.search()?;
+        self.search(pairs(robots), None).inspect_err(|_| out.clear())?;
         out.resize_with(robots.len(), Vec::new);
-        let mut first = 0;
-        for ((robot, _), answers) in robots.iter().zip(out) {
+        for (robot, answers) in out.iter_mut().enumerate() {
             answers.clear();
-            for link in 0..robot.links().len() {
-                answers.push(self.answer(link, first + link));
-            }
-            first += robot.links().len();
+            self.answers(robot, answers);
         }
         Ok(())
     }
 
-    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.reach = check_moved(vertices, self.vertices.len())?;
-        self.vertices.copy_from_slice(vertices);
-        Ok(self.mesh.update(&self.gpu.0, vertices)?)
+    fn minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        self.search(pairs(robots), None)?;
+        out.extend((0..robots.len()).map(|robot| self.least(robot)));
+        Ok(())
     }
+
+    fn clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<bool>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.search(pairs(robots), Some(margin))?;
+        out.extend((0..robots.len()).map(|robot| self.is_clear(robot, margin)));
+        Ok(())
+    }
+
+    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.mesh.check_moved(vertices)?;
+        self.mesh.set_vertices(vertices);
+        self.frame = SearchFrame::new(&self.mesh);
+        if let Some(mesh) = &mut self.on_device {
+            mesh.outdate();
+        }
+        Ok(())
+    }
+}
+
+/// The robots of a batch, one by one.
+fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
+    robots.iter().map(|(robot, pose)| (*robot, pose))
 }

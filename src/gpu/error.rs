@@ -50,7 +50,7 @@ pub enum GpuError {
         /// The GPU.
         adapter: String,
         /// The kernel's name.
-        kernel: &'static str,
+        kernel: String,
         /// What the compiler says.
         message: String,
     },

@@ -1,62 +1,84 @@
 use super::Precision;
+use super::record::record;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::proximity::{CoarseFrame, CoarseLink, Probe};
+use crate::proximity::{PlacedLink, SearchFrame, SearchLink};
 use parry3d_f64::math::Real;
 
-/// More than any distance near one; `FAR` in query.wgsl.
-const FAR: f32 = f32::from_bits((127 + 100) << 23);
+/// Shaders pass bounds on in single precision, so that links farther out are none for double precision either.
+const FARTHEST: Real = <f32 as Lane>::FARTHEST;
 
-/// A link as the GPU sees it, and the way from what the GPU finds to the probe's units.
-pub(super) struct PlacedLink {
-    /// What query.wgsl's `load_link` reads.
-    pub record: [Real; 16],
+/// More than any distance near one.
+pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
+
+record! {
+    /// What shaders/shared/query.wgsl reads of a link.
+    LinkRecord {
+        start: [Real; 3],
+        length: Real,
+        /// From the start, as the axis.
+        end: [Real; 3],
+        radius: Real,
+        axis: [Real; 3],
+        error: Real,
+        flat_start: Real,
+        flat_end: Real,
+    }
+}
+
+/// A link as the GPU sees it, and the way from what the GPU finds to the mesh's unit.
+#[derive(Debug)]
+pub(super) struct DeviceLink {
+    pub record: LinkRecord,
     /// What a triangle's distance from the axis must not exceed to be of interest.
     pub limit: f32,
-    coarse: Coarse,
+    searched: Searched,
 }
 
 /// A link in the precision of the search.
-enum Coarse {
-    Single(CoarseLink<f32>),
-    Double(CoarseLink<f64>),
+#[derive(Debug)]
+enum Searched {
+    Single(SearchLink<f32>),
+    Double(SearchLink<f64>),
 }
 
-impl PlacedLink {
-    /// The link of a probe; only triangles nearer than `bound`, in the probe's units, are of interest. None where it
-    /// lies too far out for the search.
+impl DeviceLink {
+    /// A link of which only triangles at most `bound` away are of interest, if there is a bound. None where it lies too
+    /// far out for the search.
     pub(super) fn new(
-        probe: &Probe,
-        frame: &CoarseFrame,
+        link: &PlacedLink,
+        frame: &SearchFrame,
         bound: Option<Real>,
         precision: Precision,
     ) -> Option<Self> {
         Some(match precision {
-            Precision::F32 => Self::of(CoarseLink::new(probe, frame)?, bound, Coarse::Single),
-            Precision::F64 => Self::of(CoarseLink::new(probe, frame)?, bound, Coarse::Double),
+            Precision::F32 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Single)?,
+            Precision::F64 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Double)?,
         })
     }
 
     fn of<E: Lane>(
-        link: CoarseLink<E>,
+        link: SearchLink<E>,
         bound: Option<Real>,
-        coarse: impl FnOnce(CoarseLink<E>) -> Coarse,
-    ) -> Self {
+        searched: impl FnOnce(SearchLink<E>) -> Searched,
+    ) -> Option<Self> {
         let number = |value: E| -> Real { value.into() };
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
-        let ([sx, sy, sz], [ex, ey, ez], [ax, ay, az]) =
-            (point(link.start), point(link.along), point(link.axis));
         let [flat_start, flat_end] = link.flat.map(|flat| if flat { 1.0 } else { 0.0 });
-        let (length, radius, error) = (number(link.length), number(link.radius), number(link.error));
         // A bound is rounded up; beyond FAR it bounds nothing.
         let limit = bound.map_or(FAR, |bound| (number(link.axis_limit(bound)) as f32).next_up().min(FAR));
-        Self {
-            record: [
-                sx, sy, sz, 0.0, ex, ey, ez, length, ax, ay, az, 0.0, radius, error, flat_start, flat_end,
-            ],
-            limit,
-            coarse: coarse(link),
-        }
+        let record = LinkRecord {
+            start: point(link.start),
+            length: number(link.length),
+            end: point(link.along),
+            radius: number(link.radius),
+            axis: point(link.axis),
+            error: number(link.error),
+            flat_start,
+            flat_end,
+        };
+        let reach = record.start.iter().chain(&record.end).fold(record.radius, |reach, x| reach.max(x.abs()));
+        (reach <= FARTHEST).then(|| Self { record, limit, searched: searched(link) })
     }
 
     /// Whether only triangles within a margin are of interest.
@@ -64,19 +86,16 @@ impl PlacedLink {
         self.limit < FAR
     }
 
-    /// What a triangle is at least from the link, in the probe's units, by the distance that the GPU computed.
+    /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU computed.
     pub(super) fn at_least(&self, distance: Real) -> Real {
-        match &self.coarse {
-            Coarse::Single(link) => link.at_least(distance),
-            Coarse::Double(link) => link.at_least(distance),
+        match &self.searched {
+            Searched::Single(link) => link.at_least(distance),
+            Searched::Double(link) => link.at_least(distance),
         }
     }
 
     /// What rounding can do to a distance that the GPU computed, in its units.
     pub(super) fn error(&self) -> Real {
-        match &self.coarse {
-            Coarse::Single(link) => link.error.into(),
-            Coarse::Double(link) => link.error,
-        }
+        self.record.error
     }
 }

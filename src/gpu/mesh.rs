@@ -1,24 +1,26 @@
 //! A mesh in a device's memory, in as many parts as its largest buffer calls for.
 
 use super::opened::Opened;
+use super::plan::THREADS;
+use super::wgsl::FACE_VECTORS;
 use crate::distance::Vec3;
-use crate::proximity::{CoarseFrame, DeviceFailure};
-use parry3d_f64::math::{Real, Vector};
+use crate::proximity::{Mesh, SearchFrame};
+use parry3d_f64::math::Real;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
-/// Threads of a workgroup.
-const THREADS: u32 = 256;
-/// Numbers of a sphere, and of a triangle with its dual basis and one to spare.
+/// Numbers of a triangle's sphere, and of its face.
 const SPHERE: u64 = 4;
-const FACE: u64 = 16;
+const FACE: u64 = 4 * FACE_VECTORS as u64;
 
 /// The mesh, moved to its centre and near one.
+#[derive(Debug)]
 pub(super) struct DeviceMesh {
-    pub frame: CoarseFrame,
     pub parts: Vec<Part>,
+    is_current: bool,
 }
 
 /// Consecutive triangles.
+#[derive(Debug)]
 pub(super) struct Part {
     /// The place of the first in the mesh, and how many there are.
     pub first: u32,
@@ -27,41 +29,36 @@ pub(super) struct Part {
     pub faces: Buffer,
     /// The mesh's vertices that they have.
     vertices: Vec<u32>,
-    vertex_buffer: Buffer,
+    pub vertex_buffer: Buffer,
     group: BindGroup,
 }
 
 impl DeviceMesh {
-    /// Uploads a mesh in parts of at most `most` triangles, or as many as a buffer takes.
-    ///
-    /// # Errors
-    /// The device has failed, or has no room.
-    pub(super) fn new(
-        gpu: &Opened,
-        vertices: &[Vector],
-        indices: &[[u32; 3]],
-        most: usize,
-    ) -> Result<Self, DeviceFailure> {
+    /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether the device has that
+    /// room, its failures tell.
+    pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
         let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision.size())) as usize;
-        let mut places = vec![u32::MAX; vertices.len()];
+        let mut places = vec![u32::MAX; mesh.vertices().len()];
         let mut parts = Vec::new();
         let mut first = 0;
-        for part in indices.chunks(most.min(fit).max(1)) {
+        for part in mesh.indices().chunks(most.min(fit).max(1)) {
             parts.push(Part::new(gpu, first, part, &mut places));
             first += part.len() as u32;
         }
-        let mut mesh = Self { frame: CoarseFrame::new(vertices), parts };
-        gpu.device.failures.check()?;
-        mesh.update(gpu, vertices)?;
-        Ok(mesh)
+        Self { parts, is_current: false }
     }
 
-    /// Takes over moved vertices: only they travel, the rest is computed on the device.
-    ///
-    /// # Errors
-    /// The device has failed.
-    pub(super) fn update(&mut self, gpu: &Opened, vertices: &[Vector]) -> Result<(), DeviceFailure> {
-        self.frame = CoarseFrame::new(vertices);
+    /// The vertices have moved: what is on the device is no longer true.
+    pub(super) fn outdate(&mut self) {
+        self.is_current = false;
+    }
+
+    /// Sends the vertices where that is called for: only they travel, the rest is computed on the device. Whether they
+    /// arrive, the query that follows tells.
+    pub(super) fn update(&mut self, gpu: &Opened, frame: &SearchFrame, mesh: &Mesh) {
+        if std::mem::replace(&mut self.is_current, true) {
+            return;
+        }
         let precision = gpu.device.precision;
         let mut encoder = gpu.device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -70,7 +67,7 @@ impl DeviceMesh {
         for part in &self.parts {
             bytes.clear();
             for &vertex in &part.vertices {
-                let Vec3 { x, y, z } = self.frame.point::<Real>(vertices[vertex as usize]);
+                let Vec3 { x, y, z } = frame.point::<Real>(mesh.vertices()[vertex as usize]);
                 for coordinate in [x, y, z] {
                     precision.write(coordinate, &mut bytes);
                 }
@@ -83,7 +80,6 @@ impl DeviceMesh {
         }
         drop(pass);
         gpu.device.queue.submit([encoder.finish()]);
-        gpu.device.failures.check()
     }
 
     /// How many triangles there are.

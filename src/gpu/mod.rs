@@ -5,40 +5,36 @@
 //! ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in one go); a single query waits for
 //! the GPU and back, some hundred microseconds.
 //!
-//! [`GpuPairs`] and [`GpuRoots`] take many problems of the narrow phase and many polynomials at once, a thread each;
-//! [`GpuForms`] is for comparison with the paper.
+//! A [`Batch`] runs any kernel over many records of numbers on the same [`Gpu`], a thread each, with the texts of
+//! [`wgsl`] to build on.
 //!
 //! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
 //! for both precisions.
 
 mod batch;
 mod buffers;
+mod candidates;
 mod clock;
 mod device;
 mod engine;
 mod error;
 mod failures;
-mod forms;
 mod link;
 mod measure;
 mod mesh;
 mod opened;
-mod pairs;
 mod plan;
 mod precision;
 mod query;
-mod roots;
+mod record;
 mod self_test;
-mod shaders;
 #[cfg(test)]
 mod tests;
+pub mod wgsl;
 
-pub use crate::proximity::DeviceFailure;
+pub use batch::{Batch, BatchKernel};
 pub use device::Adapter;
 pub use engine::GpuExhaustive;
 pub use error::GpuError;
-pub use forms::{Form, GpuForms};
-pub use opened::{Discs, Gpu};
-pub use pairs::{GpuPairs, Pair, PairProblem};
+pub use opened::Gpu;
 pub use precision::Precision;
-pub use roots::{Finder, GpuRoots};

@@ -1,7 +1,8 @@
 use super::device::{Adapter, Device};
-use super::shaders::{self, Kernel, QUARTIC};
+use super::self_test;
+use super::wgsl::{CONVEX, Shader};
 use super::{GpuError, Precision};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use wgpu::{BindGroupLayout, ComputePipeline};
 
 /// A GPU, opened and with its kernels compiled, which takes a moment; engines for several meshes can share it.
@@ -17,9 +18,9 @@ impl Gpu {
     /// # Errors
     /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that was asked for.
     pub fn open(precision: Precision) -> Result<Self, GpuError> {
-        let device = Device::open(precision)?;
-        device.check_arithmetic()?;
-        Ok(Self(Arc::new(Opened::new(device)?)))
+        let gpu = Self(Arc::new(Opened::new(Device::open(precision)?)?));
+        self_test::check_arithmetic(&gpu)?;
+        Ok(gpu)
     }
 
     /// Which GPU it is.
@@ -33,26 +34,17 @@ impl Gpu {
     }
 }
 
-/// A route to the disc of a flat cap: the paper's are there for comparison.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Discs {
-    /// This crate's, without roots of a polynomial.
-    #[default]
-    Convex,
-    /// The paper's quartic in closed form.
-    ClosedForm,
-    /// The paper's quartic by the companion matrix.
-    Companion,
-}
-
-impl Discs {
-    /// What tells the kernels by the quartic apart.
-    pub(super) fn constant(self) -> Option<(&'static str, f64)> {
-        (self == Self::Companion).then_some(("COMPANION", 1.0))
+impl std::fmt::Debug for Gpu {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Gpu")
+            .field("adapter", self.adapter())
+            .field("precision", &self.precision())
+            .finish_non_exhaustive()
     }
 }
 
 /// A device with the kernels of a query.
+#[derive(Debug)]
 pub(super) struct Opened {
     pub device: Device,
     pub prepare_layout: BindGroupLayout,
@@ -62,8 +54,6 @@ pub(super) struct Opened {
     pub nearest: ComputePipeline,
     pub reduce: ComputePipeline,
     pub collect: ComputePipeline,
-    /// By [`Discs`].
-    every_pair: [OnceLock<Result<ComputePipeline, GpuError>>; 3],
 }
 
 impl Opened {
@@ -71,26 +61,24 @@ impl Opened {
         let (read, write) = (Some(false), Some(true));
         let prepare_layout = device.layout(&[read, read, write, write]);
         let query_layout = device.layout(&[None, read, write, read, read, write, write, write]);
-        let query = |kernel: Kernel| device.compile(kernel, QUARTIC, &query_layout, &[]);
+        let precision = device.precision;
+        let prepare = Shader::prepare(precision);
+        let query = |kernel: Shader| device.compile(kernel.entry_point, &kernel, &query_layout, &[]);
         Ok(Self {
-            prepare: device.compile(shaders::PREPARE, QUARTIC, &prepare_layout, &[])?,
-            sample: query(shaders::SAMPLE)?,
-            nearest: query(shaders::NEAREST)?,
-            reduce: query(shaders::REDUCE)?,
-            collect: query(shaders::COLLECT)?,
-            every_pair: Default::default(),
+            prepare: device.compile(prepare.entry_point, &prepare, &prepare_layout, &[])?,
+            sample: query(Shader::sample(precision))?,
+            nearest: query(Shader::nearest(precision, CONVEX))?,
+            reduce: query(Shader::reduce(precision))?,
+            collect: query(Shader::collect(precision))?,
             prepare_layout,
             query_layout,
             device,
         })
     }
 
-    /// The kernel that computes every pair in full, compiled when it is first asked for.
-    pub(super) fn every_pair(&self, discs: Discs) -> Result<&ComputePipeline, GpuError> {
-        let kernel = if discs == Discs::Convex { shaders::NEAREST } else { shaders::NEAREST_BY_QUARTIC };
-        let mut constants = vec![("CULLING", 0.0)];
-        constants.extend(discs.constant());
-        let compile = || self.device.compile(kernel, QUARTIC, &self.query_layout, &constants);
-        self.every_pair[discs as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
+    /// The kernel that computes every pair in full, by this route from a segment to a disc.
+    pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, GpuError> {
+        let kernel = Shader::nearest(self.device.precision, route);
+        self.device.compile("nearest, every pair", &kernel, &self.query_layout, &[("CULLING", 0.0)])
     }
 }

@@ -2,26 +2,43 @@
 
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
+use super::record::record;
 
 /// Threads of a workgroup.
-const THREADS: u64 = 256;
-/// Links of a workgroup at most; `MOST_LINKS` in query.wgsl.
-const MOST_LINKS: u64 = 32;
-/// Triangles of a thread, unless a dispatch cannot hold as many workgroups as that takes.
-const MOST_TRIANGLES: u64 = 8;
-/// As many threads keep the largest GPUs busy. (Few in unit tests, so that a thread takes several pairs.)
-const ENOUGH_THREADS: u64 = if cfg!(test) { 1 << 12 } else { 1 << 19 };
-/// Candidates of a link and part that come back; `CAPACITY` in query.wgsl.
-pub(super) const CAPACITY: usize = 64;
-/// Bytes for each candidate: a triangle's number, and a distance of at most 8.
-const CANDIDATE: u64 = 12;
+pub(super) const THREADS: u32 = 256;
+/// Links of a workgroup at most.
+pub(super) const MOST_LINKS: u32 = 32;
+/// Triangles of a part that the first limit of a link is taken from, at most.
+pub(super) const SAMPLES: u32 = 1 << 14;
+/// Candidates of a link and part that come back.
+pub(super) const CAPACITY: u32 = 64;
+/// Words of a link and part: what says that it was written, how many candidates there are, and their triangles.
+pub(super) const SLOT: u32 = 2 + CAPACITY;
+/// Bytes of a number at most.
+const NUMBER: u64 = 8;
 /// Bytes for the bounds of a block and a link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;
-/// Bytes for the bounds of all blocks that are worth keeping for more links in one round. (Few in unit tests,
-/// so that small queries take several rounds and submissions.)
-const ROUND_BYTES: u64 = if cfg!(test) { 1 << 10 } else { 64 << 20 };
-/// Bytes that come back from one submission.
-const ANSWER_BYTES: u64 = if cfg!(test) { 100 << 10 } else { 64 << 20 };
+
+/// What is large enough, and what too large: the answers do not depend on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tuning {
+    /// Triangles of a part of the mesh at most.
+    pub part: usize,
+    /// As many threads keep the largest GPUs busy.
+    pub threads: u64,
+    /// Triangles of a thread, unless a dispatch cannot hold as many workgroups as that takes.
+    pub triangles_of_thread: u64,
+    /// Bytes for the bounds of all blocks that are worth keeping for more links in one round.
+    pub round: u64,
+    /// Bytes that come back from one submission.
+    pub answer: u64,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self { part: usize::MAX, threads: 1 << 19, triangles_of_thread: 8, round: 64 << 20, answer: 64 << 20 }
+    }
+}
 
 /// The shape of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,26 +53,47 @@ pub(super) struct Plan {
     pub links_per_submission: usize,
 }
 
+record! {
+    /// What the kernels know of the links of a round and a part of the mesh.
+    Round {
+        /// The first link, and how many there are.
+        first_link: u32,
+        links: u32,
+        /// How many links a workgroup takes, and how many triangles each of its threads.
+        links_at_once: u32,
+        triangles_at_once: u32,
+        /// The triangles of this part, its first block of all blocks, and how many blocks all parts have.
+        triangles: u32,
+        first_block: u32,
+        blocks: u32,
+        /// Where the candidates of the first link and this part go.
+        first_slot: u32,
+        /// The number of the submission.
+        submission: u32,
+    }
+}
+
 impl Plan {
-    pub(super) fn new(gpu: &Opened, mesh: &DeviceMesh, links: usize) -> Self {
+    pub(super) fn new(gpu: &Opened, mesh: &DeviceMesh, links: usize, tuning: &Tuning) -> Self {
         let limits = &gpu.device.limits;
         let dimension = u64::from(limits.max_compute_workgroups_per_dimension);
         let largest = gpu.device.largest_binding();
-        let slot = CAPACITY as u64 * CANDIDATE * mesh.parts.len() as u64;
-        let links_per_submission = (ANSWER_BYTES.min(largest) / slot).clamp(1, links as u64);
+        let slot = (u64::from(SLOT) * 4 + u64::from(CAPACITY) * NUMBER) * mesh.parts.len() as u64;
+        let links_per_submission = (tuning.answer.min(largest) / slot).clamp(1, links as u64);
 
-        let pairs_of_thread = (mesh.triangles() * links_per_submission).div_ceil(ENOUGH_THREADS).max(1);
-        let groups = links_per_submission.div_ceil(pairs_of_thread.min(MOST_LINKS));
+        let pairs_of_thread = (mesh.triangles() * links_per_submission).div_ceil(tuning.threads).max(1);
+        let groups = links_per_submission.div_ceil(pairs_of_thread.min(MOST_LINKS.into()));
         let links_at_once = links_per_submission.div_ceil(groups);
         let largest_part = mesh.parts.iter().map(|part| u64::from(part.triangles)).max().unwrap_or(1);
+        let threads = u64::from(THREADS);
         let triangles_at_once = pairs_of_thread
             .div_ceil(links_at_once)
-            .clamp(1, MOST_TRIANGLES)
-            .max(largest_part.div_ceil(THREADS * dimension));
+            .clamp(1, tuning.triangles_of_thread)
+            .max(largest_part.div_ceil(threads * dimension));
 
-        let block = THREADS * triangles_at_once;
+        let block = threads * triangles_at_once;
         let blocks: u64 = mesh.parts.iter().map(|part| u64::from(part.triangles).div_ceil(block)).sum();
-        let kept = ROUND_BYTES.min(largest) / (blocks * BLOCK_BOUNDS);
+        let kept = tuning.round.min(largest) / (blocks * BLOCK_BOUNDS);
         Self {
             links_at_once: links_at_once as u32,
             triangles_at_once: triangles_at_once as u32,
@@ -66,6 +104,6 @@ impl Plan {
 
     /// Blocks of so many triangles.
     pub(super) fn blocks(&self, triangles: u32) -> u32 {
-        triangles.div_ceil(THREADS as u32 * self.triangles_at_once)
+        triangles.div_ceil(THREADS * self.triangles_at_once)
     }
 }

@@ -7,75 +7,72 @@
 //! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near comes back.
 
 use super::buffers::Buffers;
+use super::candidates::{Candidate, Candidates};
 use super::clock::{Clock, READINGS};
-use super::link::PlacedLink;
+use super::failures::Watch;
+use super::link::DeviceLink;
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
-use super::plan::{CAPACITY, Plan};
+use super::plan::{Plan, Round, Tuning};
+use super::record::Record;
 use crate::proximity::DeviceFailure;
-use parry3d_f64::math::Real;
-use std::ops::Range;
 use std::time::Duration;
-use wgpu::{Buffer, ComputePipeline};
-
-/// A triangle that may be the nearest, and its distance from the axis as the device computed it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
-    pub triangle: u32,
-    pub distance: Real,
-}
-
-/// The candidates of one link.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Candidates {
-    range: Range<usize>,
-    /// Whether there are more than came back.
-    pub too_many: bool,
-}
+use wgpu::{Buffer, CommandEncoder, ComputePipeline};
 
 /// Memory of the last query, here and on the device, used again.
-#[derive(Default)]
 pub(super) struct Query {
+    tuning: Tuning,
+    watch: Watch,
+    /// The number of the last submission. It is odd: no number of blocks makes its multiple 0, which is what buffers are
+    /// cleared to.
+    submission: u32,
     buffers: Option<Buffers>,
     bytes: Vec<u8>,
-    candidates: Vec<Candidate>,
-    links: Vec<Candidates>,
+    candidates: Candidates,
     /// How long the kernels of the last query took, if the device keeps time.
     pub device_time: Option<Duration>,
 }
 
 impl Query {
-    /// The candidates of a link of the last query.
-    pub(super) fn candidates(&self, link: usize) -> (&[Candidate], bool) {
-        let Candidates { range, too_many } = &self.links[link];
-        (&self.candidates[range.clone()], *too_many)
+    /// `watch` has heard of what does not matter to the queries to come.
+    pub(super) fn new(tuning: Tuning, watch: Watch) -> Self {
+        Self {
+            tuning,
+            watch,
+            submission: 1,
+            buffers: None,
+            bytes: Vec::new(),
+            candidates: Candidates::default(),
+            device_time: None,
+        }
     }
 
-    /// Finds the candidates of every link. `nearest` is the kernel of step 2.
+    /// The candidates of a link of the last query by triangle, and whether there are more.
+    pub(super) fn candidates(&self, link: usize) -> (&[Candidate], bool) {
+        self.candidates.of(link)
+    }
+
+    /// Finds the candidates of every link; there is at least one. `nearest` is the kernel of step 2.
     ///
     /// # Errors
-    /// The device has failed.
+    /// The device has failed since the last query, or did not answer.
     pub(super) fn run(
         &mut self,
         gpu: &Opened,
         mesh: &DeviceMesh,
-        links: &[PlacedLink],
+        links: &[DeviceLink],
         nearest: &ComputePipeline,
     ) -> Result<(), DeviceFailure> {
-        self.links.clear();
         self.candidates.clear();
         self.device_time = gpu.device.tick.map(|_| Duration::ZERO);
-        if links.is_empty() {
-            return Ok(());
-        }
         // Robots of nearly as many links share a plan, and with it the buffers.
-        let plan = Plan::new(gpu, mesh, links.len().next_multiple_of(32));
-        if self.buffers.as_ref().is_none_or(|buffers| buffers.plan != plan) {
-            self.buffers = Some(Buffers::new(gpu, mesh, plan));
-        }
-        let Some(buffers) = self.buffers.take() else { return Ok(()) };
+        let plan = Plan::new(gpu, mesh, links.len().next_multiple_of(32), &self.tuning);
+        // On failure the buffers are gone, and made anew for the next query.
+        let buffers = match self.buffers.take() {
+            Some(buffers) if buffers.plan == plan => buffers,
+            _ => Buffers::new(gpu, mesh, plan),
+        };
         for links in links.chunks(plan.links_per_submission) {
-            // On failure the buffers are gone, and made anew for the next query.
             self.submit(gpu, mesh, &buffers, links, nearest)?;
         }
         self.buffers = Some(buffers);
@@ -87,100 +84,63 @@ impl Query {
         gpu: &Opened,
         mesh: &DeviceMesh,
         buffers: &Buffers,
-        links: &[PlacedLink],
+        links: &[DeviceLink],
         nearest: &ComputePipeline,
     ) -> Result<(), DeviceFailure> {
         let device = &gpu.device;
+        self.submission = self.submission.wrapping_add(2);
         self.upload(gpu, mesh, buffers, links);
         let mut encoder = device.device.create_command_encoder(&Default::default());
         encoder.clear_buffer(&buffers.found, 0, None);
-        let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
-        let mut pass =
-            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-        let mut offset = 0;
-        for round in links.chunks(buffers.plan.links_per_round as usize) {
-            let offsets: Vec<_> = (0..mesh.parts.len())
-                .map(|part| offset + part as u32 * device.limits.min_uniform_buffer_offset_alignment)
-                .collect();
-            offset += mesh.parts.len() as u32 * device.limits.min_uniform_buffer_offset_alignment;
-            let count = round.len() as u32;
-            let groups = count.div_ceil(buffers.plan.links_at_once);
-            let mut dispatch = |kernel: &ComputePipeline, part: usize, x, y| {
-                pass.set_pipeline(kernel);
-                pass.set_bind_group(0, &buffers.groups[part], &[offsets[part]]);
-                pass.dispatch_workgroups(x, y, 1);
-            };
-            let blocks = |part: usize| buffers.plan.blocks(mesh.parts[part].triangles);
-            for part in 0..mesh.parts.len() {
-                dispatch(&gpu.sample, part, count, 1);
-            }
-            for part in 0..mesh.parts.len() {
-                dispatch(nearest, part, blocks(part), groups);
-            }
-            dispatch(&gpu.reduce, 0, count, 1);
-            for part in 0..mesh.parts.len() {
-                dispatch(&gpu.collect, part, blocks(part), groups);
-            }
-        }
-        drop(pass);
-
-        let slots = (links.len() * mesh.parts.len()) as u64;
-        let found = slots * (CAPACITY as u64 + 1) * 4;
-        let distances = slots * CAPACITY as u64 * device.precision.size();
-        encoder.copy_buffer_to_buffer(&buffers.found, 0, &buffers.readback, READINGS, Some(found));
-        encoder.copy_buffer_to_buffer(
-            &buffers.distances,
-            0,
-            &buffers.readback,
-            READINGS + found,
-            Some(distances),
-        );
+        record_passes(&mut encoder, gpu, mesh, buffers, links.len(), nearest);
+        let found = Buffers::found_size(links.len(), mesh);
+        let distances = Buffers::distances_size(links.len(), mesh, device.precision);
+        let (to, end) = (&buffers.readback, READINGS + found);
+        encoder.copy_buffer_to_buffer(&buffers.found, 0, to, READINGS, Some(found));
+        encoder.copy_buffer_to_buffer(&buffers.distances, 0, to, end, Some(distances));
         if let Some(clock) = &buffers.clock {
-            clock.copy(&mut encoder, &buffers.readback);
+            clock.copy(&mut encoder, to);
         }
-        let size = READINGS + found + distances;
-        device.run_and_read(encoder.finish(), &buffers.readback, size, |bytes| {
+        let Self { watch, candidates, device_time, submission, .. } = self;
+        device.run_and_read(watch, encoder.finish(), to, end + distances, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
-            let more = device.time_between(readings);
-            self.device_time = self.device_time.zip(more).map(|(sum, more)| sum + more);
-            let (found, distances) = bytes.split_at(found as usize);
-            self.read(gpu, mesh, links, found, distances);
+            *device_time = device_time.zip(device.time_between(readings)).map(|(sum, more)| sum + more);
+            candidates.read(mesh, buffers, device.precision, *submission, links.len(), bytes)
         })
     }
 
-    fn upload(&mut self, gpu: &Opened, mesh: &DeviceMesh, buffers: &Buffers, links: &[PlacedLink]) {
-        let (queue, plan) = (&gpu.device.queue, &buffers.plan);
+    fn upload(&mut self, gpu: &Opened, mesh: &DeviceMesh, buffers: &Buffers, links: &[DeviceLink]) {
+        let (queue, plan, precision) = (&gpu.device.queue, &buffers.plan, gpu.device.precision);
+        let bytes = &mut self.bytes;
         let mut write = |buffer: &Buffer, fill: &dyn Fn(&mut Vec<u8>)| {
-            self.bytes.clear();
-            fill(&mut self.bytes);
-            queue.write_buffer(buffer, 0, &self.bytes);
+            bytes.clear();
+            fill(bytes);
+            queue.write_buffer(buffer, 0, bytes);
         };
-        write(&buffers.links, &|bytes| {
-            let numbers = links.iter().flat_map(|link| link.record);
-            numbers.for_each(|number| gpu.device.precision.write(number, bytes));
-        });
+        write(&buffers.links, &|bytes| links.iter().for_each(|link| link.record.write(precision, bytes)));
         write(&buffers.limits, &|bytes| {
             links.iter().for_each(|link| bytes.extend(link.limit.to_bits().to_ne_bytes()));
         });
+        let (submission, stride) = (self.submission, gpu.device.uniform_stride::<Round>() as usize);
         write(&buffers.rounds, &|bytes| {
             let blocks = mesh.parts.iter().map(|part| plan.blocks(part.triangles)).sum();
             let mut first_link = 0;
             for round in links.chunks(plan.links_per_round as usize) {
                 let (mut first_block, mut first_slot) = (0, first_link);
                 for part in &mesh.parts {
-                    let round: [u32; 8] = [
+                    let record = Round {
                         first_link,
-                        round.len() as u32,
-                        plan.links_at_once,
-                        plan.triangles_at_once,
-                        part.triangles,
+                        links: round.len() as u32,
+                        links_at_once: plan.links_at_once,
+                        triangles_at_once: plan.triangles_at_once,
+                        triangles: part.triangles,
                         first_block,
                         blocks,
                         first_slot,
-                    ];
-                    bytes.extend(round.iter().flat_map(|number| number.to_ne_bytes()));
-                    let alignment = gpu.device.limits.min_uniform_buffer_offset_alignment as usize;
-                    bytes.resize(bytes.len().next_multiple_of(alignment), 0);
+                        submission,
+                    };
+                    record.write(precision, bytes);
+                    bytes.resize(bytes.len().next_multiple_of(stride), 0);
                     first_block += plan.blocks(part.triangles);
                     first_slot += links.len() as u32;
                 }
@@ -188,37 +148,36 @@ impl Query {
             }
         });
     }
+}
 
-    /// Sorts what came back into the candidates of each link.
-    fn read(
-        &mut self,
-        gpu: &Opened,
-        mesh: &DeviceMesh,
-        links: &[PlacedLink],
-        found: &[u8],
-        distances: &[u8],
-    ) {
-        let word = |place: usize| {
-            let bytes: [u8; 4] = found[4 * place..][..4].try_into().unwrap_or_default();
-            u32::from_ne_bytes(bytes)
+/// The four steps for each round of links.
+fn record_passes(
+    encoder: &mut CommandEncoder,
+    gpu: &Opened,
+    mesh: &DeviceMesh,
+    buffers: &Buffers,
+    mut links: usize,
+    nearest: &ComputePipeline,
+) {
+    let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+    let parts = 0..mesh.parts.len();
+    let mut first_record = 0;
+    while links > 0 {
+        let round = links.min(buffers.plan.links_per_round as usize);
+        let (count, groups) = (round as u32, (round as u32).div_ceil(buffers.plan.links_at_once));
+        let mut dispatch = |kernel: &ComputePipeline, part: usize, x, y| {
+            let offset = (first_record + part) as u64 * gpu.device.uniform_stride::<Round>();
+            pass.set_pipeline(kernel);
+            pass.set_bind_group(0, &buffers.groups[part], &[offset as u32]);
+            pass.dispatch_workgroups(x, y, 1);
         };
-        let slot_size = CAPACITY * gpu.device.precision.size() as usize;
-        for link in 0..links.len() {
-            let begin = self.candidates.len();
-            let mut too_many = false;
-            for (number, part) in mesh.parts.iter().enumerate() {
-                let slot = number * links.len() + link;
-                let count = word(slot * (CAPACITY + 1)) as usize;
-                too_many |= count > CAPACITY;
-                let computed = gpu.device.precision.read(&distances[slot * slot_size..][..slot_size]);
-                for (place, distance) in computed.take(count).enumerate() {
-                    let triangle = part.first + word(slot * (CAPACITY + 1) + 1 + place);
-                    self.candidates.push(Candidate { triangle, distance });
-                }
-            }
-            // They come in any order.
-            self.candidates[begin..].sort_by_key(|candidate| candidate.triangle);
-            self.links.push(Candidates { range: begin..self.candidates.len(), too_many });
-        }
+        let blocks = |part: usize| buffers.plan.blocks(mesh.parts[part].triangles);
+        parts.clone().for_each(|part| dispatch(&gpu.sample, part, count, 1));
+        parts.clone().for_each(|part| dispatch(nearest, part, blocks(part), groups));
+        dispatch(&gpu.reduce, 0, count, 1);
+        parts.clone().for_each(|part| dispatch(&gpu.collect, part, blocks(part), groups));
+        first_record += mesh.parts.len();
+        links -= round;
     }
 }

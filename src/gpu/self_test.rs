@@ -1,8 +1,9 @@
 //! Whether a device's double precision deserves the name. Vulkan asks of it no more than of single precision.
 
-use super::device::{Adapter, Device};
-use super::{GpuError, Precision, shaders};
-use wgpu::BufferUsages;
+use super::batch::{Batch, BatchKernel};
+use super::device::Adapter;
+use super::opened::Gpu;
+use super::{GpuError, Precision};
 
 /// Dividends and divisors whose quotients and roots need every digit.
 pub(super) const OPERANDS: [[f64; 2]; 8] = [
@@ -19,35 +20,18 @@ pub(super) const OPERANDS: [[f64; 2]; 8] = [
 /// How many units in the last place a result may be off.
 const TOLERANCE: f64 = 4.0;
 
-impl Device {
-    /// Compares the device's quotients and square roots with the CPU's.
-    ///
-    /// # Errors
-    /// They differ by more than a few units in the last place, or the device failed.
-    pub(super) fn check_arithmetic(&self) -> Result<(), GpuError> {
-        let count = 2 * OPERANDS.len();
-        let size = count as u64 * self.precision.size();
-        let mut bytes = Vec::new();
-        OPERANDS.iter().flatten().for_each(|&value| self.precision.write(value, &mut bytes));
-        let operands = self.buffer(size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        let results = self.buffer(size, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let readback = self.buffer(size, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        self.queue.write_buffer(&operands, 0, &bytes);
+/// The quotient of two numbers, and the square root of the first.
+pub(super) const KERNEL: BatchKernel =
+    BatchKernel::new("self_test", include_str!("shaders/kernels/self_test.wgsl"), 2, 2);
 
-        let layout = self.layout(&[Some(false), Some(true)]);
-        let pipeline = self.compile(shaders::SELF_TEST, shaders::QUARTIC, &layout, &[])?;
-        let group = self.group(&layout, &[operands.as_entire_binding(), results.as_entire_binding()]);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-        drop(pass);
-        encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, Some(size));
-        let mut got = Vec::new();
-        self.run_and_read(encoder.finish(), &readback, size, |bytes| got.extend(self.precision.read(bytes)))?;
-        compare(&got, self.precision, &self.adapter)
-    }
+/// Compares the device's quotients and square roots with the CPU's.
+///
+/// # Errors
+/// They differ by more than a few units in the last place, or the device failed.
+pub(super) fn check_arithmetic(gpu: &Gpu) -> Result<(), GpuError> {
+    let mut got = Vec::new();
+    Batch::new(gpu, &KERNEL)?.run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
+    compare(&got, gpu.precision(), gpu.adapter())
 }
 
 /// Compares quotients and roots with the CPU's.

@@ -70,7 +70,6 @@ pub trait Proximity {
     /// Moves the mesh's vertices; the triangles stay as they are.
     ///
     /// # Errors
-    /// The number of vertices differs or one of them is not finite or out of range, or the device that holds the mesh
-    /// failed. The engine then keeps the old ones.
+    /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
 }

@@ -38,10 +38,6 @@ pub enum MeshError {
     /// The mesh has no triangle, so nothing is closest.
     #[error("the mesh has no triangles")]
     Empty,
-    /// The GPU that holds the mesh failed.
-    #[cfg(feature = "gpu")]
-    #[error(transparent)]
-    Device(#[from] DeviceFailure),
 }
 
 /// Why a query has no answer.
@@ -94,7 +90,7 @@ pub enum ProximityError {
     Device(#[from] DeviceFailure),
 }
 
-/// How a GPU failed.
+/// How a GPU failed. Each engine on that GPU tells of it, by the query that comes next; the one after that may succeed.
 #[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
@@ -108,4 +104,7 @@ pub enum DeviceFailure {
     /// Its driver refused a command.
     #[error("the GPU's driver refused a command; update the driver, or use an engine on the CPU")]
     Refused,
+    /// It did not write its answer.
+    #[error("the GPU did not answer; update its driver, or use an engine on the CPU")]
+    Unanswered,
 }

@@ -52,6 +52,16 @@ impl Mesh {
         self.vertices.copy_from_slice(vertices);
     }
 
+    #[cfg(feature = "gpu")]
+    pub(crate) fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    #[cfg(feature = "gpu")]
+    pub(crate) fn indices(&self) -> &[[u32; 3]] {
+        &self.indices
+    }
+
     /// How many triangles there are.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()

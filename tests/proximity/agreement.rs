@@ -195,7 +195,7 @@ fn the_first_bad_robot_of_a_batch_is_reported_and_nothing_answered() {
         engine.minimum_batch(&robots[..9], &mut minimum).unwrap();
         engine.clears_batch(&robots[..9], 0.0, &mut clears).unwrap();
         assert_eq!(engine.per_link_batch(&robots, &mut per_link), expected, "{name}");
-        assert_eq!(engine.minimum_batch(&robots, &mut minimum), expected.map(|()| ()), "{name}");
+        assert_eq!(engine.minimum_batch(&robots, &mut minimum), expected, "{name}");
         assert_eq!(engine.clears_batch(&robots, 0.0, &mut clears), expected, "{name}");
         assert_eq!([per_link.len(), minimum.len(), clears.len()], [0; 3], "{name}");
         clears.push(true);

@@ -22,11 +22,11 @@ use super::{Real, Roots};
 pub struct Bairstow;
 
 /// Steps from one guess.
-const STEPS: usize = 40;
+pub(crate) const STEPS: usize = 40;
 /// Guesses for one factor.
-const GUESSES: usize = 40;
+pub(crate) const GUESSES: usize = 40;
 /// Rounding errors per step of the division that the remainder may amount to.
-const ROUNDINGS: f64 = 8.0;
+pub(crate) const ROUNDINGS: f64 = 8.0;
 
 impl Method for Bairstow {
     const TILT: Tilt = Tilt::Balanced;
@@ -46,7 +46,7 @@ impl Method for Bairstow {
 /// u and v of a quadratic factor.
 fn factor<T: Real, const M: usize>(p: &[T; M], degree: usize) -> Option<(T, T)> {
     let mut radius = smallest_root_bound(p, degree);
-    let mut direction = (T::of(0.656_059_028_990_507_3), T::of(0.754_709_580_222_772)); // 49 degrees
+    let mut direction = first_direction();
     for _ in 0..GUESSES {
         let (u, v) = (-(direction.0 * radius + direction.0 * radius), radius * radius);
         if let Some(found) = refine(p, degree, u, v) {
@@ -58,9 +58,19 @@ fn factor<T: Real, const M: usize>(p: &[T; M], degree: usize) -> Option<(T, T)> 
     None
 }
 
+/// The cosine and the sine of 49 degrees.
+pub(crate) const FIRST_DIRECTION: [f64; 2] = [0.656_059_028_990_507_3, 0.754_709_580_222_772];
+/// The cosine and the sine of 94 degrees.
+pub(crate) const TURN: [f64; 2] = [-0.069_756_473_744_125_3, 0.997_564_050_259_824_2];
+
+/// The direction in which iterations start first.
+pub(super) fn first_direction<T: Real>() -> (T, T) {
+    (T::of(FIRST_DIRECTION[0]), T::of(FIRST_DIRECTION[1]))
+}
+
 /// A direction turned by 94 degrees.
 pub(super) fn turned<T: Real>((x, y): (T, T)) -> (T, T) {
-    let (cos, sin) = (T::of(-0.069_756_473_744_125_3), T::of(0.997_564_050_259_824_2));
+    let [cos, sin] = TURN.map(T::of);
     (cos * x - sin * y, sin * x + cos * y)
 }
 

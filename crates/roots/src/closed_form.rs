@@ -149,9 +149,9 @@ fn polished<T: Real>(x: T, a: T, b: T, c: T) -> T {
 }
 
 /// Newton steps on the two quadratics: one or two, unless their roots nearly coincide.
-const FACTOR_STEPS: usize = 20;
+pub(crate) const FACTOR_STEPS: usize = 20;
 /// How many roundings the product of the factors may be off.
-const FACTOR_ROUNDINGS: f64 = 2.0;
+pub(crate) const FACTOR_ROUNDINGS: f64 = 2.0;
 
 impl<T: Real> Factors<T> {
     /// What the product lacks of the quartic's coefficients, highest power first, and the most it lacks relative

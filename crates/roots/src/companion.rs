@@ -14,7 +14,7 @@ use super::{Real, Roots};
 pub struct Companion;
 
 /// Sweeps per block before it is given up.
-const SWEEPS: usize = 80;
+pub(crate) const SWEEPS: usize = 80;
 
 impl Method for Companion {
     const TILT: Tilt = Tilt::Balanced;

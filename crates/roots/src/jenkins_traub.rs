@@ -23,7 +23,7 @@
 //!
 //! The factor is divided out. Since small roots come first, that is stable.
 
-use super::bairstow::{refine, turned};
+use super::bairstow::{ROUNDINGS, first_direction, refine, turned};
 use super::division::{Division, by_linear, by_quadratic, magnitude, smallest_root_bound};
 use super::method::{Method, Tilt};
 use super::quadratic::{Pair, linear, quadratic, split};
@@ -34,14 +34,12 @@ use super::{Real, Roots};
 pub struct JenkinsTraub;
 
 /// Steps without a shift.
-const NO_SHIFT_STEPS: usize = 5;
+pub(crate) const NO_SHIFT_STEPS: usize = 5;
 /// Directions in which a fixed shift is tried; the k-th for 20 k steps.
-const DIRECTIONS: usize = 20;
+pub(crate) const DIRECTIONS: usize = 20;
 /// Steps of stage 3.
-const LINEAR_STEPS: usize = 10;
-const QUADRATIC_STEPS: usize = 20;
-/// Rounding errors per step of the division that the remainder may amount to.
-const ROUNDINGS: f64 = 8.0;
+pub(crate) const LINEAR_STEPS: usize = 10;
+pub(crate) const QUADRATIC_STEPS: usize = 20;
 
 impl Method for JenkinsTraub {
     const TILT: Tilt = Tilt::Balanced;
@@ -84,7 +82,7 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
     fn factor(&self) -> Option<Factor<T, M>> {
         let start = self.without_shift();
         let bound = smallest_root_bound(self.p, self.degree);
-        let mut direction = (T::of(0.656_059_028_990_507_3), T::of(0.754_709_580_222_772)); // 49 degrees
+        let mut direction = first_direction();
         for attempt in 1..=DIRECTIONS {
             let x = direction.0 * bound;
             if let Some(factor) = self.with_fixed_shift(start, -(x + x), bound * bound, 20 * attempt) {

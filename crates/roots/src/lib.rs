@@ -50,6 +50,8 @@ mod closed_form;
 mod companion;
 mod division;
 mod found;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod jenkins_traub;
 mod pieces;
 mod quadratic;

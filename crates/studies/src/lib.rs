@@ -5,12 +5,15 @@
 //! |---|---|
 //! | accuracy | [`accuracy`]: the errors on reference cases and at the extremes, and the tables that tests enforce |
 //! | the paper's routes | [`quartic`]: segment to disc by roots; [`every_pair`]: an engine by any route |
+//! | the same on the GPU | `gpu` (feature `gpu`) |
 //! | costs | [`counted`] numbers; [`machine`] |
 //! | pages | [`quote`]: what a program writes between marks |
 
 pub mod accuracy;
 pub mod counted;
 pub mod every_pair;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod machine;
 mod number;
 pub mod quartic;

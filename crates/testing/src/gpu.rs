@@ -1,9 +1,8 @@
-//! The GPU of this machine, opened once for all tests of a program, and what it is asked.
+//! The GPU of this machine, opened once for all tests of a program.
 //!
 //! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
 
-use crate::kernels::Input;
-use parry_continuum::gpu::{Gpu, GpuError, PairProblem, Precision};
+use parry_continuum::gpu::{Gpu, GpuError, Precision};
 use std::sync::OnceLock;
 
 /// The precisions, with names for messages.
@@ -30,10 +29,4 @@ pub fn open(precision: Precision) -> Option<&'static Gpu> {
 
 pub fn is_required() -> bool {
     std::env::var_os("PARRY_CONTINUUM_REQUIRE_GPU").is_some()
-}
-
-/// The input of a kernel as the GPU takes it.
-pub fn problem_of(input: &Input<f64>, flat: [bool; 2]) -> PairProblem {
-    let Input { triangle, plane_normal, start, end, disc_normal, radius } = *input;
-    PairProblem { triangle, plane_normal, start, end, disc_normal, radius, flat }
 }

@@ -3,6 +3,7 @@
 mod blocks;
 mod engine;
 mod kernels;
+mod pass;
 mod scan;
 
 pub use engine::{Exhaustive, SearchPrecision};

@@ -3,8 +3,8 @@
 use super::measure::{Found, Measured, PAIRS, Problem, scaled};
 use super::problems::Extreme;
 use super::tables::cell;
-use continuum_testing::gpu::problem_of;
-use parry_continuum::gpu::{Gpu, GpuError, GpuPairs, Pair};
+use crate::gpu::{GpuPairs, Pair, PairProblem};
+use parry_continuum::gpu::{Gpu, GpuError};
 
 /// The pair and the caps of each of the [`KERNELS`](continuum_testing::kernels::KERNELS).
 const PAIR_OF_KERNEL: [(Pair, [bool; 2]); 15] = [
@@ -32,7 +32,7 @@ pub const HEAD: &str = "precision,category,pair,problems,GPU median,GPU worst";
 pub fn measure<T: Measured>(gpu: &Gpu, problems: &[Problem<T>]) -> Result<Vec<Found>, GpuError> {
     let mut found = Vec::new();
     for (kernel, (pair, flat)) in PAIR_OF_KERNEL.into_iter().enumerate() {
-        let exact = |problem: &Problem<T>| problem_of(&problem.input.map(Into::into), flat);
+        let exact = |problem: &Problem<T>| PairProblem::of(&problem.input.map(Into::into), flat);
         let numbers: Vec<_> = problems.iter().map(exact).collect();
         let mut answers = Vec::new();
         GpuPairs::new(gpu, pair)?.solve(&numbers, &mut answers)?;

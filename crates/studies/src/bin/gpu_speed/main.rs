@@ -1,0 +1,131 @@
+//! How fast on the GPU: exhaustive queries as in the paper's Figure 9 and Table IV, latency, batches and moving anatomy
+//! against the engines on the CPU, and Tables II, III and V. Writes `docs/GPU_SPEED.md`.
+//!
+//! ```text
+//! cargo run --release -p continuum-studies --features gpu --bin gpu_speed -- --tflops 66.9,33.5
+//! ```
+//!
+//! The program needs nothing but itself: built here, it can be carried to the machine with the GPU. Meshes grow to ten
+//! million triangles, which takes minutes and 16 GB; `--largest 100000` is a rehearsal.
+
+mod chains;
+mod forms;
+mod roots;
+mod timed;
+
+use clap::Parser;
+use continuum_scene::command;
+use parry_continuum::gpu::{Gpu, GpuError, Precision};
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+#[derive(Parser)]
+struct Options {
+    /// Where to write GPU_SPEED.md
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    out: PathBuf,
+
+    /// Triangles of the largest mesh
+    #[arg(long, value_name = "COUNT", default_value_t = 10_000_000, value_parser = clap::value_parser!(u32).range(1000..=20_000_000))]
+    largest: u32,
+
+    /// Triangles of the largest mesh whose every pair is computed in full
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
+    every_pair: u32,
+
+    /// Polynomials of each degree, and problems of Tables II and III
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    problems: u32,
+
+    /// Seconds for each group of jobs that take turns
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    enough: f64,
+
+    /// The GPU's peak in single and double precision, for the paper's index: 1 / (seconds x TFLOPS)
+    #[arg(long, value_name = "F32,F64", value_parser = peaks)]
+    tflops: Option<[f64; 2]>,
+}
+
+fn peaks(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[single, double]) if single > 0.0 && double > 0.0 => Ok([single, double]),
+        _ => Err("write two numbers, for example 66.9,33.5".into()),
+    }
+}
+
+/// A precision of the GPU, with its name.
+pub struct Opened {
+    pub name: &'static str,
+    pub gpu: Gpu,
+    pub tflops: Option<f64>,
+}
+
+fn main() -> ExitCode {
+    command::run(measure)
+}
+
+fn measure(options: &Options) -> Result<(), String> {
+    let begin = Instant::now();
+    let mut opened = Vec::new();
+    let mut missing = None;
+    for (place, (name, precision)) in
+        [("f32", Precision::F32), ("f64", Precision::F64)].into_iter().enumerate()
+    {
+        match Gpu::open(precision) {
+            Ok(gpu) => opened.push(Opened { name, gpu, tflops: options.tflops.map(|peaks| peaks[place]) }),
+            // Single precision alone is worth measuring.
+            Err(error @ (GpuError::NoDoublePrecision { .. } | GpuError::WrongArithmetic { .. }))
+                if !opened.is_empty() =>
+            {
+                missing = Some(error.to_string());
+            }
+            Err(error) => return Err(error.to_string()),
+        }
+    }
+    let path = options.out.join("GPU_SPEED.md");
+    if opened[0].gpu.adapter().is_software && path.exists() {
+        return Err(format!(
+            "{} is a GPU in software; {} keeps what a real one did. For a rehearsal choose another --out",
+            opened[0].gpu.adapter(),
+            path.display()
+        ));
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let adapter = opened[0].gpu.adapter();
+    let command = command::line("-p continuum-studies --features gpu --bin gpu_speed");
+    let mut page = format!(
+        "# Speed on the GPU\n\n\
+         Written by `{command}` on {adapter}; the engines on the \
+         CPU beside it ran on {cores} cores. Times are medians; jobs that are compared take turns in one run. Device: the \
+         GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers and what the CPU \
+         measures again.\n"
+    );
+    if adapter.is_software {
+        page.push_str("\nThis is a GPU in software: its times tell nothing of a GPU.\n");
+    }
+    if let Some(missing) = missing {
+        page.push_str(&format!("\n{missing}.\n"));
+    }
+    let enough = Duration::from_secs_f64(options.enough.clamp(0.0, 60.0));
+    let mut add = |name: &str, chapter: String| {
+        page.push('\n');
+        page.push_str(&chapter);
+        println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
+    };
+    add("chains", chains::chapter(&opened, options.largest, options.every_pair, enough)?);
+    add("forms", forms::chapter(&opened, options.problems as usize, enough)?);
+    add("roots", roots::chapter(&opened, options.problems as usize)?);
+    fs::create_dir_all(&options.out)
+        .and_then(|()| fs::write(&path, page))
+        .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// An error as a line.
+pub fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

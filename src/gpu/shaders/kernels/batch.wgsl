@@ -1,0 +1,21 @@
+// Many problems at once, a thread each: `solve` of the text before this one takes the place of a problem's first number
+// and that of its answer's.
+
+@group(0) @binding(0) var<uniform> head: Head;
+@group(0) @binding(1) var<storage, read> problems: array<real>;
+// Each answer has the submission's number before it: what nobody has written is no answer.
+@group(0) @binding(2) var<storage, read_write> answers: array<real>;
+
+@compute @workgroup_size(THREADS)
+fn batch(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let problem = (workgroup.y * workgroups.x + workgroup.x) * THREADS + lane;
+    if (head.problems <= problem) {
+        return;
+    }
+    solve(PROBLEM * problem, ANSWER * problem + 1u);
+    answers[ANSWER * problem] = real(head.submission);
+}

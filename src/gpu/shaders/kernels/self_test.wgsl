@@ -1,0 +1,7 @@
+// The quotient of two numbers and the square root of the first, which the host compares with its own before it trusts a
+// device's double precision.
+
+fn solve(problem: u32, answer: u32) {
+    answers[answer] = problems[problem] / problems[problem + 1u];
+    answers[answer + 1u] = sqrt(problems[problem]);
+}

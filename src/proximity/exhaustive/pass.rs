@@ -1,0 +1,213 @@
+//! One pass over all triangles for the links of one robot or many.
+
+use super::blocks::Blocks;
+use super::kernels::Kernels;
+use super::scan::{Findings, Job, JobLink, SharedBound};
+use crate::Chain;
+use crate::distance::Scalar;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::placed::{Nearest, PlacedRobot};
+use crate::proximity::search_frame::SearchLink;
+use crate::proximity::{LinkProximity, ProximityError, Work};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real};
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A mesh in the precision of the search.
+#[derive(Clone)]
+pub(super) struct Triangles<T> {
+    pub mesh: Mesh,
+    blocks: Blocks<T>,
+    /// For links that single precision does not resolve, filled when the first of them comes.
+    double: OnceLock<Blocks<f64>>,
+}
+
+impl<T: Kernels> Triangles<T> {
+    pub(super) fn new(level: Level, mesh: Mesh) -> Self {
+        let blocks = Blocks::new(&mesh, |faces, spheres| T::prepare(level, faces, spheres));
+        Self { mesh, blocks, double: OnceLock::new() }
+    }
+
+    fn double(&self, level: Level) -> &Blocks<f64> {
+        self.double
+            .get_or_init(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
+    }
+
+    /// Takes over that the vertices of the mesh have moved.
+    pub(super) fn refill(&mut self, level: Level) {
+        self.blocks.refill(&self.mesh, |faces, spheres| T::prepare(level, faces, spheres));
+        if let Some(double) = self.double.get_mut() {
+            double.refill(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres));
+        }
+    }
+}
+
+/// What a pass looks for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Aim {
+    /// The nearest triangle of every link.
+    EachLink,
+    /// The nearest triangle of all links of a robot together.
+    Least,
+    /// Any triangle at most so far away, for each robot.
+    Within(Real),
+}
+
+/// The links of a pass and what it found, in memory that is used again.
+pub(super) struct Pass<T> {
+    links: Vec<JobLink<T>>,
+    /// Links that the precision `T` does not resolve.
+    double: Vec<JobLink<f64>>,
+    /// The links of each robot.
+    robots: Vec<Range<usize>>,
+    bounds: Vec<SharedBound>,
+    /// One for each thread; the first has what all have found.
+    findings: Vec<Findings>,
+}
+
+impl<T> Default for Pass<T> {
+    fn default() -> Self {
+        Self {
+            links: Vec::new(),
+            double: Vec::new(),
+            robots: Vec::new(),
+            bounds: Vec::new(),
+            findings: Vec::new(),
+        }
+    }
+}
+
+impl<T: Kernels> Pass<T> {
+    /// Looks at all triangles.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    pub(super) fn run<'a>(
+        &mut self,
+        level: Level,
+        culling: bool,
+        triangles: &Triangles<T>,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        aim: Aim,
+    ) -> Result<Work, ProximityError> {
+        let links = self.place(level, triangles, robots, aim)?;
+        let Self { links: resolved, double, bounds, findings, robots } = self;
+        let bound = if let Aim::Within(margin) = aim { margin } else { Real::INFINITY };
+        bounds.clear();
+        bounds
+            .resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || SharedBound::new(bound));
+        findings.resize_with(threads(links * triangles.mesh.len()), Findings::default);
+        for findings in &mut *findings {
+            findings.work = Work::default();
+            findings.nearest.clear();
+            findings.nearest.resize(links, None);
+        }
+        let (mesh, stop_at_first) = (&triangles.mesh, matches!(aim, Aim::Within(_)));
+        let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first };
+        scan(level, culling, &job, findings);
+        if !double.is_empty() {
+            let blocks = triangles.double(level);
+            scan(level, culling, &Job { mesh, blocks, links: double, bounds, stop_at_first }, findings);
+        }
+        let (first, others) = findings.split_at_mut(1);
+        for other in others {
+            first[0].merge(other);
+        }
+        Ok(first[0].work)
+    }
+
+    /// Sorts the robots' links by the precision that resolves them, and counts them.
+    fn place<'a>(
+        &mut self,
+        level: Level,
+        triangles: &Triangles<T>,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        aim: Aim,
+    ) -> Result<usize, ProximityError> {
+        let Self { links, double, robots: ranges, .. } = self;
+        links.clear();
+        double.clear();
+        ranges.clear();
+        let frame = &triangles.blocks.frame;
+        let is_double = T::UNIT_ROUNDOFF <= f64::UNIT_ROUNDOFF;
+        let mut place = 0;
+        for (number, (robot, pose)) in robots.enumerate() {
+            let first = place;
+            for link in PlacedRobot::new(robot, pose)?.placed_links() {
+                let bound = if aim == Aim::EachLink { place } else { number };
+                let searched = SearchLink::new(&link, frame);
+                if is_double || searched.as_ref().is_some_and(|searched| frame.resolves(searched)) {
+                    links.push(JobLink { link, searched, place, bound });
+                } else {
+                    let searched = SearchLink::new(&link, &triangles.double(level).frame);
+                    double.push(JobLink { link, searched, place, bound });
+                }
+                place += 1;
+            }
+            ranges.push(first..place);
+        }
+        Ok(place)
+    }
+
+    /// What the last pass found for a link.
+    fn found(&self, place: usize) -> Option<Nearest> {
+        self.findings[0].nearest[place]
+    }
+
+    /// The nearest triangle of each link of a robot.
+    pub(super) fn answers(&self, robot: usize) -> impl Iterator<Item = LinkProximity> {
+        let places = self.robots[robot].clone();
+        // Without a bound some triangle is always the nearest.
+        places.enumerate().filter_map(|(link, place)| Some(self.found(place)?.report(link)))
+    }
+
+    /// Whether nothing was found for a robot.
+    pub(super) fn is_clear(&self, robot: usize) -> bool {
+        self.robots[robot].clone().all(|place| self.found(place).is_none())
+    }
+}
+
+/// Fewer pairs than this are not worth a second thread.
+#[cfg(feature = "parallel")]
+const PAIRS_PER_THREAD: usize = 1 << 17;
+
+/// How many threads are worth while.
+#[cfg(feature = "parallel")]
+fn threads(pairs: usize) -> usize {
+    rayon::current_num_threads().min(1 + pairs / PAIRS_PER_THREAD)
+}
+
+#[cfg(not(feature = "parallel"))]
+fn threads(_: usize) -> usize {
+    1
+}
+
+/// Has every thread take the next chunk until there is none.
+fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [Findings]) {
+    if culling && !job.stop_at_first {
+        E::first_bounds(level, job);
+    }
+    let next = AtomicUsize::new(0);
+    let work = |findings: &mut Findings| {
+        loop {
+            let chunk = next.fetch_add(1, Ordering::Relaxed);
+            if chunk >= job.chunks() {
+                break;
+            }
+            if culling {
+                E::scan(level, job, chunk, findings);
+            } else {
+                E::scan_every_pair(level, job, chunk, findings);
+            }
+        }
+    };
+    #[cfg(feature = "parallel")]
+    if findings.len() > 1 {
+        return findings.par_iter_mut().for_each(work);
+    }
+    findings.iter_mut().for_each(work);
+}
