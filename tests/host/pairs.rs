@@ -4,8 +4,8 @@
 //! projections are exact for the shapes here, and the lengths fall towards the distance of the two. An overlap is
 //! recognised by a point that is in both.
 
-use crate::common::Random;
 use crate::draw::Draw;
+use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::query::{ClosestPoints, PointQuery, QueryDispatcher, ShapeCastOptions};
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
