@@ -4,6 +4,9 @@ mod beam;
 mod chain;
 mod drop;
 mod fast;
+#[path = "../../examples/scene/random.rs"]
+#[allow(dead_code, reason = "other tests use more of it")]
+mod random;
 mod rest;
 #[path = "../../examples/rapier_ventricle/rod.rs"]
 mod rod;
