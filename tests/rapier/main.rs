@@ -13,4 +13,5 @@ mod rod;
 #[path = "../../examples/scene/mod.rs"]
 mod scene;
 mod setup;
+mod soft;
 mod units;
