@@ -46,7 +46,7 @@ impl Method for Bairstow {
 /// u and v of a quadratic factor.
 fn factor<T: Real, const M: usize>(p: &[T; M], degree: usize) -> Option<(T, T)> {
     let mut radius = smallest_root_bound(p, degree);
-    let mut direction = first_direction();
+    let mut direction = first_direction::<T>();
     for _ in 0..GUESSES {
         let (u, v) = (-(direction.0 * radius + direction.0 * radius), radius * radius);
         if let Some(found) = refine(p, degree, u, v) {

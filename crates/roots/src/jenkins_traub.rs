@@ -82,7 +82,7 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
     fn factor(&self) -> Option<Factor<T, M>> {
         let start = self.without_shift();
         let bound = smallest_root_bound(self.p, self.degree);
-        let mut direction = first_direction();
+        let mut direction = first_direction::<T>();
         for attempt in 1..=DIRECTIONS {
             let x = direction.0 * bound;
             if let Some(factor) = self.with_fixed_shift(start, -(x + x), bound * bound, 20 * attempt) {
