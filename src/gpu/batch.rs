@@ -61,6 +61,25 @@ impl<'a> BatchKernel<'a> {
 }
 
 /// A kernel on a GPU that answers many problems at once, a thread each.
+///
+/// ```no_run
+/// use parry_continuum::gpu::{Batch, BatchKernel, Gpu, Precision, wgsl};
+///
+/// let text = [wgsl::NARROW_PHASE, wgsl::CONVEX, "
+///     fn point(place: u32) -> vec3<real> {
+///         return vec3<real>(problems[place], problems[place + 1u], problems[place + 2u]);
+///     }
+///     fn solve(problem: u32, answer: u32) {
+///         let found = segment_segment(
+///             point(problem), point(problem + 3u), point(problem + 6u), point(problem + 9u));
+///         answers[answer] = found.distance;
+///     }"].concat();
+/// let kernel = BatchKernel::new("segment_segment", &text, 12, 1);
+/// let mut batch = Batch::new(&Gpu::open(Precision::F32)?, &kernel)?;
+/// let segments = [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0, 1.0, 2.0]];
+/// batch.run(segments.into_iter().flatten(), |answer| println!("{}", answer[0]))?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Batch {
     gpu: Gpu,
     watch: Watch,

@@ -10,7 +10,21 @@
 //!
 //! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
 //! for both precisions.
+//!
+//! The way of a query, from top to bottom:
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `engine` | what the engine is and answers: [`GpuExhaustive`] |
+//! | `answers`, `measure` | from robots to links, and from candidates to answers in double precision |
+//! | `query` | the four kernels of a query; `plan` deals the pairs to threads, `candidates` reads what comes back |
+//! | `mesh`, `link`, `buffers` | what lies in the device's memory; `record` lays it out |
+//! | `batch` | any kernel over many records: [`Batch`] |
+//! | `opened`, `device`, `clock`, `self_test` | the [`Gpu`] itself |
+//! | `failures`, `error` | what can go wrong, and who hears of it |
+//! | `wgsl`, `shaders/` | the kernels' text |
 
+mod answers;
 mod batch;
 mod buffers;
 mod candidates;

@@ -1,6 +1,7 @@
 use crate::distance::lanes::Lane;
 use parry3d_f64::math::Real;
 
+// Exhaustive: whoever writes kernels for both precisions must see that there are no others.
 /// The numbers with which a GPU searches. The distances it returns are those of double precision either way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Precision {

@@ -1,4 +1,5 @@
-//! The shaders' text: pieces for kernels of one's own (see [`BatchKernel`](super::BatchKernel)), and what this crate compiles.
+//! The shaders' text: pieces for kernels of one's own (see [`BatchKernel`](super::BatchKernel)), and what this crate
+//! compiles.
 //!
 //! What the host knows too, constants and records, is declared once, in Rust, and precedes the text. A function has the
 //! name of its twin in `distance` or `proximity` (with the name of the twin's file before it where that is needed) and

@@ -1,0 +1,119 @@
+//! From robots to answers: the links go to the device, and what it leaves in question is measured here.
+
+use super::GpuExhaustive;
+use super::candidates::Candidate;
+use super::link::DeviceLink;
+use super::measure::{least_distance, nearest_of, nearest_of_all};
+use super::mesh::DeviceMesh;
+use crate::Chain;
+use crate::proximity::{LinkProximity, Nearest, PlacedRobot, ProximityError};
+use parry3d_f64::math::{Pose, Real};
+
+impl GpuExhaustive {
+    /// Places the robots' links and has the device find their candidates. Only triangles within `margin` are of interest
+    /// if there is one.
+    pub(super) fn search<'a>(
+        &mut self,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        margin: Option<Real>,
+    ) -> Result<(), ProximityError> {
+        let Self { links, device_links, robots: ranges, .. } = self;
+        links.clear();
+        device_links.clear();
+        ranges.clear();
+        for (robot, pose) in robots {
+            let first = links.len();
+            for link in PlacedRobot::new(robot, pose)?.placed_links() {
+                let on_device = DeviceLink::new(&link, &self.frame, margin, self.gpu.precision());
+                links.push((link, on_device.is_some().then_some(device_links.len())));
+                device_links.extend(on_device);
+            }
+            ranges.push(first..links.len());
+        }
+        if device_links.is_empty() {
+            return Ok(());
+        }
+        let gpu = &*self.gpu.0;
+        let mut mesh =
+            self.on_device.take().unwrap_or_else(|| DeviceMesh::new(gpu, &self.mesh, self.tuning.part));
+        mesh.update(gpu, &self.frame, &self.mesh);
+        let nearest = self.every_pair.as_ref().unwrap_or(&gpu.nearest);
+        self.query.run(gpu, &mesh, device_links, nearest)?;
+        self.on_device = Some(mesh);
+        Ok(())
+    }
+
+    /// What the device knows of a link: its candidates, if it could tell all that matter.
+    fn candidates(&self, place: usize) -> Option<(&DeviceLink, &[Candidate])> {
+        let number = self.links[place].1?;
+        let link = &self.device_links[number];
+        let (candidates, too_many) = self.query.candidates(number);
+        // Without a margin there is always one.
+        let complete = !too_many && (link.has_margin() || !candidates.is_empty());
+        complete.then_some((link, candidates))
+    }
+
+    /// The nearest triangle of a link among those at most `bound` away.
+    fn nearest(&mut self, place: usize, bound: Real) -> Option<Nearest> {
+        let link = &self.links[place].0;
+        let Some((device_link, candidates)) = self.candidates(place) else {
+            let nearest = nearest_of_all(link, bound, &self.mesh);
+            self.answered_on_cpu += 1;
+            return nearest;
+        };
+        // What the device computed errs, for the least of them and for any other.
+        let limit = least_distance(candidates) + 2.0 * device_link.error();
+        let near = candidates.iter().filter(|candidate| candidate.distance <= limit);
+        nearest_of(link, near.map(|candidate| candidate.triangle), bound, &self.mesh)
+    }
+
+    /// A lower bound on a link's distance by what the device computed.
+    fn at_least(&self, place: usize) -> Real {
+        self.candidates(place).map_or(0.0, |(link, candidates)| link.at_least(least_distance(candidates)))
+    }
+
+    /// The nearest triangle of each link of a robot.
+    pub(super) fn answers(&mut self, robot: usize, out: &mut Vec<LinkProximity>) {
+        for (link, place) in self.robots[robot].clone().enumerate() {
+            // Some triangle is always the nearest; this is any other.
+            let nearest = self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
+            out.push(nearest.report(link));
+        }
+    }
+
+    fn first_triangle(&self, place: usize) -> Nearest {
+        self.links[place].0.measure(0, self.mesh.corners(0))
+    }
+
+    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
+    pub(super) fn least(&mut self, robot: usize) -> LinkProximity {
+        let places = self.robots[robot].clone();
+        let first = places.start;
+        let mut best: Option<LinkProximity> = None;
+        // The likeliest link first: its distance rules out most others.
+        let likeliest =
+            places.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(first);
+        for place in std::iter::once(likeliest).chain(places.filter(|&place| place != likeliest)) {
+            let bound = best.map_or(Real::INFINITY, |best| best.distance);
+            if self.at_least(place) <= bound
+                && let Some(nearest) = self.nearest(place, bound)
+            {
+                let other = nearest.report(place - first);
+                let key = |answer: &LinkProximity| (answer.triangle, answer.link);
+                let is_nearer = |best: LinkProximity| {
+                    other.distance < best.distance
+                        || (other.distance <= best.distance && key(&other) < key(&best))
+                };
+                if best.is_none_or(is_nearer) {
+                    best = Some(other);
+                }
+            }
+        }
+        best.unwrap_or_else(|| self.first_triangle(first).report(0))
+    }
+
+    /// Whether a robot keeps its distance.
+    pub(super) fn is_clear(&mut self, robot: usize, margin: Real) -> bool {
+        self.robots[robot].clone().all(|place| self.nearest(place, margin).is_none())
+    }
+}
