@@ -5,7 +5,7 @@
 //! answers for what touches already (see `src/host/link_cast.rs`) holds them there.
 
 use crate::drop::{Drop, attitudes, links, mesh, world};
-use crate::random::Random;
+use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
