@@ -4,6 +4,7 @@ mod beam;
 mod chain;
 mod drop;
 mod fast;
+mod long;
 #[path = "../../examples/scene/random.rs"]
 #[allow(dead_code, reason = "other tests use more of it")]
 mod random;
