@@ -1,6 +1,6 @@
 //! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
 
-use super::field::{self, FieldPair};
+use super::elements::{self, FieldPair};
 use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
@@ -100,7 +100,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
-            Parts::Voxels(voxels) => field::intersection_test_voxels(self, pos12, voxels, g2),
+            Parts::Voxels(voxels) => elements::intersection_test_voxels(self, pos12, voxels, g2),
             Parts::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
@@ -224,7 +224,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
-            Parts::Voxels(voxels) => field::cast_voxels(self, (pos12, local_vel12), voxels, g2, options),
+            Parts::Voxels(voxels) => elements::cast_voxels(self, (pos12, local_vel12), voxels, g2, options),
             Parts::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -283,21 +283,21 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return Ok(hit);
         }
         match Parts::of(g1, g2) {
-            Parts::Composite(parts) => field::cast_parts_nonlinear(
+            Parts::Composite(parts) => elements::cast_parts_nonlinear(
                 self,
                 (motion1, parts),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Field(field) => field::cast_nonlinear(
+            Parts::Field(field) => elements::cast_nonlinear(
                 self,
                 (motion1, field),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Voxels(voxels) => field::cast_voxels_nonlinear(
+            Parts::Voxels(voxels) => elements::cast_voxels_nonlinear(
                 self,
                 (motion1, voxels),
                 (motion2, g2),

@@ -3,6 +3,7 @@
 
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::QueryDispatcher;
+use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder, rapier};
 use rapier3d_f64::prelude::*;
@@ -31,7 +32,7 @@ pub fn world(size: Real) -> PhysicsWorld {
 }
 
 /// A grid of triangles over the square of half width 6 with the heights given.
-pub fn mesh(size: Real, height: impl Fn(Real, Real) -> Real) -> ColliderBuilder {
+pub fn grid(size: Real, height: impl Fn(Real, Real) -> Real) -> TriMesh {
     const CELLS: u32 = 15;
     let place = |i: u32| 12.0 * (i as Real / CELLS as Real - 0.5);
     let vertex = |k: u32| {
@@ -44,7 +45,11 @@ pub fn mesh(size: Real, height: impl Fn(Real, Real) -> Real) -> ColliderBuilder 
     };
     let vertices = (0..(CELLS + 1) * (CELLS + 1)).map(vertex).collect();
     let triangles = (0..CELLS * CELLS).flat_map(cell).collect();
-    ColliderBuilder::trimesh_with_flags(vertices, triangles, TriMeshFlags::FIX_INTERNAL_EDGES).unwrap()
+    TriMesh::with_flags(vertices, triangles, TriMeshFlags::FIX_INTERNAL_EDGES).unwrap()
+}
+
+pub fn mesh(size: Real, height: impl Fn(Real, Real) -> Real) -> ColliderBuilder {
+    ColliderBuilder::new(SharedShape::new(grid(size, height)))
 }
 
 /// Gentle bumps.

@@ -13,6 +13,9 @@ use std::time::Instant;
 /// The thickness of what is piled up.
 const RADIUS: Real = 0.25;
 
+/// Makes a body's shape, by its number.
+type Make = fn(usize) -> SharedShape;
+
 fn link(index: usize) -> SharedShape {
     let caps = [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]][index % 4];
     SharedShape::new(ModifiedCylinder::new(-0.5 * Vector::Y, 0.5 * Vector::Y, RADIUS, caps).unwrap())
@@ -98,7 +101,7 @@ impl Pile {
 
 #[test]
 fn piles_stay_above_the_floor_as_parrys_do() {
-    let scenes: [(_, fn(usize) -> SharedShape, fn(usize) -> SharedShape); 2] =
+    let scenes: [(usize, Make, Make); 2] =
         [(20, link, |_| SharedShape::capsule_y(0.5, RADIUS)), (12, chain, capsules)];
     for (count, ours, parrys) in scenes {
         let [ours, parrys] = [ours, parrys].map(|shape| Pile::new(count, shape).run(900));
@@ -147,7 +150,7 @@ fn a_robot_pressed_into_a_wall_stays_on_its_side() {
 fn piles_for_long() {
     let steps = std::env::var("STEPS").map_or(100_000, |steps| steps.parse().expect("a number of steps"));
     let which = std::env::var("SCENE").unwrap_or_default();
-    let scenes: [(&str, usize, fn(usize) -> SharedShape); 4] = [
+    let scenes: [(&str, usize, Make); 4] = [
         ("links", 60, link),
         ("parry's capsules", 60, |_| SharedShape::capsule_y(0.5, RADIUS)),
         ("chains", 100, chain),

@@ -1,29 +1,15 @@
 //! Walls that give way: a robot keeps its contacts on them, and they do not feed it energy.
 
-use crate::drop::{Drop, attitudes, links, world};
+use crate::drop::{Drop, attitudes, grid, links, world};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::shape::{TriMesh, TriMeshFlags};
 use rapier3d_f64::dynamics::SoftBodyBuilder;
 use rapier3d_f64::prelude::*;
 use std::f64::consts::PI;
 
-const CELLS: u32 = 15;
-
-/// A floor over the square of half width 6 whose waves are `height` high.
-fn waves(height: Real) -> TriMesh {
-    let place = |i: u32| 12.0 * (Real::from(i) / Real::from(CELLS) - 0.5);
-    let vertex = |k: u32| {
-        let (x, z) = (place(k / (CELLS + 1)), place(k % (CELLS + 1)));
-        Vector::new(x, height * (1.3 * x).sin() * (1.1 * z).cos(), z)
-    };
-    let cell = |k: u32| {
-        let a = (CELLS + 1) * (k / CELLS) + k % CELLS;
-        [[a, a + 1, a + CELLS + 1], [a + 1, a + CELLS + 2, a + CELLS + 1]]
-    };
-    let vertices = (0..(CELLS + 1) * (CELLS + 1)).map(vertex).collect();
-    let triangles = (0..CELLS * CELLS).flat_map(cell).collect();
-    TriMesh::with_flags(vertices, triangles, TriMeshFlags::FIX_INTERNAL_EDGES).unwrap()
+/// A floor whose waves are `height` high.
+fn waves(height: Real) -> SharedShape {
+    SharedShape::new(grid(1.0, |x, z| height * (1.3 * x).sin() * (1.1 * z).cos()))
 }
 
 fn robots() -> Vec<(String, SharedShape)> {
@@ -45,7 +31,7 @@ fn parrys() -> [(String, SharedShape); 2] {
 /// On a mesh that is another one at each step, for ten seconds, and then stays as it is: how deep the body gets, for
 /// how many steps it is loose, and by what height its energy grows once the mesh is still.
 fn on_moving_mesh(robot: SharedShape) -> (Real, usize, Real) {
-    let ground = ColliderBuilder::new(SharedShape::new(waves(0.0)));
+    let ground = ColliderBuilder::new(waves(0.0));
     let pose = Pose::from_parts(Vector::new(0.2, 0.51, -0.1), attitudes()[1].1);
     let mut drop = Drop::new(world(1.0), ground, robot, pose);
     let body = &mut drop.world.bodies[drop.body];
@@ -54,7 +40,7 @@ fn on_moving_mesh(robot: SharedShape) -> (Real, usize, Real) {
     let (mut loose, mut deepest) = (0, 0.0_f64);
     for step in 0..1200 {
         let height = 0.1 * (2.0 * PI * Real::from(step) / 480.0).sin();
-        drop.world.colliders[drop.ground].set_shape(SharedShape::new(waves(height)));
+        drop.world.colliders[drop.ground].set_shape(waves(height));
         drop.world.step();
         let gap = drop.gap(0.1);
         loose += usize::from(step > 60 && gap > 0.01);

@@ -1,10 +1,10 @@
-//! Height fields and voxels as composites, for the queries that parry has no composite version of.
+//! Height fields, voxels and moving composites, element by element: what parry has no version of that serves here.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no height component, its
-//! cast against voxels goes through all the empty cells on the way, however many, and none of its queries names the
-//! element that answered. So the elements are visited here:
-//! those whose boxes meet the box that the other shape occupies, reaches or sweeps, loosened by what rounding
-//! can have taken from it.
+//! parry's cast against a height field looks at the starting cells only when the motion has no height component. Its
+//! cast against voxels goes through all the empty cells on the way, however many, and its nonlinear cast against a
+//! composite bisects for the balls around the parts, without end where a number is large. None of its queries on fields
+//! and voxels names the element that answered. So the elements are visited here: those whose boxes meet the box that
+//! the other shape occupies, reaches or sweeps, loosened by what rounding can have taken from it.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
