@@ -5,7 +5,7 @@ use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
 use super::robot_halfspace::RobotHalfSpace;
-use super::robot_pair::RobotPair;
+use super::robot_pair::{RobotPair, in_range, links_of};
 use super::watched::Watched;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -14,23 +14,33 @@ use parry3d_f64::query::{
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
 use parry3d_f64::shape::Shape;
+use std::ops::RangeInclusive;
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
 /// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers,
 /// because parry's own dispatcher never comes back from within a composite shape. Put yours in as `L`.
 ///
-/// | query | (link or chain) against (`Triangle` or `TriMesh`), in both orders |
-/// |---|---|
-/// | `distance`, `closest_points`, `intersection_test` | exact |
-/// | `contact` | exact; where the two overlap, the shortest translation that separates link and triangle |
-/// | `cast_shapes`, `cast_shapes_nonlinear` | parry's support-map algorithms, on exact support points |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints |
+/// A link, or a chain, in either order against a
+///
+/// | | `Triangle`, `TriMesh`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
+/// |---|---|---|---|---|
+/// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `intersection_test` | exact | exact | exact | parry's GJK |
+/// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
+/// | `cast_shapes` | parry's: within 1e-5 | exact | parry's: within 1e-5 | parry's: within 1e-5 |
+/// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | parry's, on polygons that stand for the link's surface |
+///
+/// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
+/// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond
+/// 2^200 or below 2^-200, are refused in the last column.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
-/// `Intersecting`, and a margin is kept only by what is further away than it.
-///
-/// Manifolds against other convex shapes are parry's, on polygons that stand for the link's surface.
+/// `Intersecting`, and a margin is kept only by what is further away than it. A nonlinear cast that does not stop at
+/// the start answers for what touches there when the link's core would meet the other shape: half of what keeps the
+/// link from being through is left then.
 ///
 /// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
 /// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about
@@ -39,8 +49,8 @@ use parry3d_f64::shape::Shape;
 ///
 /// # Errors
 /// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
-/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a margin that is NaN,
-/// and for the queries that parry has not got for voxels.
+/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a rotation that is not of unit
+/// length, for a margin that is NaN, and for the queries that parry has not got for voxels.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -94,7 +104,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
-            Parts::None => self.0.intersection_test(pos12, g1, g2),
+            Parts::None => self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2),
         }
     }
 
@@ -117,7 +127,10 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => FieldPair { dispatcher: self, field, pos12, other: g2 }.distance(),
             Parts::Voxels(_) => Err(Unsupported),
             Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
-            Parts::None => self.0.distance(pos12, g1, g2),
+            Parts::None => {
+                let answer = self.inner(pos12, g1, g2)?.distance(pos12, g1, g2)?;
+                check_margin(answer.distance).map(|()| answer)
+            }
         }
     }
 
@@ -150,7 +163,10 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
             }
-            Parts::None => self.0.contact(pos12, g1, g2, prediction),
+            Parts::None => {
+                let contact = self.inner(pos12, g1, g2)?.contact(pos12, g1, g2, prediction)?;
+                check_margin(contact.map_or(0.0, |contact| contact.dist)).map(|()| contact)
+            }
         }
     }
 
@@ -182,7 +198,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => self.0.closest_points(pos12, g1, g2, max_dist.max(0.0)),
+            Parts::None => self.inner(pos12, g1, g2)?.closest_points(pos12, g1, g2, max_dist.max(0.0)),
         }
     }
 
@@ -197,9 +213,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         check_margin(options.max_time_of_impact)?;
         check_margin(options.target_distance)?;
-        if !local_vel12.is_finite() {
-            return Err(Unsupported);
-        }
+        in_range(local_vel12)?;
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
         }
@@ -210,9 +224,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
-            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
-                details::cast_shapes_voxels_shape(watched, pos12, local_vel12, voxels, g2, options)
-            }),
+            Parts::Voxels(voxels) => field::cast_voxels(self, (pos12, local_vel12), voxels, g2, options),
             Parts::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -220,12 +232,17 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             }
             Parts::None => match LinkTriangle::of(g1, g2)? {
                 Some(pair) => {
+                    self.inner(pos12, g1, g2)?;
                     let (s1, s2) = pair.support_maps();
                     let hit =
                         details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
                     Ok(hit)
                 }
-                None => self.0.cast_shapes(pos12, local_vel12, g1, g2, options),
+                None => {
+                    let inner = self.inner(pos12, g1, g2)?;
+                    let hit = inner.cast_shapes(pos12, local_vel12, g1, g2, options)?;
+                    check_margin(hit.map_or(0.0, |hit| hit.time_of_impact)).map(|()| hit)
+                }
             },
         }
     }
@@ -244,24 +261,35 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
         }
+        // parry's tolerances are absolute in time too: late times would leave it no way to meet them.
+        if (start_time, end_time) != (0.0, 1.0) {
+            let duration = end_time - start_time;
+            if duration < 0.0 {
+                return Ok(None);
+            }
+            let [from1, from2] = [motion1, motion2].map(|motion| NonlinearRigidMotion {
+                start: motion.position_at_time(start_time),
+                linvel: motion.linvel * duration,
+                angvel: motion.angvel * duration,
+                ..*motion
+            });
+            let hit = self.cast_shapes_nonlinear(&from1, g1, &from2, g2, 0.0, 1.0, stop_at_penetration)?;
+            let at = |share: Real| start_time + share * duration;
+            return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
+        }
         let times = (start_time, end_time);
         let moving = ((motion1, g1), (motion2, g2));
         if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
             return Ok(hit);
         }
         match Parts::of(g1, g2) {
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                details::cast_shapes_nonlinear_composite_shape_shape(
-                    watched,
-                    motion1,
-                    parts,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )
-            }),
+            Parts::Composite(parts) => field::cast_parts_nonlinear(
+                self,
+                (motion1, parts),
+                (motion2, g2),
+                (start_time, end_time),
+                stop_at_penetration,
+            ),
             Parts::Field(field) => field::cast_nonlinear(
                 self,
                 (motion1, field),
@@ -269,18 +297,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Voxels(voxels) => Watched::ask(self, |watched| {
-                details::cast_shapes_nonlinear_voxels_shape(
-                    watched,
-                    motion1,
-                    voxels,
-                    motion2,
-                    g2,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )
-            }),
+            Parts::Voxels(voxels) => field::cast_voxels_nonlinear(
+                self,
+                (motion1, voxels),
+                (motion2, g2),
+                (start_time, end_time),
+                stop_at_penetration,
+            ),
             Parts::OfSecond => {
                 let hit = self.cast_shapes_nonlinear(
                     motion2,
@@ -305,6 +328,28 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         }
     }
 }
+
+impl<L> ContinuumDispatcher<L> {
+    /// The dispatcher for a pair that cannot be taken apart, nor is answered here.
+    ///
+    /// # Errors
+    /// [`Unsupported`] for a link out of the range of parry's iterations: squares of squares of lengths leave that of
+    /// f64, and then they panic or answer NaN.
+    pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
+        if links_of(g1).or(links_of(g2)).is_none() {
+            return Ok(&self.0);
+        }
+        let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
+        let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
+        let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
+        let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
+        if is_finite && ITERATED_RANGE.contains(&largest) { Ok(&self.0) } else { Err(Unsupported) }
+    }
+}
+
+/// From 2^-200 to 2^200.
+const ITERATED_RANGE: RangeInclusive<Real> =
+    Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 200) << 52);
 
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {

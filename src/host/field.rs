@@ -1,7 +1,8 @@
 //! Height fields and voxels as composites, for the queries that parry has no composite version of.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no height
-//! component, and none of its queries names the element that answered. So the elements are visited here:
+//! parry's cast against a height field looks at the starting cells only when the motion has no height component, its
+//! cast against voxels goes through all the empty cells on the way, however many, and none of its queries names the
+//! element that answered. So the elements are visited here:
 //! those whose boxes meet the box that the other shape occupies, reaches or sweeps, loosened by what rounding
 //! can have taken from it.
 
@@ -11,7 +12,7 @@ use parry3d_f64::query::{
     ClosestPoints, Contact, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastOptions,
     ShapeDistance, ShapeIntersection, Unsupported,
 };
-use parry3d_f64::shape::{Cuboid, HeightField, Shape, Triangle, Voxels};
+use parry3d_f64::shape::{CompositeShape, Cuboid, HeightField, Shape, Triangle, Voxels};
 
 /// A height field and another shape, whose pose is in the field's frame.
 pub(super) struct FieldPair<'a, D> {
@@ -63,17 +64,7 @@ impl<D: QueryDispatcher> FieldPair<'_, D> {
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let start = self.around(options.target_distance.max(0.0));
-        let root = self.field.root_aabb();
-        // As far as the motion goes, but not beyond the field: the product may be infinite.
-        let path = vel12 * options.max_time_of_impact;
-        let mut swept = start;
-        for i in 0..3 {
-            if vel12[i] > 0.0 {
-                swept.maxs[i] = (start.maxs[i] + path[i]).min(root.maxs[i]).max(start.maxs[i]);
-            } else if vel12[i] < 0.0 {
-                swept.mins[i] = (start.mins[i] + path[i]).max(root.mins[i]).min(start.mins[i]);
-            }
-        }
+        let swept = swept(&start, self.field.root_aabb(), vel12 * options.max_time_of_impact);
         let first = least_element(self.field, &swept, |element| {
             let hit = self.dispatcher.cast_shapes(self.pos12, vel12, element, self.other, options)?;
             Ok(hit.map(|hit| (hit.time_of_impact, hit)))
@@ -88,10 +79,8 @@ impl<D: QueryDispatcher> FieldPair<'_, D> {
     /// The other shape's box, loosened by `margin` and by rounding.
     fn around(&self, margin: Real) -> Aabb {
         let bounds = self.other.compute_aabb(self.pos12);
-        let root = self.field.root_aabb();
-        let size = [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
-        let rounding = 16.0 * Real::EPSILON * size.into_iter().fold(margin, Real::max);
-        bounds.loosened(margin + rounding)
+        let rounding = rounding(&bounds, self.field.root_aabb());
+        bounds.loosened(margin + rounding + 16.0 * Real::EPSILON * margin)
     }
 
     /// An element below or above the other shape, or any.
@@ -104,9 +93,6 @@ impl<D: QueryDispatcher> FieldPair<'_, D> {
 }
 
 /// The first hit of a moving shape on a moving height field.
-///
-/// The elements that count are within reach of the ball around the shape: in the field's frame its centre
-/// travels no further than both move and turn it together.
 pub(super) fn cast_nonlinear(
     dispatcher: &impl QueryDispatcher,
     (motion1, field): (&NonlinearRigidMotion, &HeightField),
@@ -114,6 +100,48 @@ pub(super) fn cast_nonlinear(
     (start_time, end_time): (Real, Real),
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let bounds = reached(motion1, (motion2, other), (start_time, end_time))?;
+    let first = least_element(field, &bounds, |element| {
+        let hit = dispatcher.cast_shapes_nonlinear(
+            motion1,
+            element,
+            motion2,
+            other,
+            start_time,
+            end_time,
+            stop_at_penetration,
+        )?;
+        Ok(hit.map(|hit| (hit.time_of_impact, hit)))
+    })?;
+    Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
+}
+
+/// What rounding can have taken from the meeting of two boxes.
+fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
+    let size = [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
+    16.0 * Real::EPSILON * size.into_iter().fold(0.0, Real::max)
+}
+
+/// What a box sweeps along `path`, as far as there is something in `root`: the path may be infinite.
+fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
+    let mut swept = *start;
+    for i in 0..3 {
+        if path[i] > 0.0 {
+            swept.maxs[i] = (start.maxs[i] + path[i]).min(root.maxs[i]).max(start.maxs[i]);
+        } else if path[i] < 0.0 {
+            swept.mins[i] = (start.mins[i] + path[i]).max(root.mins[i]).min(start.mins[i]);
+        }
+    }
+    swept
+}
+
+/// A box in the first shape's frame that the second does not leave: in that frame the centre of the ball around it
+/// travels no further than both move and turn it together.
+fn reached(
+    motion1: &NonlinearRigidMotion,
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+) -> Result<Aabb, Unsupported> {
     let (pos1, pos2) = (motion1.position_at_time(start_time), motion2.position_at_time(start_time));
     let ball = other.compute_local_bounding_sphere();
     let centre = pos2 * ball.center;
@@ -128,19 +156,107 @@ pub(super) fn cast_nonlinear(
     if !(bounds.mins.is_finite() && bounds.maxs.is_finite()) {
         return Err(Unsupported);
     }
-    let first = least_element(field, &bounds, |element| {
-        let hit = dispatcher.cast_shapes_nonlinear(
-            motion1,
-            element,
+    Ok(bounds)
+}
+
+/// The first hit of a shape that moves past voxels: as for a height field.
+pub(super) fn cast_voxels(
+    dispatcher: &impl QueryDispatcher,
+    (pos12, vel12): (&Pose, Vector),
+    voxels: &Voxels,
+    other: &dyn Shape,
+    options: ShapeCastOptions,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let start = other.compute_aabb(pos12);
+    let root = voxels.local_aabb();
+    let loose = options.target_distance.max(0.0) + rounding(&start, &root);
+    let swept = swept(&start.loosened(loose), &root, vel12 * options.max_time_of_impact);
+    first_voxel(voxels, &swept, |cube, place| {
+        let pos12 = Pose::from_translation(-place) * *pos12;
+        dispatcher.cast_shapes(&pos12, vel12, cube, other, options)
+    })
+}
+
+/// The first hit of a moving shape on the moving parts of a composite.
+pub(super) fn cast_parts_nonlinear(
+    dispatcher: &impl QueryDispatcher,
+    (motion1, parts): (&NonlinearRigidMotion, &dyn CompositeShape),
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+    stop_at_penetration: bool,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    // What has no bounds, as a half-space, meets any part.
+    let bounds =
+        reached(motion1, (motion2, other), (start_time, end_time)).unwrap_or(parts.bvh().root_aabb());
+    let mut first: Result<Option<ShapeCastHit>, Unsupported> = Ok(None);
+    for id in parts.bvh().intersect_aabb(&bounds) {
+        parts.map_part_at(id, &mut |place, part, _| {
+            let Ok(so_far) = first else { return };
+            let motion1 = place.map_or(*motion1, |place| motion1.prepend(*place));
+            let end_time = so_far.map_or(end_time, |hit| hit.time_of_impact);
+            first = dispatcher
+                .cast_shapes_nonlinear(
+                    &motion1,
+                    part,
+                    motion2,
+                    other,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )
+                .map(|hit| {
+                    let hit = hit.map(|hit| place.map_or(hit, |place| hit.transform1_by(place)));
+                    let hit = hit.map(|hit| ShapeCastHit { subshape1: id, ..hit });
+                    let is_first = |hit: &ShapeCastHit| {
+                        so_far.is_none_or(|so_far| hit.time_of_impact < so_far.time_of_impact)
+                    };
+                    hit.filter(is_first).or(so_far)
+                });
+        });
+    }
+    first
+}
+
+/// The first hit of a moving shape on moving voxels.
+pub(super) fn cast_voxels_nonlinear(
+    dispatcher: &impl QueryDispatcher,
+    (motion1, voxels): (&NonlinearRigidMotion, &Voxels),
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+    stop_at_penetration: bool,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let bounds = reached(motion1, (motion2, other), (start_time, end_time))?;
+    first_voxel(voxels, &bounds, |cube, place| {
+        let motion1 = motion1.prepend_translation(place);
+        dispatcher.cast_shapes_nonlinear(
+            &motion1,
+            cube,
             motion2,
             other,
             start_time,
             end_time,
             stop_at_penetration,
-        )?;
-        Ok(hit.map(|hit| (hit.time_of_impact, hit)))
-    })?;
-    Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
+        )
+    })
+}
+
+/// The first hit among the voxels in `bounds`; `cast` is told the voxel's shape and its centre.
+fn first_voxel(
+    voxels: &Voxels,
+    bounds: &Aabb,
+    cast: impl Fn(&Cuboid, Vector) -> Result<Option<ShapeCastHit>, Unsupported>,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let cube = Cuboid::new(voxels.voxel_size() * 0.5);
+    let Some(common) = voxels.local_aabb().intersection(bounds) else { return Ok(None) };
+    let mut first: Option<ShapeCastHit> = None;
+    for voxel in voxels.voxels_intersecting_local_aabb(&common) {
+        let Some(hit) = cast(&cube, voxel.center)? else { continue };
+        if first.is_none_or(|first| hit.time_of_impact < first.time_of_impact) {
+            let subshape1 = voxel.linear_id.flat_id() as u32;
+            first = Some(ShapeCastHit { subshape1, witness1: hit.witness1 + voxel.center, ..hit });
+        }
+    }
+    Ok(first)
 }
 
 /// Whether a shape, whose pose is in the voxels' frame, meets one of them.

@@ -88,7 +88,7 @@ pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, 
 /// of f64.
 pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<LinkContact> {
     let local = Local::new(link, triangle)?;
-    let found = local.contact();
+    let found = local.contact_within(Real::INFINITY)?;
     Some(LinkContact {
         distance: found.distance * local.unit,
         on_link: local.origin + found.on_link * local.unit,
@@ -123,9 +123,14 @@ impl Local {
         triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
     }
 
-    /// The contact, in local units.
-    pub fn contact(&self) -> LinkContact {
-        let (distance, on_link, on_triangle) = closest(&self.link, self.triangle);
+    /// The contact, in local units, if the two are at most `margin` apart.
+    pub fn contact_within(&self, margin: Real) -> Option<LinkContact> {
+        let closest = closest(&self.link, self.triangle);
+        (closest.0 <= margin).then(|| self.contact_from(closest))
+    }
+
+    /// The contact that belongs to the distance and the closest points.
+    fn contact_from(&self, (distance, on_link, on_triangle): (Real, Vector, Vector)) -> LinkContact {
         let radius = self.link.radius();
         let axis_distance = segment_triangle(
             [Vec3::from(self.link.start()), Vec3::from(self.link.end())],

@@ -45,10 +45,7 @@ pub(super) fn update<M, C: Default + Copy>(
     let local = Local::new(pair.link, pair.triangle.vertices().map(to_link)).ok_or(Unsupported)?;
 
     let before = std::mem::take(&mut manifold.points);
-    let found = local.contact();
-    if found.distance * local.unit > prediction {
-        return Ok(());
-    }
+    let Some(found) = local.contact_within(prediction / local.unit) else { return Ok(()) };
     let rotation = pos12.rotation;
     let (mut n1, mut n2) = if link_is_first {
         (found.normal, rotation.inverse() * -found.normal)

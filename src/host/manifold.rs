@@ -75,7 +75,7 @@ where
         if links_of(g1).or(links_of(g2)).is_some() {
             manifold.mark_shapes_deformed();
         }
-        self.0.contact_manifold_convex_convex(
+        self.inner(pos12, g1, g2)?.contact_manifold_convex_convex(
             pos12,
             g1,
             g2,

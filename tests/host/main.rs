@@ -14,6 +14,7 @@ mod manifolds;
 mod mass;
 mod nonlinear;
 mod overlap;
+mod pairs;
 mod point_ray;
 mod points;
 mod rays;

@@ -2,3 +2,4 @@
 
 mod licences;
 mod programs;
+mod public_names;

@@ -47,6 +47,11 @@ fn constructors() {
 }
 
 #[test]
+fn dispatcher() {
+    try_bytes("dispatcher", continuum_fuzzing::dispatcher, 1000);
+}
+
+#[test]
 fn mesh_file() {
     try_bytes("mesh_file", continuum_fuzzing::mesh_file, 3000);
 }

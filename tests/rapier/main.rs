@@ -4,6 +4,8 @@ mod beam;
 mod chain;
 mod drop;
 mod fast;
+mod long;
 mod rest;
 mod setup;
+mod soft;
 mod units;

@@ -3,6 +3,7 @@
 
 mod chain_mesh;
 mod constructors;
+mod dispatcher;
 mod link_triangle;
 mod mesh_file;
 mod root_finders;
@@ -10,6 +11,7 @@ mod source;
 
 pub use chain_mesh::chain_mesh;
 pub use constructors::constructors;
+pub use dispatcher::dispatcher;
 pub use link_triangle::link_triangle;
 pub use mesh_file::mesh_file;
 pub use root_finders::root_finders;

@@ -1,10 +1,7 @@
 //! Finer meshes of the same surface: every triangle in four, and triangles in any order.
 
-use parry_continuum::parry::math::Vector;
+use crate::surface::Mesh;
 use std::collections::HashMap;
-
-/// Vertices and triangles.
-pub type Mesh = (Vec<Vector>, Vec<[u32; 3]>);
 
 /// Every triangle in four, at the middles of its edges.
 pub fn in_four((mut vertices, indices): Mesh) -> Mesh {

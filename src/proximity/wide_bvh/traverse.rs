@@ -38,11 +38,27 @@ pub(super) struct Traversal<'a, E> {
 
 /// What is searched for.
 struct Target<'a, E> {
-    link: &'a PlacedLink,
     searched: &'a SearchLink<E>,
-    best: Best,
     /// What a triangle's axis distance must be below.
     limit: E,
+    aim: Aim<'a>,
+}
+
+enum Aim<'a> {
+    /// The nearest triangle of a link that improves on the best so far.
+    Nearest(&'a PlacedLink, Best),
+    /// Whether any triangle may be within the limit.
+    Any(bool),
+}
+
+impl<E: Lane> Target<'_, E> {
+    /// Whether nothing can change the answer any more.
+    fn is_settled(&self) -> bool {
+        match &self.aim {
+            Aim::Nearest(_, best) => best.touches(),
+            Aim::Any(found) => *found,
+        }
+    }
 }
 
 impl<E: Lane> Traversal<'_, E> {
@@ -55,16 +71,18 @@ impl<E: Lane> Traversal<'_, E> {
         best: Best,
         start: [Option<u32>; 2],
     ) -> Best {
-        let mut target = Target { link, searched, best, limit: searched.axis_limit(best.bound()) };
+        let limit = searched.axis_limit(best.bound());
+        let mut target = Target { searched, limit, aim: Aim::Nearest(link, best) };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, start));
         self.settle(&mut target);
-        target.best
+        if let Aim::Nearest(_, best) = target.aim { best } else { best }
     }
 
     /// Whether some triangle may be at most `bound` from the link; false only if none is.
     pub(super) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64) -> bool {
-        let limit = searched.axis_limit(bound);
-        dispatch!(self.level, simd => self.meets::<E::Pack<_>>(simd, searched, limit))
+        let mut target = Target { searched, limit: searched.axis_limit(bound), aim: Aim::Any(false) };
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        target.is_settled()
     }
 
     #[inline(always)]
@@ -89,7 +107,10 @@ impl<E: Lane> Traversal<'_, E> {
             .waiting
             .extend(start.iter().rev().flatten().map(|&leaf| (first, Child::Leaf(leaf).pack())));
         while let Some((squared, child)) = self.stack.waiting.pop() {
-            if squared >= target.limit * target.limit || target.best.touches() {
+            if target.is_settled() {
+                break;
+            }
+            if squared >= target.limit * target.limit {
                 continue;
             }
             match Child::unpack(child) {
@@ -98,33 +119,6 @@ impl<E: Lane> Traversal<'_, E> {
                 Child::Leaf(leaf) => self.visit_leaf(token, &lanes, leaf, target),
             }
         }
-    }
-
-    #[inline(always)]
-    fn meets<L: Pack<Element = E>>(&mut self, token: L::Token, searched: &SearchLink<E>, limit: E) -> bool {
-        let lanes = LinkLanes::<L>::new(token, searched);
-        self.stack.waiting.clear();
-        self.stack.waiting.push((E::default(), Child::Node(0).pack()));
-        while let Some((_, child)) = self.stack.waiting.pop() {
-            match Child::unpack(child) {
-                Child::Node(node) => self.visit_node(token, &lanes, node, limit),
-                Child::Leaf(leaf) => {
-                    self.work.visited += BLOCK as u64;
-                    let leaf = &self.tree.leaves[leaf as usize];
-                    let limit = L::splat(token, limit);
-                    for lane in (0..BLOCK).step_by(L::LANES) {
-                        let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-                        // The plane says little of a triangle that is long beside its distance.
-                        if lanes.not_behind_plane(vertices, limit) != 0
-                            && lanes.may_be_nearer(&Face::new(vertices), limit).nearer != 0
-                        {
-                            return true;
-                        }
-                    }
-                }
-            }
-        }
-        false
     }
 
     fn leaf_of(&self, triangle: Option<u32>) -> Option<u32> {
@@ -192,6 +186,10 @@ impl<E: Lane> Traversal<'_, E> {
             bounds.upper.store(&mut upper[lane..]);
             near |= bounds.nearer << lane;
         }
+        if let Aim::Any(found) = &mut target.aim {
+            *found = near != 0;
+            return;
+        }
         let (error, radius) = (target.searched.error, target.searched.radius);
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
@@ -219,7 +217,7 @@ impl<E: Lane> Traversal<'_, E> {
         // A leaf that is not full repeats its last triangle.
         candidates.dedup_by_key(|candidate| candidate.1);
         for &(distance, triangle) in &candidates {
-            if distance >= target.limit || target.best.touches() {
+            if distance >= target.limit || target.is_settled() {
                 break;
             }
             self.measure(target, triangle);
@@ -229,9 +227,10 @@ impl<E: Lane> Traversal<'_, E> {
 
     /// Measures one triangle in double precision.
     fn measure(&mut self, target: &mut Target<E>, triangle: u32) {
+        let Aim::Nearest(link, best) = &mut target.aim else { return };
         self.work.measured += 1;
-        if target.best.measure(target.link, triangle, self.mesh.corners(triangle)) {
-            target.limit = target.limit.min(target.searched.axis_limit(target.best.bound()));
+        if best.measure(link, triangle, self.mesh.corners(triangle)) {
+            target.limit = target.limit.min(target.searched.axis_limit(best.bound()));
         }
     }
 }
