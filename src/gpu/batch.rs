@@ -2,8 +2,9 @@
 
 use super::clock::{Clock, READINGS};
 use super::failures::Watch;
+use super::layout::{ANSWER_HEAD, BATCH_THREADS, Head};
 use super::opened::Gpu;
-use super::record::{Record, record};
+use super::record::Record;
 use super::wgsl::Shader;
 use super::{GpuError, Precision};
 use crate::proximity::DeviceFailure;
@@ -11,20 +12,10 @@ use parry3d_f64::math::Real;
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 
-/// Threads of a workgroup.
-pub(super) const THREADS: u32 = 64;
 /// Problems of a submission at most.
 const MOST_PROBLEMS: u64 = 1 << 22;
 /// As many submissions have numbers of their own, which single precision holds.
 const SUBMISSIONS: u32 = (1 << f32::MANTISSA_DIGITS) - 1;
-
-record! {
-    /// What kernels/batch.wgsl reads first.
-    Head {
-        problems: u32,
-        submission: u32,
-    }
-}
 
 /// A function in WGSL that answers one problem, for a [`Batch`].
 #[derive(Clone, Copy, Debug)]
@@ -46,17 +37,12 @@ impl<'a> BatchKernel<'a> {
 
     /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
     pub fn shader(&self, precision: Precision) -> Shader {
-        Shader::batch(precision, self.text, self.problem(), self.answer())
+        Shader::batch(precision, self.text, self.problem(), self.answer.into())
     }
 
     /// Numbers of a problem.
     fn problem(&self) -> u32 {
         u32::from(self.problem).max(1)
-    }
-
-    /// Numbers of an answer, which begins with the number of its submission.
-    fn answer(&self) -> u32 {
-        u32::from(self.answer) + 1
     }
 }
 
@@ -110,7 +96,7 @@ impl std::fmt::Debug for Batch {
         f.debug_struct("Batch")
             .field("gpu", gpu)
             .field("problem", problem)
-            .field("answer", &(answer - 1))
+            .field("answer", &(answer - u64::from(ANSWER_HEAD)))
             .finish_non_exhaustive()
     }
 }
@@ -128,7 +114,7 @@ impl Batch {
             kernel: device.compile(kernel.name, &kernel.shader(device.precision), &layout, &[])?,
             layout,
             problem: kernel.problem().into(),
-            answer: kernel.answer().into(),
+            answer: (ANSWER_HEAD + u32::from(kernel.answer)).into(),
             submission: 0,
             room: None,
             device_time: None,
@@ -190,7 +176,7 @@ impl Batch {
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_pipeline(&self.kernel);
         pass.set_bind_group(0, &room.group, &[0]);
-        let workgroups = problems.div_ceil(THREADS.into()) as u32;
+        let workgroups = problems.div_ceil(BATCH_THREADS.into()) as u32;
         let wide = workgroups.min(device.limits.max_compute_workgroups_per_dimension);
         pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
         drop(pass);
@@ -240,10 +226,11 @@ fn read(
     for answer in bytes.chunks_exact(answer * precision.size() as usize) {
         numbers.clear();
         numbers.extend(precision.read(answer));
-        match numbers.split_first() {
-            Some((&written_for, numbers)) if written_for == Real::from(submission) => take(numbers),
-            _ => return Err(DeviceFailure::Unanswered),
+        let (head, numbers) = numbers.split_at(ANSWER_HEAD as usize);
+        if head != [Real::from(submission)] {
+            return Err(DeviceFailure::Unanswered);
         }
+        take(numbers);
     }
     Ok(())
 }

@@ -2,10 +2,10 @@
 
 use super::Precision;
 use super::clock::{Clock, READINGS};
-use super::link::LinkRecord;
+use super::layout::{BLOCK_BOUNDS, CAPACITY, LinkRecord, Round, SLOT};
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
-use super::plan::{BLOCK_BOUNDS, CAPACITY, Plan, Round, SLOT};
+use super::plan::Plan;
 use super::record::Record;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 

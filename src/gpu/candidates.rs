@@ -2,8 +2,8 @@
 
 use super::Precision;
 use super::buffers::Buffers;
+use super::layout::{CAPACITY, SLOT};
 use super::mesh::DeviceMesh;
-use super::plan::{CAPACITY, SLOT};
 use crate::proximity::DeviceFailure;
 use parry3d_f64::math::Real;
 use std::ops::Range;

@@ -1,5 +1,5 @@
 use super::Precision;
-use super::record::record;
+use super::layout::{FAR, LinkRecord};
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
 use crate::proximity::{PlacedLink, SearchFrame, SearchLink};
@@ -7,24 +7,6 @@ use parry3d_f64::math::Real;
 
 /// Shaders pass bounds on in single precision, so that links farther out are none for double precision either.
 const FARTHEST: Real = <f32 as Lane>::FARTHEST;
-
-/// More than any distance near one.
-pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
-
-record! {
-    /// What shaders/shared/query.wgsl reads of a link.
-    LinkRecord {
-        start: [Real; 3],
-        length: Real,
-        /// From the start, as the axis.
-        end: [Real; 3],
-        radius: Real,
-        axis: [Real; 3],
-        error: Real,
-        flat_start: Real,
-        flat_end: Real,
-    }
-}
 
 /// A link as the GPU sees it, and the way from what the GPU finds to the mesh's unit.
 #[derive(Debug)]

@@ -1,8 +1,7 @@
 //! A mesh in a device's memory, in as many parts as its largest buffer calls for.
 
+use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
-use super::plan::THREADS;
-use super::wgsl::FACE_VECTORS;
 use crate::distance::Vec3;
 use crate::proximity::{Mesh, SearchFrame};
 use parry3d_f64::math::Real;

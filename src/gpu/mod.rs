@@ -18,11 +18,12 @@
 //! | `engine` | what the engine is and answers: [`GpuExhaustive`] |
 //! | `answers`, `measure` | from robots to links, and from candidates to answers in double precision |
 //! | `query` | the four kernels of a query; `plan` deals the pairs to threads, `candidates` reads what comes back |
-//! | `mesh`, `link`, `buffers` | what lies in the device's memory; `record` lays it out |
+//! | `mesh`, `link`, `buffers` | what lies in the device's memory |
 //! | `batch` | any kernel over many records: [`Batch`] |
-//! | `opened`, `device`, `clock`, `self_test` | the [`Gpu`] itself |
+//! | `open`, `opened`, `device`, `clock` | the [`Gpu`] itself |
 //! | `failures`, `error` | what can go wrong, and who hears of it |
 //! | `wgsl`, `shaders/` | the kernels' text |
+//! | `layout`, `record` | the sizes and the records that host and shaders share |
 
 mod answers;
 mod batch;
@@ -33,15 +34,16 @@ mod device;
 mod engine;
 mod error;
 mod failures;
+mod layout;
 mod link;
 mod measure;
 mod mesh;
+mod open;
 mod opened;
 mod plan;
 mod precision;
 mod query;
 mod record;
-mod self_test;
 #[cfg(test)]
 mod tests;
 pub mod wgsl;

@@ -1,5 +1,4 @@
 use super::device::{Adapter, Device};
-use super::self_test;
 use super::wgsl::{CONVEX, Shader};
 use super::{GpuError, Precision};
 use std::sync::Arc;
@@ -12,17 +11,6 @@ use wgpu::{BindGroupLayout, ComputePipeline};
 pub struct Gpu(pub(super) Arc<Opened>);
 
 impl Gpu {
-    /// The fastest GPU of this machine, to search in this precision. The environment variables of `wgpu`, such as
-    /// `WGPU_BACKEND`, narrow the choice.
-    ///
-    /// # Errors
-    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that was asked for.
-    pub fn open(precision: Precision) -> Result<Self, GpuError> {
-        let gpu = Self(Arc::new(Opened::new(Device::open(precision)?)?));
-        self_test::check_arithmetic(&gpu)?;
-        Ok(gpu)
-    }
-
     /// Which GPU it is.
     pub fn adapter(&self) -> &Adapter {
         &self.0.device.adapter
@@ -57,7 +45,7 @@ pub(super) struct Opened {
 }
 
 impl Opened {
-    fn new(device: Device) -> Result<Self, GpuError> {
+    pub(super) fn new(device: Device) -> Result<Self, GpuError> {
         let (read, write) = (Some(false), Some(true));
         let prepare_layout = device.layout(&[read, read, write, write]);
         let query_layout = device.layout(&[None, read, write, read, read, write, write, write]);

@@ -1,24 +1,11 @@
 //! How the pairs of a query are dealt to threads, and what is done in one go.
 
+use super::layout::{BLOCK_BOUNDS, CAPACITY, MOST_LINKS, SLOT, THREADS};
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
-use super::record::record;
 
-/// Threads of a workgroup.
-pub(super) const THREADS: u32 = 256;
-/// Links of a workgroup at most.
-pub(super) const MOST_LINKS: u32 = 32;
-/// Triangles of a part that the first limit of a link is taken from, at most.
-pub(super) const SAMPLES: u32 = 1 << 14;
-/// Candidates of a link and part that come back.
-pub(super) const CAPACITY: u32 = 64;
-/// Words of a link and part: what says that it was written, how many candidates there are, and their triangles.
-pub(super) const SLOT: u32 = 2 + CAPACITY;
 /// Bytes of a number at most.
 const NUMBER: u64 = 8;
-/// Bytes for the bounds of a block and a link.
-pub(super) const BLOCK_BOUNDS: u64 = 8;
-
 /// What is large enough, and what too large: the answers do not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tuning {
@@ -51,26 +38,6 @@ pub(super) struct Plan {
     pub links_per_round: u32,
     /// Links of a submission: all their candidates come back together.
     pub links_per_submission: usize,
-}
-
-record! {
-    /// What the kernels know of the links of a round and a part of the mesh.
-    Round {
-        /// The first link, and how many there are.
-        first_link: u32,
-        links: u32,
-        /// How many links a workgroup takes, and how many triangles each of its threads.
-        links_at_once: u32,
-        triangles_at_once: u32,
-        /// The triangles of this part, its first block of all blocks, and how many blocks all parts have.
-        triangles: u32,
-        first_block: u32,
-        blocks: u32,
-        /// Where the candidates of the first link and this part go.
-        first_slot: u32,
-        /// The number of the submission.
-        submission: u32,
-    }
 }
 
 impl Plan {

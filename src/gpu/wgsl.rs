@@ -5,10 +5,12 @@
 //! name of its twin in `distance` or `proximity` (with the name of the twin's file before it where that is needed) and
 //! does the same in the same order. `real` is `f32` or `f64`.
 
-use super::link::{FAR, LinkRecord};
-use super::plan::{CAPACITY, MOST_LINKS, Round, SAMPLES, SLOT, THREADS};
+use super::Precision;
+use super::layout::{
+    ANSWER_HEAD, BATCH_THREADS, CAPACITY, FACE_VECTORS, FAR, Head, LinkRecord, MOST_LINKS, Round, SAMPLES,
+    SLOT, THREADS,
+};
 use super::record::Record;
-use super::{Precision, batch, self_test};
 use crate::distance::{CBRT_BITS_F32, Scalar};
 use std::fmt::Display;
 
@@ -46,8 +48,8 @@ pub const NARROW_PHASE: &str = shared!(
 /// This crate's route from a segment to a disc.
 pub const CONVEX: &str = shared!("convex");
 
-/// Vectors of four numbers that a triangle takes in memory (shared/face_record.wgsl).
-pub(super) const FACE_VECTORS: u32 = 4;
+/// Answers two numbers with their quotient and the square root of the first.
+pub(super) const SELF_TEST: &str = kernel!("self_test");
 
 /// A kernel as it is compiled, in one precision.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,7 +69,7 @@ pub fn kernels(precision: Precision) -> Vec<Shader> {
         Shader::nearest(precision, CONVEX),
         Shader::reduce(precision),
         Shader::collect(precision),
-        self_test::KERNEL.shader(precision),
+        Shader::batch(precision, SELF_TEST, 2, 2),
     ]
 }
 
@@ -125,10 +127,15 @@ impl Shader {
     }
 
     /// Runs `fn solve(problem: u32, answer: u32)` of a text over many problems of so many numbers, with answers of so
-    /// many, the submission's included.
+    /// many.
     pub(super) fn batch(precision: Precision, text: &str, problem: u32, answer: u32) -> Self {
-        let sizes = [("THREADS", batch::THREADS), ("PROBLEM", problem), ("ANSWER", answer)];
-        let text = scalar(precision) + &constants(&sizes) + &batch::Head::wgsl() + text + kernel!("batch");
+        let sizes = [
+            ("THREADS", BATCH_THREADS),
+            ("PROBLEM", problem),
+            ("ANSWER", ANSWER_HEAD + answer),
+            ("ANSWER_HEAD", ANSWER_HEAD),
+        ];
+        let text = scalar(precision) + &constants(&sizes) + &Head::wgsl() + text + kernel!("batch");
         Self { entry_point: "batch", text }
     }
 }

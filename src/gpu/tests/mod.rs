@@ -5,12 +5,12 @@ mod failures;
 
 use super::batch::{Batch, BatchKernel};
 use super::device::Adapter;
-use super::link::LinkRecord;
+use super::layout::{FACE_VECTORS, LinkRecord, Round};
+use super::open::{self, OPERANDS};
 use super::opened::Gpu;
-use super::plan::{Plan, Round, Tuning};
+use super::plan::{Plan, Tuning};
 use super::record::Record;
-use super::self_test::{self, OPERANDS};
-use super::wgsl::{CONVEX, FACE_VECTORS, Shader};
+use super::wgsl::{CONVEX, Shader};
 use super::{GpuExhaustive, Precision};
 use crate::Chain;
 use crate::proximity::{Exhaustive, LinkProximity, Proximity};
@@ -148,10 +148,10 @@ fn single_precision_does_not_pass_for_double() {
     let exact: Vec<_> = results.collect();
     let rounded: Vec<_> = exact.iter().map(|&value| f64::from(value as f32)).collect();
     let nothing = vec![f64::NAN; exact.len()];
-    assert_eq!(self_test::compare(&exact, Precision::F64, &adapter), Ok(()));
-    assert_eq!(self_test::compare(&rounded, Precision::F32, &adapter), Ok(()));
+    assert_eq!(open::compare(&exact, Precision::F64, &adapter), Ok(()));
+    assert_eq!(open::compare(&rounded, Precision::F32, &adapter), Ok(()));
     for wrong in [rounded, nothing] {
-        let error = self_test::compare(&wrong, Precision::F64, &adapter).unwrap_err();
+        let error = open::compare(&wrong, Precision::F64, &adapter).unwrap_err();
         assert!(error.to_string().contains("use Precision::F32"), "{error}");
     }
     assert_eq!(adapter.to_string(), "a (b, in software)");

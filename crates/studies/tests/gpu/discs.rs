@@ -21,7 +21,7 @@ fn robots() -> Vec<(Chain, Pose)> {
             let mut heading = random.direction();
             for k in 0..30 {
                 heading = (heading + random.direction() * 0.3).normalize();
-                points.push(points[k] + heading * if number % 3 == 2 { 0.5 } else { 0.15 });
+                points.push(points[k] + heading * if number % 3 == 0 { 0.15 } else { 0.5 });
             }
             (Chain::cylinders(&points, &[0.4; 30]).unwrap(), random.pose(1.0))
         })

@@ -16,6 +16,6 @@ fn batch(
     if (head.problems <= problem) {
         return;
     }
-    solve(PROBLEM * problem, ANSWER * problem + 1u);
+    solve(PROBLEM * problem, ANSWER * problem + ANSWER_HEAD);
     answers[ANSWER * problem] = real(head.submission);
 }

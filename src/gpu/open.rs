@@ -1,9 +1,24 @@
-//! Whether a device's double precision deserves the name. Vulkan asks of it no more than of single precision.
+//! Opening a GPU, and whether its double precision deserves the name. Vulkan asks of it no more than of single precision.
 
 use super::batch::{Batch, BatchKernel};
-use super::device::Adapter;
-use super::opened::Gpu;
+use super::device::{Adapter, Device};
+use super::opened::{Gpu, Opened};
+use super::wgsl::SELF_TEST;
 use super::{GpuError, Precision};
+use std::sync::Arc;
+
+impl Gpu {
+    /// The fastest GPU of this machine, to search in this precision. The environment variables of `wgpu`, such as
+    /// `WGPU_BACKEND`, narrow the choice.
+    ///
+    /// # Errors
+    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that was asked for.
+    pub fn open(precision: Precision) -> Result<Self, GpuError> {
+        let gpu = Self(Arc::new(Opened::new(Device::open(precision)?)?));
+        check_arithmetic(&gpu)?;
+        Ok(gpu)
+    }
+}
 
 /// Dividends and divisors whose quotients and roots need every digit.
 pub(super) const OPERANDS: [[f64; 2]; 8] = [
@@ -20,17 +35,14 @@ pub(super) const OPERANDS: [[f64; 2]; 8] = [
 /// How many units in the last place a result may be off.
 const TOLERANCE: f64 = 4.0;
 
-/// The quotient of two numbers, and the square root of the first.
-pub(super) const KERNEL: BatchKernel =
-    BatchKernel::new("self_test", include_str!("shaders/kernels/self_test.wgsl"), 2, 2);
-
 /// Compares the device's quotients and square roots with the CPU's.
 ///
 /// # Errors
 /// They differ by more than a few units in the last place, or the device failed.
-pub(super) fn check_arithmetic(gpu: &Gpu) -> Result<(), GpuError> {
+fn check_arithmetic(gpu: &Gpu) -> Result<(), GpuError> {
+    let kernel = BatchKernel::new("self_test", SELF_TEST, 2, 2);
     let mut got = Vec::new();
-    Batch::new(gpu, &KERNEL)?.run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
+    Batch::new(gpu, &kernel)?.run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
     compare(&got, gpu.precision(), gpu.adapter())
 }
 
