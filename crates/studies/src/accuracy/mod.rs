@@ -1,4 +1,4 @@
-//! How exact the answers are: on the reference cases ([`reference`]), and on seeded problems that are driven to an
+//! How exact the answers are: on the reference cases ([`mod@reference`]), and on seeded problems that are driven to an
 //! extreme. The program `accuracy` writes the tables, `tests/accuracy.rs` computes them again.
 
 pub mod certificates;
