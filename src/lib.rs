@@ -51,7 +51,7 @@
 //! paper* in these pages. Its formulas are used with corrections, which stand where they apply.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
-#![warn(missing_docs)]
+#![warn(missing_debug_implementations, missing_docs)]
 
 pub use parry3d_f64 as parry;
 

@@ -12,15 +12,13 @@
 //!    direction.
 
 use crate::ModifiedCylinder;
+use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// A power of two `down` and its inverse, such that `x * down` lies in [1, 2), or between 2^-52 and 1 for a
-/// subnormal `x`.
-///
-/// Both are normal numbers for every finite `x`, 0 included.
+/// The power of two that brings `x` near one, and its inverse.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
-    let exponent = ((x.to_bits() >> 52) & 0x7ff).clamp(1, 2045);
-    (Real::from_bits((2046 - exponent) << 52), Real::from_bits(exponent << 52))
+    let down = x.power_of_two_to_unity();
+    (down, 1.0 / down)
 }
 
 /// The unit vector along `v`, or nothing when `v` is zero or not finite.

@@ -106,7 +106,11 @@ impl RobotSearch<'_> {
                 break;
             }
             match node {
-                LinkNode::Inner { below, .. } if !self.may_meet(node, bound) => place += below,
+                LinkNode::Inner { bound: capsule, below } => {
+                    if !self.may_meet(&self.robot.bound(capsule), bound) {
+                        place += below;
+                    }
+                }
                 LinkNode::Leaf(link) if *link != first => {
                     let placed = self.robot.link(*link);
                     if let Some(nearest) = self.nearest(&placed, Best::within(bound), [None, None]).nearest()
@@ -114,7 +118,7 @@ impl RobotSearch<'_> {
                         best = nearer((*link, nearest), best);
                     }
                 }
-                _ => {}
+                LinkNode::Leaf(_) => {}
             }
             place += 1;
         }
@@ -127,8 +131,8 @@ impl RobotSearch<'_> {
         let mut place = 0;
         while let Some(node) = tree.get(place) {
             match node {
-                _ if !self.may_meet(node, margin) => {
-                    if let LinkNode::Inner { below, .. } = node {
+                LinkNode::Inner { bound, below } => {
+                    if !self.may_meet(&self.robot.bound(bound), margin) {
                         place += below;
                     }
                 }
@@ -138,7 +142,6 @@ impl RobotSearch<'_> {
                         return false;
                     }
                 }
-                LinkNode::Inner { .. } => {}
             }
             place += 1;
         }
@@ -178,13 +181,9 @@ impl RobotSearch<'_> {
         }
     }
 
-    /// Whether any triangle may be at most `bound` from what is below a node; false only if none is.
-    fn may_meet(&mut self, node: &LinkNode, bound: Real) -> bool {
-        let link = match node {
-            LinkNode::Inner { bound, .. } => self.robot.bound(bound),
-            LinkNode::Leaf(link) => self.robot.link(*link),
-        };
-        match self.hierarchy.searched(self.level, &link) {
+    /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.
+    fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
+        match self.hierarchy.searched(self.level, capsule) {
             Searched::Single(searched) => self.single().may_meet(&searched, bound),
             Searched::Double(searched) => self.double().may_meet(&searched, bound),
             Searched::OutOfReach => true,
