@@ -1,6 +1,7 @@
 //! Proximity by a bounding volume hierarchy.
 
-use super::queries::{Hierarchy, RobotSearch, Scratch};
+use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
+use super::queries::RobotSearch;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::mesh::Mesh;
@@ -148,7 +149,7 @@ impl Query<'_> {
         out.clear();
         let Memory { scratch, last, .. } = &mut *self.memory;
         let Self { level, hierarchy, robot, .. } = *self;
-        RobotSearch { level, hierarchy, scratch, robot }.per_link(last, out);
+        RobotSearch { search: MeshSearch { level, hierarchy, scratch }, robot }.per_link(last, out);
         last.clear();
         last.extend(out.iter().map(|answer| answer.triangle));
     }
@@ -166,7 +167,7 @@ impl Query<'_> {
 
     fn search(&mut self) -> RobotSearch<'_> {
         let Self { level, hierarchy, robot, .. } = *self;
-        RobotSearch { level, hierarchy, scratch: &mut self.memory.scratch, robot }
+        RobotSearch { search: MeshSearch { level, hierarchy, scratch: &mut self.memory.scratch }, robot }
     }
 }
 

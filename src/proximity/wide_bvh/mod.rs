@@ -3,6 +3,7 @@
 mod bound;
 mod build;
 mod engine;
+mod hierarchy;
 mod node;
 mod queries;
 mod traverse;

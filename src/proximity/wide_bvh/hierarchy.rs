@@ -1,0 +1,117 @@
+//! A mesh's hierarchies and the search through them for one convex piece, in the precision that resolves it.
+
+use super::build::WideBvh;
+use super::traverse::{Stack, Traversal};
+use crate::proximity::Work;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::placed::{Best, Nearest, PlacedLink};
+use crate::proximity::search_frame::SearchLink;
+use fearless_simd::Level;
+use parry3d_f64::math::Real;
+use std::sync::OnceLock;
+
+/// A mesh and its hierarchies.
+#[derive(Clone)]
+pub(super) struct Hierarchy {
+    pub mesh: Mesh,
+    single: WideBvh<f32>,
+    /// For links that single precision does not resolve, built when the first of them comes.
+    double: OnceLock<WideBvh<f64>>,
+}
+
+impl Hierarchy {
+    pub(super) fn new(level: Level, mesh: Mesh) -> Self {
+        Self { single: WideBvh::new(level, &mesh), double: OnceLock::new(), mesh }
+    }
+
+    fn double(&self, level: Level) -> &WideBvh<f64> {
+        self.double.get_or_init(|| WideBvh::new(level, &self.mesh))
+    }
+
+    /// The link in the precision that resolves it.
+    fn searched(&self, level: Level, link: &PlacedLink) -> Searched {
+        let single = SearchLink::new(link, &self.single.frame);
+        if let Some(single) = single.filter(|single| self.single.frame.resolves(single)) {
+            return Searched::Single(single);
+        }
+        match SearchLink::new(link, &self.double(level).frame) {
+            Some(double) => Searched::Double(double),
+            None => Searched::OutOfReach,
+        }
+    }
+
+    /// Takes over that the vertices of the mesh have moved.
+    pub(super) fn refit(&mut self, level: Level) {
+        self.single.refit(level, &self.mesh);
+        if let Some(double) = self.double.get_mut() {
+            double.refit(level, &self.mesh);
+        }
+    }
+}
+
+/// A link in the frame of a search.
+enum Searched {
+    Single(SearchLink<f32>),
+    Double(SearchLink<f64>),
+    /// Farther out than double precision reaches beside a mesh so small.
+    OutOfReach,
+}
+
+/// Memory of a query, used again by the next.
+#[derive(Clone, Default)]
+pub(super) struct Scratch {
+    single: Stack<f32>,
+    double: Stack<f64>,
+    pub work: Work,
+}
+
+/// A search through a mesh, with the memory it needs.
+pub(super) struct MeshSearch<'a> {
+    pub level: Level,
+    pub hierarchy: &'a Hierarchy,
+    pub scratch: &'a mut Scratch,
+}
+
+impl MeshSearch<'_> {
+    /// The triangle nearest to a link that improves on `best`. The triangles to `start` with come first.
+    pub(super) fn nearest(&mut self, link: &PlacedLink, mut best: Best, start: [Option<u32>; 2]) -> Best {
+        match self.hierarchy.searched(self.level, link) {
+            Searched::Single(searched) => self.single().nearest(link, &searched, best, start),
+            Searched::Double(searched) => self.double().nearest(link, &searched, best, start),
+            Searched::OutOfReach => {
+                let mesh = &self.hierarchy.mesh;
+                for triangle in 0..mesh.len() as u32 {
+                    best.measure(link, triangle, mesh.corners(triangle));
+                }
+                self.scratch.work.measured += mesh.len() as u64;
+                best
+            }
+        }
+    }
+
+    /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.
+    pub(super) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
+        match self.hierarchy.searched(self.level, capsule) {
+            Searched::Single(searched) => self.single().may_meet(&searched, bound),
+            Searched::Double(searched) => self.double().may_meet(&searched, bound),
+            Searched::OutOfReach => true,
+        }
+    }
+
+    /// Some triangle, for a link whose nearest no search tells.
+    pub(super) fn any(&self, link: &PlacedLink) -> Nearest {
+        link.measure(0, self.hierarchy.mesh.corners(0))
+    }
+
+    fn single(&mut self) -> Traversal<'_, f32> {
+        let Hierarchy { mesh, single, .. } = self.hierarchy;
+        let Scratch { single: stack, work, .. } = &mut *self.scratch;
+        Traversal { level: self.level, mesh, tree: single, stack, work }
+    }
+
+    fn double(&mut self) -> Traversal<'_, f64> {
+        let tree = self.hierarchy.double(self.level);
+        let Scratch { double: stack, work, .. } = &mut *self.scratch;
+        Traversal { level: self.level, mesh: &self.hierarchy.mesh, tree, stack, work }
+    }
+}
