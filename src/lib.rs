@@ -66,7 +66,7 @@ mod robot;
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, simplify};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection, simplify};
 
 /// Runs the code in the README.
 #[cfg(doctest)]

@@ -9,6 +9,11 @@ pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
     if margin.is_nan() || margin < 0.0 { Err(ProximityError::BadMargin { margin }) } else { Ok(()) }
 }
 
+/// A tolerance or a resolution.
+pub(super) fn check_tolerance(tolerance: Real) -> Result<(), ProximityError> {
+    if tolerance >= 0.0 { Ok(()) } else { Err(ProximityError::BadTolerance { tolerance }) }
+}
+
 /// A pose that keeps every link within range.
 pub(super) fn check_pose(robot: &Chain, pose: &Pose) -> Result<(), ProximityError> {
     if !pose.is_finite() {

@@ -61,6 +61,32 @@ pub enum ProximityError {
         /// The offending margin.
         margin: Real,
     },
+    /// A tolerance or a resolution must be a number that is at least 0.
+    #[error("the tolerance is {tolerance}; it must be at least 0")]
+    BadTolerance {
+        /// The offending tolerance.
+        tolerance: Real,
+    },
+    /// The bounds of a tube cannot come as close as was asked for.
+    #[error(
+        "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \
+         ask for less"
+    )]
+    ToleranceTooFine {
+        /// What was asked for.
+        tolerance: Real,
+        /// What the samples and the stated error allow here.
+        possible: Real,
+    },
+    /// A tube has no section, because its samples were refused.
+    #[error("the tube is empty because its last samples were refused; give it good ones")]
+    EmptyTube,
+    /// The curve of a tube has a coordinate that is NaN or infinite.
+    #[error("the tube's curve is not finite near the arc length {arc_length}; repair the function")]
+    CurveNotFinite {
+        /// Where it is not.
+        arc_length: Real,
+    },
     /// An answer names a link that the robot does not have.
     #[error(
         "the answer is about link {link}, but the robot has {links} links; give the robot that was asked about"

@@ -2,7 +2,7 @@
 
 use super::MeshError;
 use super::checks::check_vertices;
-use parry3d_f64::math::Vector;
+use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
 /// Vertices and triangles.
@@ -71,6 +71,11 @@ impl Mesh {
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
         self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+
+    /// The largest coordinate of a triangle.
+    pub(super) fn reach(&self) -> Real {
+        self.bounds().map(|corner| corner.abs().max_element()).into_iter().fold(0.0, Real::max)
     }
 
     /// The corners of the box around all triangles. Vertices that no triangle uses do not count: exported meshes have

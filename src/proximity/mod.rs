@@ -29,6 +29,7 @@ mod search_frame;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
 mod triangle_block;
+mod tube;
 mod wide_bvh;
 
 #[cfg(feature = "gpu")]
@@ -50,4 +51,5 @@ pub use error::DeviceFailure;
 pub use error::{MeshError, ProximityError};
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use report::{LinkProximity, Work};
+pub use tube::{Clearance, Decision};
 pub use wide_bvh::BvhSearch;

@@ -89,10 +89,21 @@ impl PlacedLink {
         Self::between(pose * link.start(), pose * link.end(), link.radius(), link.flat())
     }
 
-    fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
+    pub(super) fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
         let along = end - start;
         let extent = along.abs().max_element().max(radius);
         Self { start, end, along, axis: Vec3::from(along).normalised(), radius, flat, extent }
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.start.is_finite() && self.end.is_finite() && self.radius.is_finite()
+    }
+
+    /// The share of the axis at which it is nearest to a point.
+    pub(super) fn share_of(&self, point: Vector) -> Real {
+        let share = (point - self.start).dot(self.along) / self.along.length_squared();
+        // 0 / 0 without a length: the comparison turns it into 0.
+        if share > 0.0 { share.min(1.0) } else { 0.0 }
     }
 
     pub(super) fn start(&self) -> Vector {

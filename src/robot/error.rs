@@ -67,4 +67,89 @@ pub enum RobotError {
         /// The offending tolerance.
         value: Real,
     },
+    /// A tube needs at least one section.
+    #[error("a tube needs at least one section")]
+    NoSections,
+    /// A section's length is not a positive number.
+    #[error("section {index} has the length {value}; it must be finite and more than 0")]
+    BadLength {
+        /// Position of the section in the input.
+        index: usize,
+        /// The offending length.
+        value: Real,
+    },
+    /// A section's curvature is NaN, infinite or negative.
+    #[error("section {index} has the curvature {value}; it must be finite and at least 0")]
+    BadCurvature {
+        /// Position of the section in the input.
+        index: usize,
+        /// The offending curvature.
+        value: Real,
+    },
+    /// A direction of the centreline is zero or not finite.
+    #[error("tangent {index} is zero or not finite; give the direction of the centreline there")]
+    BadTangent {
+        /// Position of the tangent among those given; of a function, the section.
+        index: usize,
+    },
+    /// Samples are too far apart for a curve that bends so much.
+    #[error(
+        "around point {index} the centreline bends so sharply that it may turn by {turn} rad between two points; \
+         give more points there, or use a Chain for a robot of straight links"
+    )]
+    TurnsTooSharply {
+        /// Position of the point in the input.
+        index: usize,
+        /// The largest curvature times the longest distance between points of the section, rad.
+        turn: Real,
+    },
+    /// The discs of a section would stick out of its flat end.
+    #[error(
+        "the section from {index} has a flat end, the curvature {curvature} and the radius {radius}; their product must \
+         be below 1, so check the unit of length, or smooth the points"
+    )]
+    BendsWithinRadius {
+        /// Position of the section's first point; of a function, of the section.
+        index: usize,
+        /// The largest curvature of the section.
+        curvature: Real,
+        /// Its radius.
+        radius: Real,
+    },
+    /// The curve of a function has a coordinate that is NaN or infinite.
+    #[error("the curve is not finite near the arc length {arc_length}; repair the function")]
+    CurveNotFinite {
+        /// Where it is not.
+        arc_length: Real,
+    },
+    /// The argument of a function is not its arc length.
+    #[error(
+        "at {arc_length} the curve advances by {speed} for each unit of its argument; give it by arc length"
+    )]
+    NotByArcLength {
+        /// Where it is not.
+        arc_length: Real,
+        /// The speed, which should be 1.
+        speed: Real,
+    },
+    /// A function bends more than its section states.
+    #[error("at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more")]
+    BendsMoreThanStated {
+        /// Where it does.
+        arc_length: Real,
+        /// The curvature found there.
+        found: Real,
+        /// The section's.
+        stated: Real,
+    },
+    /// A function's direction is not that of its points.
+    #[error(
+        "at {arc_length} the tangent differs by {off} from the direction in which the points go; repair it"
+    )]
+    TangentOff {
+        /// Where it does.
+        arc_length: Real,
+        /// The length of the difference of the unit vectors.
+        off: Real,
+    },
 }

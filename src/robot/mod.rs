@@ -14,6 +14,7 @@ mod scale;
 mod serialised;
 mod simplify;
 mod to_trimesh;
+mod tube;
 
 pub use cap::Cap;
 pub use chain::Chain;
@@ -23,3 +24,5 @@ pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub(crate) use scale::length;
 pub use simplify::simplify;
+pub(crate) use tube::{Face, Section};
+pub use tube::{Tube, TubeSection};

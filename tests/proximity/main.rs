@@ -10,3 +10,4 @@ mod large;
 mod patches;
 mod scenes;
 mod thin_links;
+mod tube;

@@ -2,6 +2,7 @@
 
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
 use super::queries::RobotSearch;
+use super::tube_engine::TubeMemory;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::mesh::Mesh;
@@ -43,17 +44,18 @@ use std::sync::Arc;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct BvhSearch {
-    level: Level,
-    hierarchy: Arc<Hierarchy>,
-    memory: Memory,
+    pub(super) level: Level,
+    pub(super) hierarchy: Arc<Hierarchy>,
+    pub(super) memory: Memory,
     /// One for each share of a batch.
-    batch: Vec<Memory>,
+    pub(super) batch: Vec<Memory>,
 }
 
 /// What one query leaves for the next.
 #[derive(Clone, Default)]
-struct Memory {
-    scratch: Scratch,
+pub(super) struct Memory {
+    pub scratch: Scratch,
+    pub tube: TubeMemory,
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
@@ -61,7 +63,8 @@ struct Memory {
 }
 
 impl Memory {
-    fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
+        self.tube.forget();
         self.last.clear();
         self.last_minimum = None;
     }

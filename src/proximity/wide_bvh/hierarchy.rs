@@ -14,6 +14,8 @@ use std::sync::OnceLock;
 #[derive(Clone)]
 pub(super) struct Hierarchy {
     pub mesh: Mesh,
+    /// The largest coordinate of a triangle.
+    pub reach: Real,
     single: WideBvh<f32>,
     /// For links that single precision does not resolve, built when the first of them comes.
     double: OnceLock<WideBvh<f64>>,
@@ -21,7 +23,7 @@ pub(super) struct Hierarchy {
 
 impl Hierarchy {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
-        Self { single: WideBvh::new(level, &mesh), double: OnceLock::new(), mesh }
+        Self { single: WideBvh::new(level, &mesh), double: OnceLock::new(), reach: mesh.reach(), mesh }
     }
 
     fn double(&self, level: Level) -> &WideBvh<f64> {
@@ -42,6 +44,7 @@ impl Hierarchy {
 
     /// Takes over that the vertices of the mesh have moved.
     pub(super) fn refit(&mut self, level: Level) {
+        self.reach = self.mesh.reach();
         self.single.refit(level, &self.mesh);
         if let Some(double) = self.double.get_mut() {
             double.refit(level, &self.mesh);

@@ -7,5 +7,7 @@ mod hierarchy;
 mod node;
 mod queries;
 mod traverse;
+mod tube_engine;
+mod tube_queries;
 
 pub use engine::BvhSearch;

@@ -1,0 +1,114 @@
+//! A tube whose centreline is a function of arc length.
+
+use super::curve::{Curve, TICKS};
+use super::section::{Face, Section};
+use super::{Tube, check_faces};
+use crate::distance::Scalar;
+use crate::robot::modified_cylinder::{check_points, check_radii};
+use crate::robot::scale::direction;
+use crate::robot::{Cap, RobotError};
+use parry3d_f64::math::{Real, Vector};
+use std::sync::Arc;
+
+/// A stretch of a tube with one radius, for [`Tube::from_function`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TubeSection {
+    /// Arc length of the centreline.
+    pub length: Real,
+    /// Radius of the tube.
+    pub radius: Real,
+    /// An upper bound on the curvature of the centreline, 1 / length.
+    pub curvature: Real,
+}
+
+impl Tube {
+    /// The tube around a curve that is computed where a query needs it: `curve` gives the point and the direction (of
+    /// any length) at an arc length from 0 to the sum of the sections' lengths.
+    ///
+    /// Its direction must be continuous and, within each section, turn by no more than the section's curvature per
+    /// length. Answers are as good as that promise: [`verify`](Self::verify) tries it.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, TubeSection, parry::math::Vector};
+    ///
+    /// let section = TubeSection { length: 20.0, radius: 1.0, curvature: 0.05 };
+    /// let tube = Tube::from_function(&[section], |s| {
+    ///     let (sin, cos) = (0.05 * s).sin_cos();
+    ///     (Vector::new(1.0 - cos, 0.0, sin) * 20.0, Vector::new(sin, 0.0, cos))
+    /// })?;
+    /// tube.verify(100)?;
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No section; a length that is not positive, a radius or a curvature that is negative, or one that is not finite; a
+    /// curve that is not finite or out of range at the end of a section; a section with a flat end whose curvature times
+    /// its radius is 1 or more.
+    pub fn from_function(
+        sections: &[TubeSection],
+        curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
+    ) -> Result<Self, RobotError> {
+        check_sections(sections)?;
+        let mut tube = Self::empty();
+        let mut start = 0.0;
+        for given in sections {
+            let end = start + given.length;
+            tube.sections.push(Section {
+                first: 0,
+                last: TICKS,
+                start,
+                end,
+                radius: given.radius,
+                // The ends of sections are rounded.
+                curvature: given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF),
+                stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
+                deviation: 0.0,
+                faces: [None; 2],
+            });
+            start = end;
+        }
+        let ends = |section: &Section| [section.start, section.end].map(&curve);
+        for (index, section) in tube.sections.iter().enumerate() {
+            for (point, direction) in ends(section) {
+                check_points(&[point])?;
+                if !(direction.length_squared() > 0.0 && direction.is_finite()) {
+                    return Err(RobotError::BadTangent { index });
+                }
+                tube.reach = tube.reach.max(point.abs().max_element());
+            }
+        }
+        tube.reach += start;
+        tube.find_caps(|section, end| ends(section)[end].0);
+        for (index, section) in tube.sections.iter_mut().enumerate() {
+            for (end, (centre, tangent)) in [section.start, section.end].map(&curve).into_iter().enumerate() {
+                if tube.caps[index][end] == Cap::Flat {
+                    let outward = direction(if end == 0 { -tangent } else { tangent });
+                    section.faces[end] = Some(Face { centre, outward, tilt: 0.0 });
+                }
+            }
+            check_faces(section, index)?;
+        }
+        tube.curve = Curve::Function(Arc::new(curve));
+        Ok(tube)
+    }
+}
+
+fn check_sections(sections: &[TubeSection]) -> Result<(), RobotError> {
+    if sections.is_empty() {
+        return Err(RobotError::NoSections);
+    }
+    for (index, section) in sections.iter().enumerate() {
+        if !(section.length > 0.0 && section.length < Real::INFINITY) {
+            return Err(RobotError::BadLength { index, value: section.length });
+        }
+        check_radii(&[section.radius]).map_err(|_| RobotError::BadRadius {
+            index,
+            value: section.radius,
+            limit: crate::robot::COORDINATE_LIMIT,
+        })?;
+        if !(0.0..Real::INFINITY).contains(&section.curvature) {
+            return Err(RobotError::BadCurvature { index, value: section.curvature });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,185 @@
+//! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
+
+mod curve;
+mod from_chain;
+mod function;
+mod samples;
+mod section;
+mod verify;
+
+pub use function::TubeSection;
+pub(crate) use section::{Face, Section};
+
+use super::{Cap, RobotError};
+use curve::{Curve, Foot};
+use parry3d_f64::math::{Real, Vector};
+
+/// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius for each section.
+///
+/// Where a [`Chain`](crate::Chain) is a model of the robot, whose links decide how far it is from the truth, a tube is
+/// the robot, and each query says what error it bears. The query divides the tube only as finely as that takes, and its
+/// answer has bounds.
+///
+/// A section is a stretch with one radius. Its end is flat at the robot's two ends, on the wider side of a step in
+/// radius, and where a round end would stick out of such a face; elsewhere it is round, and a ball stands there,
+/// less what would stick out of the section's own flat end (Algorithm 1 with each section as a link). Lengths are in one unit, points in the robot's frame.
+///
+/// # What is known of the curve
+/// - [`from_samples`](Self::from_samples): the curve goes through the samples and bends nowhere more than they show. A
+///   curve that turns more sharply between two samples than at any of them is not covered: sample more densely.
+/// - [`from_function`](Self::from_function): the curve is the function, and its curvature in each section is at most
+///   what is stated. [`verify`](Self::verify) tries that on samples.
+/// - `Tube::from(&chain)`: straight pieces, whose queries have no error but rounding.
+///
+/// Errors of a sensor or of the kinematics are added by [`with_error`](Self::with_error).
+///
+/// ```
+/// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
+/// use parry_continuum::proximity::BvhSearch;
+///
+/// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+/// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+/// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+/// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
+/// let found = search.clearance(&tube, &Pose::IDENTITY, 0.01)?;
+/// assert!(found.upper - found.lower <= 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Tube {
+    curve: Curve,
+    sections: Vec<Section>,
+    /// How far the curve may be from what was given.
+    error: Real,
+    /// The largest coordinate of the centreline, or more.
+    reach: Real,
+    /// Memory for the next samples: the ends of the sections, their radii and caps.
+    ends: Vec<Vector>,
+    radii: Vec<Real>,
+    caps: Vec<[Cap; 2]>,
+}
+
+impl std::fmt::Debug for Tube {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Tube").field("sections", &self.sections).finish_non_exhaustive()
+    }
+}
+
+impl Tube {
+    /// The tube around a smooth curve through `points`, with one radius for each segment between them.
+    ///
+    /// `end_tangents` are the curve's directions at the first and the last point, towards the tip, of any length. Without
+    /// them, and at steps in radius, the direction of a flat face is continued from the samples, and what that leaves
+    /// open widens the bounds of every answer near the face.
+    ///
+    /// The curvature of a section is the largest that its samples show: turn / distance between neighbouring segments.
+    /// Repeated points are dropped, together with the radius of the segment without length between them.
+    ///
+    /// # Errors
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tangent that is zero or not finite; samples so far
+    /// apart that the curve could turn by more than 1 rad from one to the next; or a section with a flat end whose
+    /// curvature times its radius is 1 or more, so that its discs would stick out of the face.
+    pub fn from_samples(
+        points: &[Vector],
+        segment_radii: &[Real],
+        end_tangents: Option<[Vector; 2]>,
+    ) -> Result<Self, RobotError> {
+        let mut tube = Self::empty();
+        tube.set_samples(points, segment_radii, end_tangents)?;
+        Ok(tube)
+    }
+
+    /// Makes this tube what [`from_samples`](Self::from_samples) makes of the arguments, in the memory that it has: a
+    /// control loop whose robot keeps its number of points allocates nothing.
+    ///
+    /// # Errors
+    /// As [`from_samples`](Self::from_samples). The tube then has no section, and every query refuses it.
+    pub fn set_samples(
+        &mut self,
+        points: &[Vector],
+        segment_radii: &[Real],
+        end_tangents: Option<[Vector; 2]>,
+    ) -> Result<(), RobotError> {
+        let result = self.measure(points, segment_radii, end_tangents);
+        if result.is_err() {
+            self.sections.clear();
+        }
+        result
+    }
+
+    /// The same tube, of whose centreline each point may be off by up to `error`: the error of the sensor or of the
+    /// kinematics. All bounds of answers count it.
+    ///
+    /// # Errors
+    /// The error is not finite or negative.
+    pub fn with_error(mut self, error: Real) -> Result<Self, RobotError> {
+        if !(0.0..Real::INFINITY).contains(&error) {
+            return Err(RobotError::BadTolerance { value: error });
+        }
+        self.error = error;
+        Ok(self)
+    }
+
+    /// The length of the centreline; between samples, of the lines that join them.
+    pub fn length(&self) -> Real {
+        self.sections.last().map_or(0.0, |section| section.end)
+    }
+
+    pub(crate) fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    pub(crate) fn error(&self) -> Real {
+        self.error
+    }
+
+    /// The largest coordinate of the tube in its frame, or more.
+    pub(crate) fn reach(&self) -> Real {
+        self.reach
+    }
+
+    pub(crate) fn point(&self, section: &Section, tick: u32) -> Vector {
+        self.curve.point(section, tick)
+    }
+
+    pub(crate) fn arc(&self, section: &Section, tick: u32) -> Real {
+        self.curve.arc(section, tick)
+    }
+
+    pub(crate) fn tick(&self, section: &Section, arc: Real) -> u32 {
+        self.curve.tick(section, arc)
+    }
+
+    pub(crate) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
+        self.curve.foot(section, arc, point)
+    }
+
+    fn empty() -> Self {
+        Self {
+            curve: Curve::default(),
+            sections: Vec::new(),
+            error: 0.0,
+            reach: 0.0,
+            ends: Vec::new(),
+            radii: Vec::new(),
+            caps: Vec::new(),
+        }
+    }
+}
+
+/// Discs behind a flat face must not stick out of it, which they would where the centreline bends within a radius.
+fn check_faces(section: &Section, index: usize) -> Result<(), RobotError> {
+    let Section { curvature, radius, faces, .. } = *section;
+    if faces.iter().any(Option::is_some) && curvature * radius >= 1.0 {
+        return Err(RobotError::BendsWithinRadius { index, curvature, radius });
+    }
+    Ok(())
+}
+
+fn unit_tangents(tangents: [Vector; 2]) -> Result<[Vector; 2], RobotError> {
+    let unit = tangents.map(super::scale::direction);
+    match unit.iter().position(|tangent| !tangent.is_finite() || *tangent == Vector::ZERO) {
+        Some(index) => Err(RobotError::BadTangent { index }),
+        None => Ok(unit),
+    }
+}

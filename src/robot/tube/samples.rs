@@ -1,0 +1,266 @@
+//! A tube from samples: its sections, and how far the curve through the samples may be from the lines between them.
+//!
+//! Nobody knows the curve between two samples. It is taken to bend no more than the samples show: its curvature in a
+//! section is at most the largest of turn / distance over the section's samples, where turn is the change of direction
+//! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
+//! half of their lengths together. For a circle that is its curvature exactly. At a step in radius the turn counts for
+//! both sections.
+//!
+//! With that curvature k, and h the longest segment:
+//! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
+//!   long (Schwarz: the chord of an arc of curvature k is the shortest; asin x <= x (1 + x^2 / 5) up to 1/2);
+//! - it leaves the chord by at most k l^2 / 8, where l is its length.
+//!
+//! A face stands across the curve's direction at its centre. Where that is not given it is continued from the section's
+//! first two segments as if the turn went on evenly, and the tilt that is left open is how far the same rule, applied to
+//! the second and third segment, misses the first. For a curvature that changes steadily the miss is three times the
+//! error; for one that jumps within these segments it is twice the error or more. With fewer segments the direction is
+//! that of the first one, and it may be off by k l / 2.
+
+use super::Tube;
+use super::curve::Curve;
+use super::section::{Face, Section};
+use crate::distance::Scalar;
+use crate::robot::chain::check;
+use crate::robot::modified_cylinder::COORDINATE_LIMIT;
+use crate::robot::{Cap, RobotError, algorithm_1};
+use parry3d_f64::math::{Real, Vector};
+
+/// A segment between two samples.
+#[derive(Clone, Copy)]
+struct Segment {
+    direction: Vector,
+    length: Real,
+    /// What the rounding of the samples can do to the direction.
+    noise: Real,
+}
+
+impl Segment {
+    /// None without a length.
+    #[inline(always)]
+    fn between(from: Vector, to: Vector, rounding: Real) -> Option<Self> {
+        let along = to - from;
+        let length = along.length();
+        if length > 0.0 {
+            let inverse = 1.0 / length;
+            Some(Self { direction: along * inverse, length, noise: rounding * inverse })
+        } else {
+            None
+        }
+    }
+}
+
+/// A section on its way.
+struct Open {
+    section: Section,
+    longest: Real,
+    /// The sample where it bends most.
+    sharpest: usize,
+}
+
+impl Open {
+    fn new(first: usize, start: Real, radius: Real) -> Self {
+        let section = Section {
+            first: first as u32,
+            last: first as u32,
+            start,
+            end: start,
+            radius,
+            curvature: 0.0,
+            stretch: 1.0,
+            deviation: 0.0,
+            faces: [None; 2],
+        };
+        Self { section, longest: 0.0, sharpest: first }
+    }
+
+    /// Takes note of the turn from one segment to the next.
+    #[inline(always)]
+    fn bend(&mut self, before: &Segment, segment: &Segment, sample: usize) {
+        let squared = (segment.direction - before.direction).length_squared();
+        let noise = segment.noise + before.noise;
+        let distance = 0.5 * (segment.length + before.length);
+        // Most turns are no larger than the largest so far, which is seen without a root and a division.
+        let known = self.section.curvature * distance - noise;
+        if known < 0.0 || squared > known * known {
+            self.raise((squared.sqrt() + noise) / distance, sample);
+        }
+    }
+
+    /// Takes note of the turn between a segment and the direction at one of its ends.
+    fn bend_from(&mut self, direction: Vector, segment: &Segment, sample: usize) {
+        let turn = (segment.direction - direction).length() + segment.noise;
+        self.raise(turn / (0.5 * segment.length), sample);
+    }
+
+    fn raise(&mut self, curvature: Real, sample: usize) {
+        if curvature > self.section.curvature {
+            self.section.curvature = curvature;
+            self.sharpest = sample;
+        }
+    }
+
+    fn close(mut self, last: usize, end: Real) -> Result<Section, RobotError> {
+        let section = &mut self.section;
+        (section.last, section.end) = (last as u32, end);
+        let bend = section.curvature * self.longest;
+        if bend > 1.0 {
+            return Err(RobotError::TurnsTooSharply { index: self.sharpest, turn: bend });
+        }
+        section.stretch = 1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF;
+        let longest = self.longest * section.stretch;
+        section.deviation = section.curvature * longest * longest / 8.0;
+        Ok(self.section)
+    }
+}
+
+impl Tube {
+    /// Fills the tube; see [`Tube::set_samples`].
+    pub(super) fn measure(
+        &mut self,
+        samples: &[Vector],
+        radii: &[Real],
+        end_tangents: Option<[Vector; 2]>,
+    ) -> Result<(), RobotError> {
+        // In one sweep without branches; what it does not find good is looked at closely.
+        let reach = samples.iter().fold(Vector::ZERO, |reach, point| reach.max(point.abs())).max_element();
+        let sum = samples.iter().fold(Vector::ZERO, |sum, &point| sum + point).element_sum();
+        let all_finite = reach <= COORDINATE_LIMIT && sum.is_finite();
+        if !all_finite || samples.len() < 2 || radii.len() + 1 != samples.len() || !radii_are_good(radii) {
+            check(samples, radii, samples.len().saturating_sub(1))?;
+        }
+        let tangents = end_tangents.map(super::unit_tangents).transpose()?;
+
+        let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
+        points.clear();
+        arcs.clear();
+        points.reserve(samples.len());
+        arcs.reserve(samples.len());
+        self.sections.clear();
+        points.push(samples[0]);
+        arcs.push(0.0);
+        let rounding = 4.0 * Real::UNIT_ROUNDOFF * reach;
+        let (mut arc, mut before, mut last) = (0.0, None::<Segment>, samples[0]);
+        let mut open = Open::new(0, 0.0, radii[0]);
+        let mut result = Ok(());
+        for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
+            let Some(segment) = Segment::between(last, sample, rounding) else { continue };
+            if let Some(before) = &before {
+                open.bend(before, &segment, k);
+                if radius != open.section.radius {
+                    let here = points.len() - 1;
+                    let mut next = Open::new(here, arc, radius);
+                    next.bend(before, &segment, k);
+                    match std::mem::replace(&mut open, next).close(here, arc) {
+                        Ok(section) => self.sections.push(section),
+                        Err(error) => result = result.and(Err(error)),
+                    }
+                }
+            } else {
+                open.section.radius = radius;
+                if let Some([tangent, _]) = tangents {
+                    open.bend_from(tangent, &segment, 0);
+                }
+            }
+            arc += segment.length;
+            points.push(sample);
+            arcs.push(arc);
+            if segment.length > open.longest {
+                open.longest = segment.length;
+            }
+            last = sample;
+            before = Some(segment);
+        }
+        if let (Some(segment), Some([_, tangent])) = (before, tangents) {
+            open.bend_from(tangent, &segment, samples.len() - 1);
+        }
+        let last = points.len() - 1;
+        match open.close(last, arc) {
+            Ok(section) => self.sections.push(section),
+            Err(error) => result = result.and(Err(error)),
+        }
+        self.reach = reach;
+        self.error = 0.0;
+        if last == 0 {
+            result = Err(RobotError::AllPointsEqual);
+        }
+        if result.is_ok() {
+            result = self.stand_faces(&points, tangents, rounding);
+        }
+        self.curve = Curve::Samples { points, arcs };
+        result
+    }
+
+    /// Finds the flat ends of the sections and their directions.
+    fn stand_faces(
+        &mut self,
+        points: &[Vector],
+        tangents: Option<[Vector; 2]>,
+        rounding: Real,
+    ) -> Result<(), RobotError> {
+        self.find_caps(|section, end| points[if end == 0 { section.first } else { section.last } as usize]);
+        let last = self.sections.len() - 1;
+        for (number, section) in self.sections.iter_mut().enumerate() {
+            let stretch = &points[section.first as usize..=section.last as usize];
+            for end in [0, 1] {
+                if self.caps[number][end] == Cap::Round {
+                    continue;
+                }
+                let given = match (end, tangents) {
+                    (0, Some([tangent, _])) if number == 0 => Some(-tangent),
+                    (1, Some([_, tangent])) if number == last => Some(tangent),
+                    _ => None,
+                };
+                let ahead = |k: usize| if end == 0 { stretch[k] } else { stretch[stretch.len() - 1 - k] };
+                let (outward, tilt) = match given {
+                    Some(outward) => (outward, 0.0),
+                    None => direction_at_end(ahead, stretch.len(), section.curvature, rounding),
+                };
+                let centre = ahead(0);
+                section.faces[end] = Some(Face { centre, outward, tilt });
+            }
+            super::check_faces(section, section.first as usize)?;
+        }
+        Ok(())
+    }
+}
+
+/// The direction out of a section at its first sample and how far off it may be; `sample` counts from there.
+fn direction_at_end(
+    sample: impl Fn(usize) -> Vector,
+    count: usize,
+    curvature: Real,
+    rounding: Real,
+) -> (Vector, Real) {
+    let segment = |k: usize| {
+        if k + 1 < count { Segment::between(sample(k + 1), sample(k), rounding) } else { None }
+    };
+    let Some(first) = segment(0) else { return (Vector::ZERO, Real::INFINITY) };
+    let plain = (first.direction, 0.5 * curvature * first.length * 1.05 + 4.0 * first.noise);
+    let (Some(second), Some(third)) = (segment(1), segment(2)) else { return plain };
+    // What a steady turn would make of the direction `ahead` by so much, from the middle of `near`.
+    let continued = |near: &Segment, far: &Segment, ahead: Real| {
+        near.direction + (near.direction - far.direction) * (ahead / (0.5 * (near.length + far.length)))
+    };
+    let outward = continued(&first, &second, 0.5 * first.length).normalize();
+    let miss = (continued(&second, &third, 0.5 * (first.length + second.length)) - first.direction).length();
+    let tilt = miss + 8.0 * (first.noise + second.noise + third.noise);
+    // A turn so wild that the continuation is worth less than the segment itself.
+    if tilt < plain.1 + (outward - plain.0).length() { (outward, tilt) } else { plain }
+}
+
+fn radii_are_good(radii: &[Real]) -> bool {
+    radii.iter().all(|radius| (0.0..=COORDINATE_LIMIT).contains(radius))
+}
+
+impl Tube {
+    /// Which ends of the sections are flat: Algorithm 1 with each section as a link. `end` tells where sections end.
+    pub(super) fn find_caps(&mut self, end: impl Fn(&Section, usize) -> Vector) {
+        self.ends.clear();
+        self.radii.clear();
+        self.ends.extend(self.sections.iter().map(|section| end(section, 0)));
+        self.ends.extend(self.sections.last().map(|section| end(section, 1)));
+        self.radii.extend(self.sections.iter().map(|section| section.radius));
+        algorithm_1::from_segment_radii(&self.ends, &self.radii, &mut self.caps);
+    }
+}

@@ -1,0 +1,43 @@
+//! A stretch of the tube with one radius, and its flat faces.
+
+use parry3d_f64::math::{Real, Vector};
+
+/// A stretch of the tube with one radius. Places along it are *ticks*: the samples, or even shares of the section where
+/// the curve is a function.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Section {
+    pub first: u32,
+    pub last: u32,
+    /// Arc lengths, along the polyline through the ticks, where it begins and ends.
+    pub start: Real,
+    pub end: Real,
+    pub radius: Real,
+    /// The curve's curvature is at most this.
+    pub curvature: Real,
+    /// The curve between two ticks is at most so many times as long as the polyline.
+    pub stretch: Real,
+    /// How far the curve may be from the polyline through all ticks. None where the curve is a function.
+    pub deviation: Real,
+    /// The flat ends. The others are round.
+    pub faces: [Option<Face>; 2],
+}
+
+/// A flat end of a section.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face {
+    pub centre: Vector,
+    /// The unit normal, out of the section.
+    pub outward: Vector,
+    /// How large the angle between `outward` and the true normal may be.
+    pub tilt: Real,
+}
+
+impl Section {
+    /// How far from a flat face, by arc length, a ball on the centreline stays behind it. A disc at arc length s from the
+    /// face lies at least sin(curvature s) / curvature behind its plane, which is the radius where s is
+    /// asin(curvature radius) / curvature.
+    pub(crate) fn room(&self) -> Real {
+        let bend = (self.curvature * self.radius).min(1.0);
+        if bend > 0.0 { bend.asin() / self.curvature } else { self.radius }
+    }
+}
