@@ -2,11 +2,12 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | questions | [`problems`] that break distance code; [`Case`], references known to 30 digits; [`Random`], the same anywhere |
+//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`Random`], the same anywhere |
 //! | the narrow phase | [`kernels`], every public function on one input; [`precision`], one text for `f32` and `f64` |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
 //! | programs | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
 
+mod arcs;
 mod cases;
 pub mod certificate;
 pub mod disc_problems;
@@ -20,5 +21,6 @@ pub mod programs;
 mod random;
 pub mod rotation;
 
+pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, distance_cases, read_lines};
 pub use random::Random;

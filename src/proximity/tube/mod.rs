@@ -6,6 +6,8 @@ mod placed;
 mod report;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
+#[cfg(test)]
+mod tests;
 mod witness;
 
 pub(super) use outer::Outer;

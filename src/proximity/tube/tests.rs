@@ -1,0 +1,189 @@
+//! Each bound against dense sampling of curves whose curvature is known.
+
+use super::{Piece, PlacedTube};
+use crate::distance::{Vec3, point_modified_cylinder};
+use crate::robot::{Section, Tube, TubeSection};
+use continuum_testing::{Arcs, Random, Stretch};
+use parry3d_f64::math::{Pose, Real, Vector};
+use std::sync::Arc;
+
+fn random_arcs(random: &mut Random) -> Arcs {
+    let frame = random.pose(10.0);
+    Arcs::random(random, frame, 1.0)
+}
+
+/// The tube as a function, and from samples where these show the curvature of every arc.
+fn tubes(random: &mut Random, arcs: &Arc<Arcs>) -> Vec<Tube> {
+    let curve = Arc::clone(arcs);
+    let sections = arcs.stretches.iter().map(|&Stretch { length, radius, curvature }| TubeSection {
+        length,
+        radius,
+        curvature,
+    });
+    let function = Tube::from_function(&sections.collect::<Vec<_>>(), move |s| curve.at(s));
+    let (points, radii) = arcs.samples(arcs.shortest() / random.between(3.5, 8.0), &[]);
+    let given = Tube::from_samples(&points, &radii, Some(arcs.end_tangents()));
+    let measured = Tube::from_samples(&points, &radii, None);
+    [function, given, measured].into_iter().flatten().collect()
+}
+
+/// Points of the tube between two arc lengths: on the rims of discs, and on the ball at a round end.
+fn points_between(
+    random: &mut Random,
+    arcs: &Arcs,
+    section: &Section,
+    [from, to]: [Real; 2],
+    mut visit: impl FnMut(Vector),
+) {
+    for k in 0..=40 {
+        let (centre, tangent) = arcs.at(from + (to - from) * Real::from(k) / 40.0);
+        let across = tangent.cross(random.direction()).normalize();
+        visit(centre + across * section.radius);
+        visit(centre + tangent.cross(across) * section.radius);
+    }
+    for (end, is_there) in [from <= section.start, to >= section.end].into_iter().enumerate() {
+        if is_there && section.faces[end].is_none() {
+            let (centre, tangent) = arcs.at([from, to][end]);
+            let is_cut = |point: Vector| {
+                section.faces[1 - end].is_some_and(|face| (point - face.centre).dot(face.outward) > -1e-9)
+            };
+            for _ in 0..20 {
+                let point = centre + random.direction() * section.radius;
+                let ahead = (point - centre).dot(tangent) * if end == 0 { -1.0 } else { 1.0 };
+                if ahead > 0.0 && !is_cut(point) {
+                    visit(point);
+                }
+            }
+        }
+    }
+}
+
+/// The arc length of the curve at a length along the polyline of a tube: they share ends of sections.
+fn true_arc(arcs: &Arcs, tube: &Tube, number: usize, tick: u32) -> Real {
+    let section = &tube.sections()[number];
+    let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
+    let share = Real::from(tick - section.first) / Real::from(section.last - section.first);
+    start + arcs.stretches[number].length * share
+}
+
+#[test]
+fn bodies_hold_their_pieces() {
+    let mut random = Random::new(1);
+    let (mut checked, mut flat, mut faces, mut tight) = (0, 0, 0, 0);
+    for _ in 0..600 {
+        let arcs = Arc::new(random_arcs(&mut random));
+        for tube in tubes(&mut random, &arcs) {
+            assert_eq!(tube.sections().len(), arcs.stretches.len());
+            let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 0.0).unwrap();
+            for (number, section) in tube.sections().iter().enumerate() {
+                for _ in 0..6 {
+                    let ticks = section.last - section.first;
+                    let size = (ticks / [1, 2, 5, 20][random.below(4) as usize]).max(1);
+                    let from = match random.below(3) {
+                        0 => section.first,
+                        1 => section.last - size,
+                        _ => section.first + random.below(ticks - size + 1),
+                    };
+                    let piece = Piece { section: number as u32, from, to: from + size };
+                    let outer = placed.outer(&piece);
+                    let [start, end] = [outer.body.start(), outer.body.end()].map(Vec3::from);
+                    let (radius, caps) = (outer.body.radius(), outer.body.flat());
+                    let between = [from, from + size].map(|tick| true_arc(&arcs, &tube, number, tick));
+                    // Where the curve ends, whatever rounding makes of the arc length.
+                    let section = Section { start: between[0], end: between[1], ..*section };
+                    let section = Section {
+                        start: if from == section.first { section.start } else { -1.0 },
+                        end: if from + size == section.last { section.end } else { 1e9 },
+                        ..section
+                    };
+                    points_between(&mut random, &arcs, &section, between, |point| {
+                        let beyond =
+                            point_modified_cylinder(Vec3::from(point), start, end, radius, caps).distance;
+                        assert!(beyond <= 0.0, "{beyond} out of {outer:?} of {piece:?} in {section:?}");
+                        checked += 1;
+                    });
+                    flat += usize::from(outer.is_flat());
+                    faces += usize::from(section.faces.iter().any(Option::is_some));
+                    tight += usize::from(outer.over < 0.01 * section.radius);
+                }
+            }
+        }
+    }
+    assert!(
+        checked > 100_000 && flat > 1_000 && faces > 1_000 && tight > 1_000,
+        "{checked} {flat} {faces} {tight}"
+    );
+}
+
+/// The distance of a point from the discs of the tube, by ever finer sampling; and from its balls at round ends, unless
+/// the section's own face is near.
+fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
+    let section = &tube.sections()[number];
+    let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
+    let end = start + arcs.stretches[number].length;
+    let from_disc = |s: Real| {
+        let (centre, tangent) = arcs.at(s);
+        let ahead = (x - centre).dot(tangent);
+        let across = (x - centre - tangent * ahead).length();
+        ahead.hypot((across - section.radius).max(0.0))
+    };
+    let mut least = Real::INFINITY;
+    for (end, s) in [start, end].into_iter().enumerate() {
+        if section.faces[end].is_none() {
+            least = least.min(((x - arcs.at(s).0).length() - section.radius).max(0.0));
+        }
+    }
+    // Every local minimum of the first sampling, and around it closer and closer.
+    let first = |k: i32| start + (end - start) * Real::from(k.clamp(0, 800)) / 800.0;
+    for k in 0..=800 {
+        let here = from_disc(first(k));
+        if here > from_disc(first(k - 1)) || here > from_disc(first(k + 1)) {
+            continue;
+        }
+        let (mut around, mut step) = (first(k), (end - start) / 8_000.0);
+        for _ in 0..6 {
+            let near = (-12..=12).map(|k| (around + step * Real::from(k)).max(start).min(end));
+            let best = near.map(|s| (from_disc(s), s)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            least = least.min(best.0);
+            (around, step) = (best.1, step / 10.0);
+        }
+    }
+    least
+}
+
+#[test]
+fn witnesses_are_no_nearer_than_the_tube() {
+    let mut random = Random::new(2);
+    let (mut checked, mut ahead, mut touching, mut loose) = (0, 0, 0, 0.0_f64);
+    for _ in 0..150 {
+        let arcs = Arc::new(random_arcs(&mut random));
+        for tube in tubes(&mut random, &arcs) {
+            let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 0.0).unwrap();
+            for (number, section) in tube.sections().iter().enumerate() {
+                for _ in 0..10 {
+                    let s = random.between(section.start, section.end);
+                    let s = [s, s, section.start, section.end][random.below(4) as usize];
+                    let (centre, tangent) = arcs.at(s);
+                    let x = centre
+                        + tangent.cross(random.direction()) * (section.radius * random.between(0.5, 2.0))
+                        + tangent
+                            * (section.radius * [0.0, random.between(-1.0, 1.0)][random.below(2) as usize]);
+                    let witness = placed.witness(number as u32, s, x);
+                    let truth = distance(&arcs, &tube, number, x);
+                    assert!(
+                        witness.upper >= truth - 1e-6 * section.radius,
+                        "{witness:?} but {truth} from {x} to {section:?}"
+                    );
+                    checked += 1;
+                    touching += usize::from(truth <= 0.0);
+                    ahead += usize::from(truth > 0.0 && (s <= section.start || s >= section.end));
+                    if tube.sections().iter().all(|section| section.deviation <= 0.0) {
+                        loose = loose.max((witness.upper - truth) / section.radius);
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 3_000 && touching > 300 && ahead > 300, "{checked} {touching} {ahead}");
+    println!("{loose}");
+}
