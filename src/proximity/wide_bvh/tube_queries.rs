@@ -137,9 +137,7 @@ impl TubeSearch<'_> {
         let sections = self.tube.sections();
         if let Some(last) = last.filter(|last| (last.section as usize) < sections.len()) {
             let place = self.tube.place_at(last.section, last.arc);
-            let point = PlacedLink::between(place, place, 0.0, [false; 2]);
-            let nearest = point.measure(last.triangle, self.search.hierarchy.mesh.corners(last.triangle));
-            return self.witness_at(last.section, last.arc, &nearest);
+            return self.witness_at(last.section, last.arc, &self.nearest_to(place, last.triangle));
         }
         let length = |number: &u32| {
             let section = &sections[*number as usize];
@@ -186,7 +184,22 @@ impl TubeSearch<'_> {
     fn witness(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
-        self.witness_at(piece.section, arc, nearest)
+        let found = self.witness_at(piece.section, arc, nearest);
+        if nearest.distance > 0.0 || found.witness.upper <= 0.0 {
+            return found;
+        }
+        // The body's common point with a triangle that crosses it may lie on its boundary, from where nobody sees that
+        // the tube is crossed too: one nearer to its middle shows it.
+        let middle = outer.body.start() + outer.body.along() * 0.5;
+        let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
+        let deeper = self.witness_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
+        if deeper.witness.upper < found.witness.upper { deeper } else { found }
+    }
+
+    /// The point of a triangle nearest to a point.
+    fn nearest_to(&self, point: Vector, triangle: u32) -> Nearest {
+        let corners = self.search.hierarchy.mesh.corners(triangle);
+        PlacedLink::between(point, point, 0.0, [false; 2]).measure(triangle, corners)
     }
 
     fn witness_at(&self, section: u32, arc: Real, nearest: &Nearest) -> Found {

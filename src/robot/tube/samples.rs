@@ -3,8 +3,8 @@
 //! Nobody knows the curve between two samples. It is taken to bend no more than the samples show: its curvature in a
 //! section is at most the largest of turn / distance over the section's samples, where turn is the change of direction
 //! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
-//! half of their lengths together. For a circle that is its curvature exactly. At a step in radius the turn counts for
-//! both sections.
+//! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
+//! a section that has fewer than two of its own.
 //!
 //! With that curvature k, and h the longest segment:
 //! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
@@ -50,12 +50,22 @@ impl Segment {
     }
 }
 
+/// The curvature that the turn from one segment to the next shows.
+fn curvature_between(before: &Segment, segment: &Segment) -> Real {
+    let turn = (segment.direction - before.direction).length() + segment.noise + before.noise;
+    turn / (0.5 * (segment.length + before.length))
+}
+
 /// A section on its way.
 struct Open {
     section: Section,
     longest: Real,
     /// The sample where it bends most.
     sharpest: usize,
+    /// How many turns it has inside.
+    turns: usize,
+    /// The curvature that the turns at steps in radius show.
+    at_ends: Real,
 }
 
 impl Open {
@@ -71,19 +81,19 @@ impl Open {
             deviation: 0.0,
             faces: [None; 2],
         };
-        Self { section, longest: 0.0, sharpest: first }
+        Self { section, longest: 0.0, sharpest: first, turns: 0, at_ends: 0.0 }
     }
 
     /// Takes note of the turn from one segment to the next.
     #[inline(always)]
     fn bend(&mut self, before: &Segment, segment: &Segment, sample: usize) {
+        self.turns += 1;
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
-        let distance = 0.5 * (segment.length + before.length);
         // Most turns are no larger than the largest so far, which is seen without a root and a division.
-        let known = self.section.curvature * distance - noise;
+        let known = self.section.curvature * (0.5 * (segment.length + before.length)) - noise;
         if known < 0.0 || squared > known * known {
-            self.raise((squared.sqrt() + noise) / distance, sample);
+            self.raise(curvature_between(before, segment), sample);
         }
     }
 
@@ -101,6 +111,9 @@ impl Open {
     }
 
     fn close(mut self, last: usize, end: Real) -> Result<Section, RobotError> {
+        if self.turns < 2 {
+            self.raise(self.at_ends, last);
+        }
         let section = &mut self.section;
         (section.last, section.end) = (last as u32, end);
         let bend = section.curvature * self.longest;
@@ -146,11 +159,13 @@ impl Tube {
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
             let Some(segment) = Segment::between(last, sample, rounding) else { continue };
             if let Some(before) = &before {
-                open.bend(before, &segment, k);
-                if radius != open.section.radius {
+                if radius == open.section.radius {
+                    open.bend(before, &segment, k);
+                } else {
                     let here = points.len() - 1;
-                    let mut next = Open::new(here, arc, radius);
-                    next.bend(before, &segment, k);
+                    let turn = curvature_between(before, &segment);
+                    open.at_ends = open.at_ends.max(turn);
+                    let next = Open { at_ends: turn, ..Open::new(here, arc, radius) };
                     match std::mem::replace(&mut open, next).close(here, arc) {
                         Ok(section) => self.sections.push(section),
                         Err(error) => result = result.and(Err(error)),
