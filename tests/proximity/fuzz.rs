@@ -60,3 +60,8 @@ fn mesh_file() {
 fn root_finders() {
     try_bytes("root_finders", continuum_fuzzing::root_finders, 2000);
 }
+
+#[test]
+fn tube() {
+    try_bytes("tube", continuum_fuzzing::tube, 1000);
+}

@@ -8,6 +8,7 @@ mod link_triangle;
 mod mesh_file;
 mod root_finders;
 mod source;
+mod tube;
 
 pub use chain_mesh::chain_mesh;
 pub use constructors::constructors;
@@ -15,3 +16,4 @@ pub use dispatcher::dispatcher;
 pub use link_triangle::link_triangle;
 pub use mesh_file::mesh_file;
 pub use root_finders::root_finders;
+pub use tube::tube;
