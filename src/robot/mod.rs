@@ -12,7 +12,10 @@ mod modified_cylinder;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
+mod sight;
 mod simplify;
+mod stations;
+mod stretches;
 mod to_trimesh;
 
 pub use cap::Cap;
@@ -23,3 +26,4 @@ pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub(crate) use scale::length;
 pub use simplify::simplify;
+pub use stations::stations;
