@@ -92,22 +92,22 @@ impl<'a> Sight<'a> {
     ) -> Option<Wall> {
         targets.clear();
         let least = 16.0 * self.widened * self.widened;
-        let is_ahead = |vertex: &usize| self.from_to(from, *vertex).length_squared() >= least;
+        let is_ahead = |vertex: &usize| self.between(from, *vertex).length_squared() >= least;
         let vertices = from + 1..self.stretch.len();
         let axis = vertices.clone().find(is_ahead);
         let unsure = from + 1..axis.map_or(vertices.end, |axis| axis + 1);
         targets.extend(
             unsure.clone().filter(|&vertex| is_open(vertex)).map(|vertex| Target { vertex, is_sure: false }),
         );
-        let mut gates = Gates::along(self.from_to(from, axis?));
+        let mut gates = Gates::along(self.between(from, axis?));
         for vertex in unsure.clone() {
-            let place = gates.place(self.from_to(from, vertex));
+            let place = gates.place(self.between(from, vertex));
             if let Some(wall) = gates.narrow(vertex, &place, self) {
                 return Some(wall);
             }
         }
         for vertex in unsure.end..vertices.end {
-            let place = gates.place(self.from_to(from, vertex));
+            let place = gates.place(self.between(from, vertex));
             if is_open(vertex)
                 && let Some(is_sure) = gates.view(&place, self.widened)
             {
@@ -127,7 +127,7 @@ impl<'a> Sight<'a> {
     /// sqrt(2) tau either side is off by less than 2^-47 of the product of the distances.
     pub(super) fn is_wall(&self, from: usize, Wall(near, far): Wall) -> bool {
         let room = self.widened * self.widened;
-        let (p, q) = (self.from_to(from, near), self.from_to(from, far));
+        let (p, q) = (self.between(from, near), self.between(from, far));
         let (p_squared, q_squared) = (p.length_squared(), q.length_squared());
         let cosine = ((p_squared - room) * (q_squared - room)).sqrt() - room;
         from < near
@@ -135,7 +135,7 @@ impl<'a> Sight<'a> {
             && p.dot(q) < cosine - ANGLE_SLACK * (p_squared + q_squared)
     }
 
-    fn from_to(&self, from: usize, to: usize) -> Vector {
+    fn between(&self, from: usize, to: usize) -> Vector {
         (self.stretch[to] - self.stretch[from]) * self.scale
     }
 }
@@ -230,5 +230,27 @@ impl Gates {
             self.sure_from = Real::INFINITY;
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two gates that just touch are no wall, and two that just do not are one.
+    #[test]
+    fn a_wall_is_where_two_gates_part() {
+        for (near, far) in [(0.2, 0.9), (0.5, 0.51), (0.9, 0.3)] {
+            for tolerance in [0.1, 1e-3, 1e-5] {
+                for part in [-1e-3, 1e-3] {
+                    let angle = (Real::asin(tolerance / near) + Real::asin(tolerance / far)) * (1.0 + part);
+                    let (sin, cos) = angle.sin_cos();
+                    let far = Vector::new(0.6 * cos, sin, 0.8 * cos) * far;
+                    let stretch = [Vector::ZERO, Vector::new(0.6, 0.0, 0.8) * near, far];
+                    let wall = Sight::new(&stretch, tolerance).is_wall(0, Wall::new(1, 2));
+                    assert_eq!(wall, part > 0.0, "{near} {far} {tolerance} {part}");
+                }
+            }
+        }
     }
 }

@@ -47,6 +47,10 @@ use parry3d_f64::math::{Real, Vector};
 /// new segments go, and the centreline keeps its shape; points meant to be on an oblique straight line seldom are
 /// after rounding, so give those the rounding error as tolerance.
 ///
+/// On a smooth curve the time grows little faster than the number of points. At worst, with noise about as large as the
+/// tolerance or with loops, it can grow with the cube of the points between two changes of radius; where time must be
+/// bounded, [`stations`](crate::stations) needs a few more links and time in proportion to the points.
+///
 /// Repeated points are dropped first, together with the radius of the segment without length between them. (If
 /// that radius differs from a neighbour's the point counts as a change of radius.) A new segment always has a
 /// length: a loop is not replaced by the point where it closes, however large the tolerance.

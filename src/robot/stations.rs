@@ -13,15 +13,12 @@
 //!    segments as before while it holds.
 //!
 //! # Faces
-//! A flat face is perpendicular to the chord that ends in it. A chord turned by an angle from the first segment moves
-//! the rim, at the radius r, by no more than r |u - v|, u and v being the two directions. The chord after it is flat too
-//! where Algorithm 1 has no room for a ball, and its rim may reach ahead as much, less the depth at which it begins. So
-//! next to a face come stations whose chords have
-//!
-//! > r |u - v| <= tolerance + depth,
-//!
-//! as long as that binds, before any of the deviation does: lengths that grow by a factor of 1 + 2 / (kappa r) each. A
-//! single segment of the input is let pass; at the face itself it has the face's direction anyway.
+//! A flat face is perpendicular to the chord that ends in it. A chord of the direction v where the first segment has u
+//! moves the rim, at the radius r, by no more than r |u - v|, which must be within the tolerance. The chord after it is
+//! flat too where Algorithm 1 has no room for a ball. The rim at its beginning reaches r |u x v| ahead of its centre,
+//! which must be no more than the centre's depth behind the face and the tolerance. So stations come nearer together
+//! towards a face, as long as that asks for more than the deviation does, and at most to the depth r. A single segment
+//! of the input is let pass; at the face itself it has the face's direction anyway.
 //!
 //! # What it costs
 //! A probe looks at three vertices, a station takes at most eight probes, and there are no more stations than samples.
@@ -59,7 +56,7 @@ use parry3d_f64::math::{Real, Vector};
 /// let (points, radii) = stations(&arc, &[0.0; 90], 0.01)?;
 /// assert_eq!(points.len(), 7); // a wire has no faces: 15 degrees each
 /// let (points, radii) = stations(&arc, &[0.2; 90], 0.01)?;
-/// assert_eq!(points.len(), 9); // a short link at either face
+/// assert_eq!(points.len(), 8); // short links at the faces: one more in all
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
 ///
@@ -148,13 +145,17 @@ impl<'a> Course<'a> {
         loop {
             let depth = direction.dot(self.points[at] - self.points[face]).abs();
             let share = |steps: usize| {
-                let end = vertex(at, steps);
-                let moves = self.rim_moves(at.min(end), at.max(end), direction);
-                if moves > 0.0 { moves / (self.tolerance + depth) } else { 0.0 }
+                let (from, to) = (at.min(vertex(at, steps)), at.max(vertex(at, steps)));
+                let reach = if at == face {
+                    self.rim_moves(from, to, direction)
+                } else {
+                    self.rim_reaches(from, to, direction)
+                };
+                if reach > 0.0 { reach / (self.tolerance + depth) } else { 0.0 }
             };
             let (steps, _) = foresee(guess, at.abs_diff(end), share);
             let next = vertex(at, steps);
-            if next == end || self.share(at.min(next), at.max(next)) > 1.0 {
+            if depth > self.radius || next == end || self.share(at.min(next), at.max(next)) > 1.0 {
                 return stations;
             }
             stations.push(next);
@@ -248,6 +249,11 @@ impl<'a> Course<'a> {
     /// By how much the rim of a face moves if a chord stands for the input there.
     fn rim_moves(&self, from: usize, to: usize, face: Vector) -> Real {
         self.radius * (direction(self.points[to] - self.points[from]) - face).length()
+    }
+
+    /// How far ahead of its centre the rim at the end of a chord reaches, as a face looks.
+    fn rim_reaches(&self, from: usize, to: usize, face: Vector) -> Real {
+        self.radius * direction(self.points[to] - self.points[from]).cross(face).length()
     }
 
     /// Adds a station, and as many before it as it takes.
