@@ -16,18 +16,42 @@ pub(super) fn at_least_apart(p: Vector, q: Vector, radius: Real) -> bool {
     (apart * scale).length_squared() >= (radius * scale) * (radius * scale)
 }
 
-/// Whether `p` is within `tolerance` of the segment from `a` to `b`, which has a length.
+/// A segment that has a length, and a tolerance.
 ///
-/// The points that are make up two balls around the ends and a cylinder between them. With a tolerance of 0 these are
-/// the points for which no cross product is left after rounding.
-pub(super) fn is_within(p: Vector, a: Vector, b: Vector, tolerance: Real) -> bool {
-    let (from_a, from_b, chord) = (p - a, p - b, b - a);
-    let scale = from_a.abs().max(chord.abs()).max_element().max(tolerance).power_of_two_to_unity();
-    let (from_a, from_b, chord) = (from_a * scale, from_b * scale, chord * scale);
-    let limit = (tolerance * scale) * (tolerance * scale);
-    from_a.length_squared() <= limit
-        || from_b.length_squared() <= limit
-        || (from_a.dot(chord) > 0.0
-            && from_b.dot(chord) < 0.0
-            && from_a.cross(chord).length_squared() <= limit * chord.length_squared())
+/// The points within the tolerance make up two balls around the ends and a cylinder between them. With a tolerance of
+/// 0 these are the points for which no cross product is left after rounding.
+pub(super) struct Chord {
+    start: Vector,
+    end: Vector,
+    scale: Real,
+    /// Scaled, as are the others from here.
+    vector: Vector,
+    tolerance_squared: Real,
+    /// What the cross product of a point in the cylinder may square to.
+    cross_squared: Real,
+}
+
+impl Chord {
+    pub(super) fn new(start: Vector, end: Vector, tolerance: Real) -> Self {
+        let vector = end - start;
+        // What lies so far out that its square overflows after this is compared as infinite, and is not within.
+        let scale = vector.abs().max_element().max(tolerance).power_of_two_to_unity();
+        let vector = vector * scale;
+        let tolerance_squared = (tolerance * scale) * (tolerance * scale);
+        let cross_squared = tolerance_squared * vector.length_squared();
+        Self { start, end, scale, vector, tolerance_squared, cross_squared }
+    }
+
+    /// Whether a point is within the tolerance.
+    #[inline(always)]
+    pub(super) fn has_near(&self, p: Vector) -> bool {
+        let from_start = (p - self.start) * self.scale;
+        let from_end = (p - self.end) * self.scale;
+        // The cylinder first: most points of a stretch are in it.
+        (from_start.dot(self.vector) > 0.0
+            && from_end.dot(self.vector) < 0.0
+            && from_start.cross(self.vector).length_squared() <= self.cross_squared)
+            || from_start.length_squared() <= self.tolerance_squared
+            || from_end.length_squared() <= self.tolerance_squared
+    }
 }

@@ -12,7 +12,10 @@ mod modified_cylinder;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
+mod sight;
 mod simplify;
+mod stations;
+mod stretches;
 mod to_trimesh;
 mod tube;
 
@@ -24,5 +27,6 @@ pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub(crate) use scale::length;
 pub use simplify::simplify;
+pub use stations::stations;
 pub(crate) use tube::{Face, Section};
 pub use tube::{Tube, TubeSection};

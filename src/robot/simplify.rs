@@ -14,12 +14,28 @@
 //!
 //! If a long chord fails a shorter one may fail too, and the reverse, so no greedy choice is safe. The fewest links
 //! are a shortest path over admissible chords, found breadth first between each two vertices that must stay. A
-//! vertex is settled by the first chord that reaches it. One that has just ruled out a chord is asked first about
-//! the next: most chords fail at once, and the search usually costs about the square of the number of vertices.
+//! vertex is settled by the first chord that reaches it.
+//!
+//! # What it costs
+//! From most vertices there is nothing left to settle within reach, and that must be seen at once:
+//!
+//! 1. The wall (`sight.rs`) that ended the search from the vertex before mostly stands here too: nothing behind it
+//!    can be reached. That is one comparison.
+//! 2. Before the wall, the vertex that ruled out the last chord mostly rules out the next. One comparison a target.
+//! 3. Only if that fails does a search walk to the wall, vertex by vertex, and it decides nearly all chords on the way.
+//!    Those that it leaves in question are compared with vertex after vertex.
+//!
+//! On a smooth curve there are a few walks a link, and a comparison or two from every other vertex. To that comes, for
+//! each link, a part of the square of the number of points that it replaces: for chords that a walk leaves in question,
+//! and for targets before a wall. Where links replace hundreds of points it is the larger part. Where the chords that hold and those that do not
+//! alternate, as with noise about as large as the tolerance, every vertex costs a walk: as many steps as vertices
+//! times those that a chord spans. At worst every chord of a stretch is compared with all its vertices, the cube of
+//! their number.
 
 use super::RobotError;
-use super::chain::check;
-use super::compare::is_within;
+use super::compare::Chord;
+use super::sight::{Sight, Wall};
+use super::stretches::Stretches;
 use parry3d_f64::math::{Real, Vector};
 
 /// The fewest links that follow a centreline within a tolerance: their points and segment radii, ready for any
@@ -31,6 +47,11 @@ use parry3d_f64::math::{Real, Vector};
 /// these properties has fewer links. `tolerance` is in the unit of the points. With 0, only points exactly on the
 /// new segments go, and the centreline keeps its shape; points meant to be on an oblique straight line seldom are
 /// after rounding, so give those the rounding error as tolerance.
+///
+/// On a smooth curve the time grows with the number of points, while links replace few of them, and with its square
+/// where they replace hundreds. At worst, with noise about as large as the
+/// tolerance or with loops, it can grow with the cube of the points between two changes of radius; where time must be
+/// bounded, [`stations`](crate::stations) needs a few more links and time in proportion to the points.
 ///
 /// Repeated points are dropped first, together with the radius of the segment without length between them. (If
 /// that radius differs from a neighbour's the point counts as a change of radius.) A new segment always has a
@@ -54,85 +75,165 @@ pub fn simplify(
     segment_radii: &[Real],
     tolerance: Real,
 ) -> Result<(Vec<Vector>, Vec<Real>), RobotError> {
-    check(points, segment_radii, points.len().saturating_sub(1))?;
-    if !(0.0..Real::INFINITY).contains(&tolerance) {
-        return Err(RobotError::BadTolerance { value: tolerance });
-    }
-    let (stations, must_stay) = stations(points, segment_radii);
-    if stations.len() < 2 {
-        return Err(RobotError::AllPointsEqual);
-    }
-    let (mut kept, mut radii) = (vec![stations[0].point], vec![]);
-    for ends in must_stay.windows(2) {
-        let stretch: Vec<_> = stations[ends[0]..=ends[1]].iter().map(|station| station.point).collect();
-        for vertex in fewest_chords(&stretch, tolerance) {
-            kept.push(stretch[vertex]);
-            radii.push(stations[ends[1]].radius_before);
-        }
+    let stretches = Stretches::of(points, segment_radii, tolerance)?;
+    let (mut kept, mut radii) = (vec![stretches.first_point()], vec![]);
+    for stretch in stretches.iter() {
+        let path = Search::new(stretch.points, tolerance).fewest_chords();
+        radii.resize(radii.len() + path.len(), stretch.radius);
+        kept.extend(path.into_iter().map(|vertex| stretch.points[vertex]));
     }
     Ok((kept, radii))
 }
 
-/// A point of the centreline that differs from the one before.
-struct Station {
-    point: Vector,
-    /// Of the segment that ends here; at the first station, of the first segment.
-    radius_before: Real,
+/// The search for the fewest chords of a stretch.
+struct Search<'a> {
+    stretch: &'a [Vector],
+    tolerance: Real,
+    /// Where the path to each vertex that is settled comes from. The first vertex has no need of it.
+    previous: Vec<Option<usize>>,
+    /// The first vertex that is not settled.
+    first_open: usize,
+    /// The settled vertices in the order in which they were.
+    queue: Vec<usize>,
+    /// What last ruled out a chord.
+    obstacle: usize,
+    /// What last ended a walk.
+    wall: Option<Wall>,
+    /// Comparisons of a vertex with a chord or a gate.
+    #[cfg(test)]
+    steps: std::cell::Cell<usize>,
 }
 
-/// The stations, and which of them must stay: the ends and those where the radius changes.
-fn stations(points: &[Vector], segment_radii: &[Real]) -> (Vec<Station>, Vec<usize>) {
-    let mut stations = vec![Station { point: points[0], radius_before: segment_radii[0] }];
-    let mut must_stay = vec![0];
-    let mut last_radius = segment_radii[0];
-    for (ends, &radius) in points.windows(2).zip(segment_radii) {
-        let here = stations.len() - 1;
-        if radius != last_radius && must_stay.last() != Some(&here) {
-            must_stay.push(here);
-        }
-        last_radius = radius;
-        if ends[0] != ends[1] {
-            stations.push(Station { point: ends[1], radius_before: radius });
+impl<'a> Search<'a> {
+    fn new(stretch: &'a [Vector], tolerance: Real) -> Self {
+        Self {
+            stretch,
+            tolerance,
+            previous: vec![None; stretch.len()],
+            first_open: 1,
+            queue: vec![0],
+            obstacle: 0,
+            wall: None,
+            #[cfg(test)]
+            steps: Default::default(),
         }
     }
-    let tip = stations.len() - 1;
-    if must_stay.last() != Some(&tip) {
-        must_stay.push(tip);
-    }
-    (stations, must_stay)
-}
 
-/// The vertices after the first that a shortest path of admissible chords from the first to the last visits.
-fn fewest_chords(stretch: &[Vector], tolerance: Real) -> Vec<usize> {
-    let last = stretch.len() - 1;
-    let mut previous: Vec<Option<usize>> = vec![None; stretch.len()];
-    let mut queue = vec![0];
-    let mut next = 0;
-    while previous[last].is_none() {
-        // The queue never runs dry before the last vertex is reached: each vertex reaches the one after it.
-        let from = queue[next];
-        next += 1;
-        let mut obstacle = from;
-        for to in (from + 1..=last).rev() {
-            if previous[to].is_some() || stretch[from] == stretch[to] {
+    /// The vertices after the first that a shortest path of admissible chords from the first to the last visits.
+    fn fewest_chords(mut self) -> Vec<usize> {
+        let last = self.stretch.len() - 1;
+        self.settle(last);
+        let mut path: Vec<_> = std::iter::successors(Some(last), |&vertex| self.previous[vertex]).collect();
+        path.pop();
+        path.reverse();
+        path
+    }
+
+    /// Settles vertices, those nearest in links first and of these the farthest first, until the last one is.
+    fn settle(&mut self, last: usize) {
+        let sight = Sight::new(self.stretch, self.tolerance);
+        let mut targets = Vec::new();
+        let mut next = 0;
+        while self.previous[last].is_none() {
+            // The queue never runs dry before the last vertex is reached: each vertex reaches the one after it.
+            let from = self.queue[next];
+            next += 1;
+            while self.previous[self.first_open].is_some() {
+                self.first_open += 1;
+            }
+            if self.sees_nothing_new(from, &sight) {
                 continue;
             }
-            let is_off = |&vertex: &usize| !is_within(stretch[vertex], stretch[from], stretch[to], tolerance);
-            let suspects = (from < obstacle && obstacle < to).then_some(obstacle);
-            match suspects.into_iter().chain(from + 1..to).find(is_off) {
-                Some(vertex) => obstacle = vertex,
-                None => {
-                    previous[to] = Some(from);
-                    queue.push(to);
+            let previous = &self.previous;
+            self.wall = sight.look(from, |vertex| previous[vertex].is_none(), &mut targets);
+            self.count(self.wall.map_or(last, Wall::vertex) - from);
+            for target in targets.iter().rev() {
+                let to = target.vertex;
+                if target.is_sure || self.is_admissible(from, to) {
+                    self.previous[to] = Some(from);
+                    self.queue.push(to);
                     if to == last {
-                        break;
+                        return;
                     }
                 }
             }
         }
     }
-    let mut path: Vec<_> = std::iter::successors(Some(last), |&vertex| previous[vertex]).collect();
-    path.pop();
-    path.reverse();
-    path
+
+    /// Whether walls that are known or likely, and the last obstacle, rule out every open vertex, without a walk.
+    fn sees_nothing_new(&self, from: usize, sight: &Sight) -> bool {
+        let first = self.first_open.max(from + 1);
+        // On an arc, a wall is nearest if its distances are as 1 to 1 + sqrt(2).
+        let likely = Wall::new(from + (first - from) * 12 / 29, first);
+        let wall = [Some(likely), self.wall].into_iter().flatten().find(|&wall| {
+            self.count(1);
+            sight.is_wall(from, wall)
+        });
+        let end = wall.map_or(self.stretch.len() - 1, Wall::vertex) + 1;
+        // No more comparisons than a walk would cost.
+        end < first + (first - from)
+            && (first..end).filter(|&to| self.previous[to].is_none()).all(|to| {
+                self.count(1);
+                self.stretch[from] == self.stretch[to]
+                    || from < self.obstacle
+                        && self.obstacle < to
+                        && !Chord::new(self.stretch[from], self.stretch[to], self.tolerance)
+                            .has_near(self.stretch[self.obstacle])
+            })
+    }
+
+    /// Whether every vertex of the stretch in between is within the tolerance of a chord.
+    fn is_admissible(&mut self, from: usize, to: usize) -> bool {
+        if self.stretch[from] == self.stretch[to] {
+            return false;
+        }
+        let chord = Chord::new(self.stretch[from], self.stretch[to], self.tolerance);
+        let is_off = |&vertex: &usize| {
+            self.count(1);
+            !chord.has_near(self.stretch[vertex])
+        };
+        let suspect = (from < self.obstacle && self.obstacle < to).then_some(self.obstacle);
+        let found = suspect.into_iter().chain(from + 1..to).find(is_off);
+        self.obstacle = found.unwrap_or(self.obstacle);
+        found.is_none()
+    }
+
+    #[cfg(test)]
+    fn count(&self, steps: usize) {
+        self.steps.set(self.steps.get() + steps);
+    }
+
+    #[cfg(not(test))]
+    fn count(&self, _: usize) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Comparisons for a sine of so many points within 1e-3, and its links.
+    fn steps(count: u32) -> (usize, usize) {
+        let point = |k| {
+            let x = 10.0 * Real::from(k) / Real::from(count);
+            Vector::new(x, x.sin(), 0.0)
+        };
+        let points: Vec<_> = (0..=count).map(point).collect();
+        let mut search = Search::new(&points, 1e-3);
+        search.settle(points.len() - 1);
+        let steps = search.steps.get();
+        (steps, search.fewest_chords().len())
+    }
+
+    /// The same curve with ever more points: far fewer comparisons than there are pairs of vertices.
+    #[test]
+    fn most_pairs_are_never_compared() {
+        for count in [500, 1000, 2000, 4000, 8000] {
+            let (steps, links) = steps(count);
+            let count = count as usize;
+            assert!(links < 90, "{links}");
+            // Linear, but for a part of the square of what a link replaces, for every link.
+            let limit = 12 * count + count * count / links / 3;
+            assert!(steps < limit, "{count}: {steps}, {limit}");
+        }
+    }
 }

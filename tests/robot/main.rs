@@ -1,6 +1,7 @@
-//! The robot: its caps, its boxes, its outline, and the fewest links that do.
+//! The robot: its caps, its boxes, its outline, the fewest links that do, and stations.
 
 mod aabb;
 mod algorithm_1;
 mod simplify;
+mod stations;
 mod to_trimesh;

@@ -210,6 +210,73 @@ fn long_centrelines() {
     assert!(spared > 300, "{spared}");
 }
 
+/// The fewest links by the plain shortest path over all chords, one radius throughout.
+fn shortest_path(points: &[Vector], is_near: impl Fn(Vector, [Vector; 2]) -> bool) -> usize {
+    let mut fewest = vec![0];
+    for to in 1..points.len() {
+        let admissible = |&from: &usize| {
+            let chord = [points[from], points[to]];
+            chord[0] != chord[1] && points[from..to].iter().all(|&p| is_near(p, chord))
+        };
+        fewest.push((0..to).filter(admissible).map(|from| fewest[from] + 1).min().unwrap_or(usize::MAX / 2));
+    }
+    fewest[points.len() - 1]
+}
+
+/// Long enough that walls and gates rule out most chords.
+#[test]
+fn as_few_links_as_the_plain_search() {
+    let mut random = Random(4);
+    let (mut decided, mut bent, mut long) = (0, 0, 0);
+    for problem in 0..1500 {
+        let count = 20 + random.below(100);
+        let noise = [0.0, 0.01, 0.1, 0.5][random.below(4)];
+        let (mut points, mut direction) = (vec![random.vector(1.0)], random.vector(1.0).normalize());
+        let mut bend = random.vector(1.0);
+        for _ in 1..count {
+            match random.below(40) {
+                0 => bend = random.vector(1.5),
+                // A hook.
+                1 => direction = -direction,
+                _ => direction = (direction + bend.cross(direction) * 0.1).normalize(),
+            }
+            let last = points[points.len() - 1];
+            let step = if random.below(20) == 0 { 0.0 } else { random.within(0.02, 0.2) };
+            points.push(last + direction * step + random.vector(noise * step));
+        }
+        let (fewest, tolerance) = if problem % 3 > 0 {
+            let tolerance = Real::powf(10.0, random.within(-4.0, 0.5));
+            let within = |limit: Real| shortest_path(&points, |p, ends| distance_to(&ends, p) <= limit);
+            let fewest = within(tolerance * (1.0 - 1e-9));
+            if fewest != within(tolerance * (1.0 + 1e-9)) {
+                continue;
+            }
+            (fewest, tolerance)
+        } else {
+            // Whole numbers, whose products are exact, and often on a line.
+            let size = [3.0, 10.0, 40.0][random.below(3)];
+            points.iter_mut().for_each(|p| *p = (*p * size).round());
+            let is_on = |p: Vector, [a, b]: [Vector; 2]| {
+                (p - a).cross(b - a) == Vector::ZERO && (p - a).dot(b - a) >= 0.0 && (p - b).dot(a - b) >= 0.0
+            };
+            if points.iter().all(|&p| p == points[0]) {
+                continue;
+            }
+            (shortest_path(&points, is_on), 0.0)
+        };
+        if points[0] == points[count - 1] && fewest == 0 {
+            continue;
+        }
+        decided += 1;
+        bent += usize::from(fewest > 5 && fewest * 3 < count);
+        long += usize::from(fewest <= 3);
+        assert_eq!(links(&points, tolerance), fewest, "{points:?} {tolerance}");
+    }
+    assert!(decided > 1400, "{decided}");
+    assert!(bent > 200, "{bent}");
+    assert!(long > 100, "{long}");
+}
+
 /// n evenly spaced points of a circle of radius 1: a chord over m steps is off by 1 - cos(m angle / 2).
 #[test]
 fn an_arc_as_geometry_says() {

@@ -2,7 +2,7 @@
 
 use crate::source::Source;
 use parry_continuum::parry::math::Vector;
-use parry_continuum::{Cap, Chain, ModifiedCylinder, simplify};
+use parry_continuum::{Cap, Chain, ModifiedCylinder, simplify, stations};
 
 /// No constructor panics, and what it makes is finite and complete.
 pub fn constructors(bytes: &[u8]) {
@@ -26,7 +26,8 @@ pub fn constructors(bytes: &[u8]) {
         }
     }
     let tolerance = source.number();
-    if let Ok((kept, kept_radii)) = simplify(&points, segment_radii, tolerance) {
+    let thinned = [simplify, stations].map(|thin| thin(&points, segment_radii, tolerance));
+    for (kept, kept_radii) in thinned.into_iter().flatten() {
         assert_eq!(kept.len(), kept_radii.len() + 1);
         assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
         let mut rest = points.iter();
