@@ -165,7 +165,7 @@ impl<'a> Search<'a> {
         let first = self.first_open.max(from + 1);
         // On an arc, a wall is nearest if its distances are as 1 to 1 + sqrt(2).
         let likely = Wall::new(from + (first - from) * 12 / 29, first);
-        let wall = [Some(likely), self.wall].into_iter().flatten().find(|&wall| {
+        let wall = [self.wall, Some(likely)].into_iter().flatten().find(|&wall| {
             self.count(1);
             sight.is_wall(from, wall)
         });

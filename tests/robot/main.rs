@@ -5,3 +5,4 @@ mod algorithm_1;
 mod simplify;
 mod stations;
 mod to_trimesh;
+mod tube;

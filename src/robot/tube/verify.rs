@@ -31,15 +31,15 @@ impl Tube {
                 {
                     return Err(RobotError::CurveNotFinite { arc_length });
                 }
-                let ahead = (behind.0 - here.0).length();
-                let least = h * (1.0 - (curvature * h).powi(2) / 24.0);
-                if !(least - rounding..=h + rounding).contains(&ahead) {
-                    return Err(RobotError::NotByArcLength { arc_length, speed: ahead / h });
-                }
                 let bend = (behind.0 - here.0 * 2.0 + before.0).length();
                 if bend > curvature * h * h + rounding {
                     let (found, stated) = (bend / (h * h), curvature);
                     return Err(RobotError::BendsMoreThanStated { arc_length, found, stated });
+                }
+                let ahead = (behind.0 - here.0).length();
+                let least = h * (1.0 - (curvature * h).powi(2) / 24.0);
+                if !(least - rounding..=h + rounding).contains(&ahead) {
+                    return Err(RobotError::NotByArcLength { arc_length, speed: ahead / h });
                 }
                 let off = (here.1.normalize() - (behind.0 - before.0) / (2.0 * h)).length();
                 if off.is_nan() || off > 0.5 * curvature * h + rounding / h {
