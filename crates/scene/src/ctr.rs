@@ -111,6 +111,24 @@ impl Robot {
         frames
     }
 
+    /// The centreline as a function that is quick to ask again and again.
+    pub fn curve(&self, joints: &Joints) -> Curve {
+        let ends = self.ends(joints);
+        let starts = ends.iter().zip(&self.sections).map(|(end, section)| end - section.length);
+        let mut breaks: Vec<Real> = starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
+        breaks.sort_by(Real::total_cmp);
+        let (mut from, mut frame, mut arcs) = (0.0, Pose::IDENTITY, Vec::with_capacity(breaks.len()));
+        for to in breaks {
+            let bend = self.curvature(joints, &ends, 0.5 * (from + to));
+            let inward = frame.rotation * bend.cross(Vector::Z);
+            let along = frame.rotation * Vector::Z;
+            arcs.push(CurveArc { from, to, place: frame.translation, along, inward, bend: bend.length() });
+            frame *= arc(bend, to - from);
+            from = to;
+        }
+        Curve { arcs }
+    }
+
     /// The mean curvature vector at an arc length, in the frame carried along.
     fn curvature(&self, joints: &Joints, ends: &[Real], s: Real) -> Vector {
         let (mut sum, mut stiffness, mut angles) = (Vector::ZERO, 0.0, joints.angles.iter());
@@ -157,6 +175,45 @@ impl Robot {
         }
         let points = self.frames(joints, &arc_lengths).into_iter().map(|frame| frame.translation).collect();
         Centreline { points, radii }
+    }
+}
+
+/// A centreline as a chain of circular arcs.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    arcs: Vec<CurveArc>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct CurveArc {
+    from: Real,
+    to: Real,
+    place: Vector,
+    /// The direction at its start.
+    along: Vector,
+    /// Towards its centre, as long as its curvature.
+    inward: Vector,
+    bend: Real,
+}
+
+impl Curve {
+    /// The point and the unit direction at an arc length.
+    pub fn at(&self, arc_length: Real) -> (Vector, Vector) {
+        let arc =
+            self.arcs.iter().find(|arc| arc_length <= arc.to).unwrap_or(&self.arcs[self.arcs.len() - 1]);
+        let length = arc_length - arc.from;
+        let half = 0.5 * arc.bend * length;
+        let (sin, cos) = half.sin_cos();
+        let share = if half == 0.0 { 1.0 } else { sin / half };
+        let place =
+            arc.place + arc.along * (length * share * cos) + arc.inward * (0.5 * (length * share).powi(2));
+        (place, arc.along * (1.0 - 2.0 * sin * sin) + arc.inward * (length * share * cos))
+    }
+
+    /// The largest curvature of what lies between two arc lengths.
+    pub fn curvature(&self, from: Real, to: Real) -> Real {
+        let there = self.arcs.iter().filter(|arc| arc.from < to && from < arc.to);
+        there.fold(0.0, |most, arc| arc.bend.max(most))
     }
 }
 

@@ -9,6 +9,7 @@
 //! numbers of shapes.
 
 mod clock;
+mod from_samples;
 mod front;
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -91,6 +92,13 @@ fn measure(options: &Options) -> Result<(), String> {
                 .into(),
         );
     }
+    let touching: Vec<_> = shapes
+        .iter()
+        .zip(&outcomes)
+        .filter(|(_, outcome)| outcome.truth <= 0.0)
+        .map(|(joints, _)| joints.clone())
+        .take(options.timed as usize)
+        .collect();
     stage("the reference itself");
     let checked = reference::check(&robot, &timed, &mesh, &base)?;
     stage("torsion");
@@ -103,6 +111,10 @@ fn measure(options: &Options) -> Result<(), String> {
     #[cfg(not(feature = "gpu"))]
     let devices = Vec::new();
     let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
+
+    stage("from samples");
+    let from_samples =
+        from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING)?;
 
     stage("writing");
     let errors = front::errors(&outcomes);
@@ -123,7 +135,7 @@ fn measure(options: &Options) -> Result<(), String> {
     });
     fs::create_dir_all(&out).map_err(|error| unwritable(&out, error))?;
     let file = out.join("TRADEOFF.md");
-    fs::write(&file, page + "\n" + &shares::chapter(&outcomes) + "\n" + &kinematics)
+    fs::write(&file, page + "\n" + &from_samples + "\n" + &shares::chapter(&outcomes) + "\n" + &kinematics)
         .map_err(|error| unwritable(&file, error))?;
     plot::draw(&all, &out.join("tradeoff.svg"))?;
     let guide = guide::text(&guide::Facts {
