@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
-use parry_continuum::{Cap, Chain, RobotError, simplify};
+use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -29,7 +29,8 @@ struct Options {
     #[arg(long, value_enum, default_value_t = Model::Modified)]
     model: Model,
 
-    /// The fewest links that stay this close to the curve, in millimetres [default: 30 links]
+    /// Bounds on the clearance of the curve itself that are this close together, in millimetres, and links that stay this
+    /// close to it [default: 30 links, no bounds]
     #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true)]
     tolerance: Option<Real>,
 
@@ -153,6 +154,14 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
+    if let Some(tolerance) = options.tolerance {
+        let curve = robot.shape(&goal).map_err(text)?;
+        let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
+        println!(
+            "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
+            found.lower, found.upper, found.triangle, found.arc_length
+        );
+    }
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
     let caption = caption(options, &mesh, chain, &found, times);
@@ -175,7 +184,7 @@ fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, Rob
         }
         Some(tolerance) => {
             let curve = robot.centreline(joints, CURVE);
-            simplify(&curve.points, &curve.radii, tolerance)?
+            stations(&curve.points, &curve.radii, tolerance)?
         }
     };
     match options.model {

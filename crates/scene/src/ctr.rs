@@ -11,6 +11,7 @@
 //! the frame that is carried along the curve without twist. Lengths in one unit throughout (here mm), angles in rad.
 
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::{RobotError, TubeSection};
 
 /// A precurved tube.
 #[derive(Clone, Copy, Debug)]
@@ -127,6 +128,27 @@ impl Robot {
             from = to;
         }
         Curve { arcs }
+    }
+
+    /// The robot as the curve that it is, in its own frame; sections that are not out are left out.
+    ///
+    /// # Errors
+    /// Nothing is out, or the robot bends within its own radius.
+    pub fn shape(&self, joints: &Joints) -> Result<parry_continuum::Tube, RobotError> {
+        let curve = self.curve(joints);
+        parry_continuum::Tube::from_function(&self.sections_out(joints), move |s| curve.at(s))
+    }
+
+    /// The sections that are out, with the largest curvature of each.
+    pub fn sections_out(&self, joints: &Joints) -> Vec<TubeSection> {
+        let (curve, mut end) = (self.curve(joints), 0.0);
+        let out = self.sections.iter().zip(&joints.extensions).filter(|(_, length)| **length > 0.0);
+        out.map(|(section, &length)| {
+            let curvature = curve.curvature(end, end + length);
+            end += length;
+            TubeSection { length, radius: section.radius, curvature }
+        })
+        .collect()
     }
 
     /// The mean curvature vector at an arc length, in the frame carried along.

@@ -5,6 +5,7 @@
 //! twist and with tubes that do.
 
 use continuum_scene::ctr::{Joints, Robot, Section, Tube, three_tubes};
+use continuum_scene::ventricle;
 use parry_continuum::parry::math::{Real, Vector};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -184,4 +185,19 @@ fn aligned_tubes_follow_circles() {
         (first * 20.0).sin() / first + (heading.sin() - (first * 20.0).sin()) / second + 8.0 * heading.cos(),
     );
     assert!((tip.translation - expected).length() < 1e-6, "{} {expected}", tip.translation);
+}
+
+/// The quick function and the frames are one curve, and it keeps what its tube relies on.
+#[test]
+fn the_curve_as_a_function_is_the_same() {
+    let (robot, goal) = (three_tubes(), ventricle::goal());
+    let curve = robot.curve(&goal);
+    let length = robot.length(&goal);
+    let arcs: Vec<_> = (0..=500).map(|k| length * f64::from(k) / 500.0).collect();
+    for (&s, frame) in arcs.iter().zip(robot.frames(&goal, &arcs)) {
+        let (point, direction) = curve.at(s);
+        assert!((point - frame.translation).length() < 1e-12 * length, "{s}");
+        assert!((direction - frame.rotation * Vector::Z).length() < 1e-12, "{s}");
+    }
+    robot.shape(&goal).unwrap().verify(200).unwrap();
 }

@@ -38,14 +38,8 @@ struct Shape {
 impl Shape {
     fn new(robot: &Robot, joints: &Joints, spacing: Real) -> Self {
         let curve = robot.curve(joints);
-        let (mut sections, mut end) = (Vec::new(), 0.0);
-        for (section, &length) in robot.sections.iter().zip(&joints.extensions) {
-            if length > 0.0 {
-                let curvature = curve.curvature(end, end + length);
-                sections.push(TubeSection { length, radius: section.radius, curvature });
-                end += length;
-            }
-        }
+        let sections = robot.sections_out(joints);
+        let end = robot.length(joints);
         let at = |spacing: &dyn Fn(&TubeSection) -> Real| {
             let (mut points, mut radii, mut from) = (vec![curve.at(0.0).0], Vec::new(), 0.0);
             for section in &sections {
