@@ -8,5 +8,6 @@ mod far_parts;
 mod fuzz;
 mod large;
 mod patches;
+mod planner;
 mod scenes;
 mod thin_links;

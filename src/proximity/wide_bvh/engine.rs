@@ -62,6 +62,7 @@ struct Memory {
 
 impl Memory {
     fn forget(&mut self) {
+        self.scratch.forget();
         self.last.clear();
         self.last_minimum = None;
     }
