@@ -4,7 +4,7 @@ use super::scalar::{Mask, Scalar};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A point or a direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<T> {
     /// First coordinate.
     pub x: T,

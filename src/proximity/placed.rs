@@ -54,6 +54,19 @@ impl<'a> PlacedRobot<'a> {
         PlacedLink::between(self.pose * bound.start, self.pose * bound.end, bound.radius, [false; 2])
     }
 
+    /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame; the radius; which caps
+    /// are flat.
+    pub(super) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
+        let ends = |start: Vector, end: Vector| [self.pose * start, self.pose * end];
+        match node {
+            LinkNode::Inner { bound, .. } => (ends(bound.start, bound.end), bound.radius, [false; 2]),
+            LinkNode::Leaf(link) => {
+                let link = &self.robot.links()[*link];
+                (ends(link.start(), link.end()), link.radius(), link.flat())
+            }
+        }
+    }
+
     pub(super) fn in_robot_frame(&self, point: Vector) -> Vector {
         self.pose.inverse_transform_point(point)
     }

@@ -59,7 +59,7 @@ impl SearchFrame {
 }
 
 /// A link in the precision of the search.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SearchLink<E> {
     pub start: Vec3<E>,
     /// From start to end.
@@ -78,18 +78,45 @@ impl<E: Lane> SearchLink<E> {
     /// A link in the frame of the search. None where it lies too far out for the precision, or its axis is too short
     /// for its flat caps.
     pub(crate) fn new(link: &PlacedLink, frame: &SearchFrame) -> Option<Self> {
+        let axis = Vector::from(link.axis());
+        Self::of([link.start(), link.end()], link.along(), axis, link.radius(), link.flat(), frame)
+    }
+
+    /// The same from the ends of the axis in the mesh's frame, for a link that no pair is measured with.
+    #[inline]
+    pub(super) fn between(
+        [start, end]: [Vector; 2],
+        radius: Real,
+        flat: [bool; 2],
+        frame: &SearchFrame,
+    ) -> Option<Self> {
+        let along = end - start;
+        let squared = (along * frame.scale).length_squared();
+        let has_direction = gives_direction(squared) && squared < Real::INFINITY;
+        let axis = if has_direction { along * (frame.scale * (1.0 / squared.sqrt())) } else { Vector::ZERO };
+        Self::of([start, end], along, axis, radius, flat, frame)
+    }
+
+    #[inline]
+    fn of(
+        ends: [Vector; 2],
+        along: Vector,
+        axis: Vector,
+        radius: Real,
+        flat: [bool; 2],
+        frame: &SearchFrame,
+    ) -> Option<Self> {
         // Not from the ends after they are rounded: the direction of a short, thick link must not turn.
-        let along = link.along() * frame.scale;
-        let [start, end] = [link.start(), link.end()].map(|point| (point - frame.centre) * frame.scale);
-        let radius = link.radius() * frame.scale;
+        let along = along * frame.scale;
+        let [start, end] = ends.map(|point| (point - frame.centre) * frame.scale);
+        let radius = radius * frame.scale;
         let reach = start.abs().max(end.abs()).max_element().max(radius).max(1.0);
         if reach.is_nan() || reach > E::FARTHEST {
             return None;
         }
-        let axis = Vector::from(link.axis());
         let length = along.dot(axis);
         // A link too short for its flat caps in this precision is one for double precision alone.
-        if link.flat() != [false; 2] && !gives_direction(E::round(length) * E::round(length)) {
+        if flat != [false; 2] && !gives_direction(E::round(length) * E::round(length)) {
             return None;
         }
         // The last term: a distance of the mesh's frame may be a subnormal number.
@@ -101,7 +128,7 @@ impl<E: Lane> SearchLink<E> {
             axis: round(axis),
             length: E::round(length),
             radius: E::round(radius),
-            flat: link.flat(),
+            flat,
             error: E::round(error),
             scale: frame.scale,
         })
@@ -120,6 +147,12 @@ impl<E: Lane> SearchLink<E> {
     pub(crate) fn at_least(&self, axis_distance: Real) -> Real {
         let (radius, error): (Real, Real) = (self.radius.into(), self.error.into());
         (axis_distance - radius - error).max(0.0) / self.scale
+    }
+
+    /// What the upper bound on a triangle's axis distance must stay below for it to be certainly at most `bound` from
+    /// the link: the error of [`SearchLink::axis_limit`] the other way.
+    pub(super) fn certain_limit(&self, bound: Real) -> E {
+        E::round(bound * self.scale) + self.radius - self.error
     }
 
     /// What a triangle's axis distance must stay below for it to be possibly at most `bound` from the link.

@@ -8,6 +8,7 @@ mod far_parts;
 mod fuzz;
 mod large;
 mod patches;
+mod planner;
 mod scenes;
 mod thin_links;
 mod tube;

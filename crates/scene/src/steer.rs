@@ -145,7 +145,7 @@ pub fn find_goal(robot: &Robot, mesh: &mut BvhSearch, base: &Pose) -> Result<Joi
 
 impl Robot {
     /// Random joints, short extensions being as likely as long ones.
-    fn any_joints(&self, random: &mut Random) -> Joints {
+    pub fn any_joints(&self, random: &mut Random) -> Joints {
         let reach = random.share();
         let extensions = self.sections.iter().map(|s| s.length * reach * random.share()).collect();
         let tubes = self.sections.iter().map(|section| section.tubes.len()).sum();

@@ -42,22 +42,46 @@ impl<L: Pack> NodeBounds<L> {
     /// is turned. The distance between the boxes of child and axis serves the large children near the root.
     #[inline(always)]
     pub(super) fn squared_distances(&self, link: &LinkLanes<L>) -> L {
+        let (ahead, squared) = self.ahead_of_plane(link);
+        (ahead * ahead).over(squared).max(self.squared_gaps(link))
+    }
+
+    /// Which of them are below `limit` or may be, as bits, without a division; and how far the centres are from the
+    /// axis, squared.
+    ///
+    /// No product falls below the range where that could tell: whatever the plane keeps at `limit` has a centre as far
+    /// away, and `limit` is never less than the rounding of numbers near one.
+    #[inline(always)]
+    pub(super) fn may_meet(&self, link: &LinkLanes<L>, limit: L) -> (u64, L) {
+        let (ahead, squared) = self.ahead_of_plane(link);
+        let limit = limit * limit;
+        // A centre on the axis rules nothing out.
+        let near = self.squared_gaps(link).lt(limit) & !(limit * squared).lt(ahead * ahead);
+        (L::bits(near), squared)
+    }
+
+    /// How far the children keep from the plane before the axis, in units of 1 / |v|, and |v|^2.
+    #[inline(always)]
+    fn ahead_of_plane(&self, link: &LinkLanes<L>) -> (L, L) {
         let zero = self.radius.zero();
         let v = link.offset_from_axis(self.centre);
-        let squared = v.norm_squared();
         let normal_part = v.dot(self.normal);
         // Not the root of |v|^2 - v_n^2, which loses angles up to the root of the rounding.
         let across = v.along(self.normal, -normal_part).norm();
         let disc = normal_part.abs().mul_add(self.thickness, across * self.radius);
         let reach = disc.min(magnitudes(v).dot(self.half));
         let relative = self.centre - link.start;
-        let ahead = (v.dot(relative) - link.link.reach_along(v) - reach).max(zero);
-        let plane = (ahead * ahead).over(squared);
+        ((v.dot(relative) - link.link.reach_along(v) - reach).max(zero), v.norm_squared())
+    }
 
+    /// The squared distances between the boxes of the children and the axis.
+    #[inline(always)]
+    fn squared_gaps(&self, link: &LinkLanes<L>) -> L {
+        let zero = self.radius.zero();
+        let relative = self.centre - link.start;
         let middle = link.link.end * zero.lit(0.5);
         let gap = magnitudes(relative - middle) - self.half - magnitudes(middle);
-        let gap = Vec3::new(gap.x.max(zero), gap.y.max(zero), gap.z.max(zero));
-        plane.max(gap.norm_squared())
+        Vec3::new(gap.x.max(zero), gap.y.max(zero), gap.z.max(zero)).norm_squared()
     }
 }
 
@@ -177,9 +201,10 @@ where
 #[cfg(test)]
 mod tests {
     use super::super::build::WideBvh;
-    use super::super::node::{Child, Node};
+    use super::super::node::{Child, Node, WIDTH};
     use super::*;
     use crate::proximity::mesh::Mesh;
+    use crate::proximity::search_frame::SearchLink;
     use fearless_simd::Level;
     use parry3d_f64::math::{Rotation, Vector};
 
@@ -212,6 +237,65 @@ mod tests {
         let squares = (0..64 * 65).filter(|k| k % 65 < 64);
         let triangles = squares.flat_map(|k| [[k, k + 1, k + 66], [k, k + 66, k + 65]]);
         ((0..65 * 65).map(point).collect(), triangles.collect())
+    }
+
+    /// What may meet a link is never fewer children than hold a corner near it, and the two ways to ask agree.
+    #[test]
+    fn no_child_near_a_link_is_left_out() {
+        #[inline(always)]
+        fn ask<L: Pack<Element = f32>>(
+            token: L::Token,
+            node: &Node<f32>,
+            link: &SearchLink<f32>,
+            limit: f32,
+        ) -> [u64; 2] {
+            let lanes = LinkLanes::<L>::new(token, link);
+            let (mut may_meet, mut nearer) = (0, 0);
+            for lane in (0..WIDTH).step_by(L::LANES) {
+                let bounds = node.bounds::<L>(token, lane);
+                let limit = L::splat(token, limit);
+                may_meet |= bounds.may_meet(&lanes, limit).0 << lane;
+                nearer |= L::bits(bounds.squared_distances(&lanes).lt(limit * limit)) << lane;
+            }
+            [may_meet, nearer]
+        }
+        let (mut near, mut far, mut differ) = (0, 0, 0);
+        for round in 0..40_u32 {
+            let turn = Rotation::from_scaled_axis(Vector::new(0.3, 1.7, -0.6) * f64::from(round));
+            let (vertices, triangles) = wall(10.0_f64.powf(-f64::from(round % 8) * 0.5), turn);
+            let tree = WideBvh::<f32>::new(Level::new(), &Mesh::of(vertices, triangles));
+            let share = |k: u32| f64::from((round * 7 + 1) * (k * 13 + 5) % 97) / 97.0 - 0.5;
+            let ends = [0, 3].map(|k| turn * Vector::new(share(k), share(k + 1), 0.2 * share(k + 2)));
+            let radius = 0.01 * f64::from(round % 4);
+            let Some(link) = SearchLink::between(ends, radius, [false; 2], &tree.frame) else { continue };
+            let start = Vector::from(<[f32; 3]>::from(link.start).map(f64::from));
+            let end = start + Vector::from(<[f32; 3]>::from(link.along).map(f64::from));
+            for node in &tree.nodes {
+                for within in [0.0, 0.01, 0.1] {
+                    let limit = link.axis_limit(within);
+                    let level = Level::new();
+                    let [may_meet, nearer] = fearless_simd::dispatch!(level, simd => ask::<<f32 as Lane>::Pack<_>>(simd, node, &link, limit));
+                    differ += (may_meet ^ nearer).count_ones();
+                    for (lane, (child, _)) in children(node).enumerate() {
+                        let mut corners = Vec::new();
+                        corners_below(&tree, child, &mut corners);
+                        let distance = |corner: &[f64; 3]| {
+                            crate::robot::distance_to_segment(Vector::from(*corner), start, end)
+                        };
+                        let least = corners.iter().map(distance).fold(f64::INFINITY, f64::min);
+                        if least < f64::from(limit - link.error) {
+                            assert!(may_meet & nearer & 1 << lane != 0, "{round}: {least} and {limit}");
+                            near += 1;
+                        } else if may_meet & 1 << lane == 0 {
+                            far += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(near > 300 && far > 10_000, "{near} near, {far} left out");
+        // But for what rounding decides.
+        assert!(differ <= 3, "{differ}");
     }
 
     /// Angles between normals of which the cosine rounds to one are angles all the same.

@@ -65,6 +65,7 @@ pub(super) struct Memory {
 impl Memory {
     pub(super) fn forget(&mut self) {
         self.tube.forget();
+        self.scratch.forget();
         self.last.clear();
         self.last_minimum = None;
     }

@@ -1,10 +1,11 @@
 //! A mesh's hierarchies and the search through them for one convex piece, in the precision that resolves it.
 
 use super::build::WideBvh;
+use super::joint::{JointSearch, Pairs, Verdict};
 use super::traverse::{Stack, Traversal};
 use crate::proximity::Work;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::placed::{Best, Nearest, PlacedLink};
+use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -65,7 +66,15 @@ enum Searched {
 pub(super) struct Scratch {
     single: Stack<f32>,
     double: Stack<f64>,
+    pairs: Pairs,
     pub work: Work,
+}
+
+impl Scratch {
+    /// Forgets what bounds the next query.
+    pub(super) fn forget(&mut self) {
+        self.pairs.forget();
+    }
 }
 
 /// A search through a mesh, with the memory it needs.
@@ -98,6 +107,20 @@ impl MeshSearch<'_> {
             Searched::Single(searched) => self.single().may_meet(&searched, bound),
             Searched::Double(searched) => self.double().may_meet(&searched, bound),
             Searched::OutOfReach => true,
+        }
+    }
+
+    /// Whether every link of a robot keeps more than `margin` away; nothing where single precision does not resolve it.
+    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> Option<bool> {
+        let Hierarchy { mesh, single, .. } = self.hierarchy;
+        let Scratch { pairs, work, .. } = &mut *self.scratch;
+        match (JointSearch { level: self.level, tree: single, robot, margin, pairs, work }).verdict() {
+            Verdict::Unresolved => None,
+            Verdict::Near => Some(false),
+            Verdict::Doubtful => Some(!pairs.doubtful().iter().any(|&(link, triangle)| {
+                work.measured += 1;
+                Best::within(margin).measure(&robot.link(link as usize), triangle, mesh.corners(triangle))
+            })),
         }
     }
 

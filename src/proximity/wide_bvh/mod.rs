@@ -4,6 +4,7 @@ mod bound;
 mod build;
 mod engine;
 mod hierarchy;
+mod joint;
 mod node;
 mod queries;
 mod traverse;

@@ -78,6 +78,14 @@ impl<E: Lane> Node<E> {
         NodeBound { centre: point(0), half: point(3), normal: point(6), thickness: at(9), radius: at(10) }
     }
 
+    /// The largest side of the box around a child.
+    #[inline(always)]
+    pub(super) fn size(&self, child: usize) -> E {
+        let half = |axis: usize| self.rows[(3 + axis) * WIDTH + child];
+        let largest = half(0).max(half(1)).max(half(2));
+        largest + largest
+    }
+
     /// The children in use.
     pub(super) fn children(&self) -> impl Iterator<Item = Child> + Clone + use<E> {
         let children = self.children;

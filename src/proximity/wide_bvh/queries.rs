@@ -67,6 +67,9 @@ impl RobotSearch<'_> {
 
     /// Whether every link keeps more than `margin` away from the mesh.
     pub(super) fn clears(&mut self, margin: Real) -> bool {
+        if let Some(keeps_away) = self.search.keeps_away(self.robot, margin) {
+            return keeps_away;
+        }
         let tree = self.robot.link_tree();
         let mut place = 0;
         while let Some(node) = tree.get(place) {
