@@ -30,6 +30,8 @@
 //!   [`Cap::Round`]. [`Chain::from_centreline`] decides which; [`Chain::capsules`] and [`Chain::cylinders`] are the
 //!   simpler models. [`simplify`] finds the fewest links within a tolerance, [`stations`] nearly
 //!   as few in far less time.
+//! - **The curve.** A [`Tube`] is the robot without links: samples or a function, and the error that a query may make.
+//!   [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds its clearance from both sides.
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
 //!   `gpu` adds `gpu::GpuExhaustive`.

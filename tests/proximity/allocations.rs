@@ -4,7 +4,7 @@ use continuum_scene::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
-use parry_continuum::{Chain, simplify};
+use parry_continuum::{Chain, Tube, simplify};
 
 /// A robot that sways.
 fn sway(points: &[Vector], tick: u32, moved: &mut Vec<Vector>) {
@@ -84,4 +84,28 @@ fn a_chain_is_filled_again() {
         assert!(chain.set_centreline(&vec![Vector::X; points.len()], radii).is_err());
         assert_eq!(chain, anew);
     }
+}
+
+/// Samples, tube, clearance and decision.
+#[test]
+fn a_control_loop_about_a_tube_allocates_nothing() {
+    let (vertices, indices) = ventricle::mesh(6_000);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let line = ctr::three_tubes().centreline(&ventricle::goal(), 200);
+    let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
+    let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
+    let mut tube = Tube::from_samples(&points, &line.radii, None).unwrap();
+    let (mut search, mut moved, mut seen) = (BvhSearch::new(&mesh).unwrap(), Vec::new(), Vec::new());
+    let allocated = steady_state(|tick| {
+        sway(&points, tick, &mut moved);
+        tube.set_samples(&moved, &line.radii, None).unwrap();
+        let found = search.clearance(&tube, &pose, 0.05).unwrap();
+        search.tube_clears(&tube, &pose, 0.5, 0.05).unwrap();
+        if tick < 50 {
+            seen.push(found.upper);
+        }
+    });
+    assert_eq!(allocated, 0);
+    seen.dedup();
+    assert!(seen.len() > 10, "the robot moves");
 }
