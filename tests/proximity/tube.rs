@@ -246,6 +246,20 @@ fn stated_errors_count() {
     assert!(free > 5);
 }
 
+/// New samples do not make the sensor better.
+#[test]
+fn a_stated_error_outlives_new_samples() {
+    let mut search = BvhSearch::new(&anatomy()).unwrap();
+    let points: Vec<_> = (0..50).map(|k| Vector::new(0.0, 0.0, f64::from(k) * 0.1)).collect();
+    let mut tube = Tube::from_samples(&points, &[0.1; 49], None).unwrap().with_error(0.5).unwrap();
+    let far = Pose::from_translation(Vector::X * 1000.0);
+    let before = search.clearance(&tube, &far, 2.0).unwrap();
+    assert!(before.upper - before.lower >= 0.5, "{before:?}");
+    tube.set_samples(&points, &[0.1; 49], None).unwrap();
+    let after = search.clearance(&tube, &far, 2.0).unwrap();
+    assert!(after.upper - after.lower >= 0.5, "{after:?}");
+}
+
 #[test]
 fn a_tube_that_cannot_be_asked_about_is_refused() {
     let mut search = BvhSearch::new(&anatomy()).unwrap();

@@ -90,7 +90,8 @@ impl Tube {
     }
 
     /// Makes this tube what [`from_samples`](Self::from_samples) makes of the arguments, in the memory that it has: a
-    /// control loop whose robot keeps its number of points allocates nothing.
+    /// control loop whose robot keeps its number of points allocates nothing. An error stated by
+    /// [`with_error`](Self::with_error) stays.
     ///
     /// # Errors
     /// As [`from_samples`](Self::from_samples). The tube then has no section, and every query refuses it.

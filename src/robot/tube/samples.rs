@@ -146,23 +146,21 @@ impl Tube {
 
         let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
         points.clear();
+        points.extend_from_slice(samples);
         arcs.clear();
-        points.reserve(samples.len());
-        arcs.reserve(samples.len());
+        arcs.resize(samples.len(), 0.0);
         self.sections.clear();
-        points.push(samples[0]);
-        arcs.push(0.0);
         let rounding = 4.0 * Real::UNIT_ROUNDOFF * reach;
-        let (mut arc, mut before, mut last) = (0.0, None::<Segment>, samples[0]);
+        let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
         let mut open = Open::new(0, 0.0, radii[0]);
         let mut result = Ok(());
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
-            let Some(segment) = Segment::between(last, sample, rounding) else { continue };
+            let Some(segment) = Segment::between(points[last], sample, rounding) else { continue };
             if let Some(before) = &before {
                 if radius == open.section.radius {
                     open.bend(before, &segment, k);
                 } else {
-                    let here = points.len() - 1;
+                    let here = last;
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
                     let next = Open { at_ends: turn, ..Open::new(here, arc, radius) };
@@ -178,24 +176,25 @@ impl Tube {
                 }
             }
             arc += segment.length;
-            points.push(sample);
-            arcs.push(arc);
+            // Where it already is, unless points are repeated.
+            last += 1;
+            points[last] = sample;
+            arcs[last] = arc;
             if segment.length > open.longest {
                 open.longest = segment.length;
             }
-            last = sample;
             before = Some(segment);
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
             open.bend_from(tangent, &segment, samples.len() - 1);
         }
-        let last = points.len() - 1;
+        points.truncate(last + 1);
+        arcs.truncate(last + 1);
         match open.close(last, arc) {
             Ok(section) => self.sections.push(section),
             Err(error) => result = result.and(Err(error)),
         }
         self.reach = reach;
-        self.error = 0.0;
         if last == 0 {
             result = Err(RobotError::AllPointsEqual);
         }
