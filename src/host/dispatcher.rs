@@ -31,7 +31,7 @@ use std::ops::RangeInclusive;
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
 /// | `cast_shapes` | parry's: within 1e-5 | exact | parry's: within 1e-5 | parry's: within 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | parry's, on polygons that stand for the link's surface |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
 /// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond

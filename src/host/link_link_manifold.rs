@@ -2,7 +2,7 @@
 //!
 //! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal, exactly:
 //!
-//! 1. **The ends of either crest** that lie over the other's barrel, near its own crest.
+//! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel, near its own crest.
 //! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in [`rim`](super::rim).
 //! 3. **The closest points themselves**, if none of the others are as close: barrels that cross, a round cap.
 
@@ -15,6 +15,10 @@ use crate::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact};
 use parry3d_f64::shape::{PackedFeatureId, Shape};
+
+/// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges of parry's polygons.
+/// Where they cross at a larger angle they roll on one point, and a second would come and go.
+const ALONG: Real = 0.924;
 
 /// Brings the manifold up to date, if the shapes are two links that this closed form is for. Returns whether they are.
 pub(super) fn update<M, C: Default + Copy>(
@@ -45,8 +49,10 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let before = std::mem::take(&mut manifold.points);
     let mut meeting = Meeting { points: Vec::new(), apart: SAME_POINT * extent };
-    meeting.add_ends(&first, &second, normal, false);
-    meeting.add_ends(&second, &first, -normal, true);
+    if first.axis().dot(second.axis()).abs() >= ALONG {
+        meeting.add_ends(&first, &second, normal, false);
+        meeting.add_ends(&second, &first, -normal, true);
+    }
     meeting.add_across_cap(&first, &second, normal, false);
     meeting.add_across_cap(&second, &first, -normal, true);
     meeting.add_closest(touch.on_first, touch.dist);
