@@ -11,9 +11,10 @@
 //!   the link's surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
 //!   small link does not rest on a stale one, it is told each time that the shapes have changed.
 
-use super::dispatcher::{ContinuumDispatcher, check_margin, check_pose};
+use super::dispatcher::ContinuumDispatcher;
 use super::joint::Side;
 use super::link_triangle::LinkTriangle;
+use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
 use super::watched::Watched;
 use super::{

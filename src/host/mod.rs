@@ -24,6 +24,7 @@ mod meeting;
 mod mesh_search;
 mod parts;
 mod point;
+mod range;
 #[cfg(feature = "rapier")]
 pub mod rapier;
 mod ray;
@@ -34,6 +35,7 @@ mod robot_pair;
 mod separation;
 mod shape;
 mod support_map;
+mod voxels;
 mod watched;
 
 pub use dispatcher::ContinuumDispatcher;
