@@ -137,6 +137,8 @@ fn barrels_that_cross_meet_exactly() {
         let least = found.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         assert!((-TOLERANCE..SAME_POINT).contains(&(least - dist)), "{least} {}", context());
         assert!((found.local_n1 - Vector::Y).length() < 1e-12, "{}", context());
+        // They roll on one point; a second one at an end would come and go.
+        assert!(angle < 0.4 || found.points.len() == 1, "{angle} {}", context());
         shallow += usize::from(dist < 0.0);
         near_caps += usize::from(to_flat[0].min(to_flat[1]) < 0.1);
         let placed = second.transformed(&pose);
