@@ -11,7 +11,7 @@ use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
     DeviceFailure, LinkProximity, Mesh, MeshError, PlacedLink, Proximity, ProximityError, SearchFrame,
-    check_margin,
+    check_margin, pairs,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -238,9 +238,4 @@ impl Proximity for GpuExhaustive {
         }
         Ok(())
     }
-}
-
-/// The robots of a batch, one by one.
-fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
-    robots.iter().map(|(robot, pose)| (*robot, pose))
 }

@@ -14,6 +14,7 @@
 use crate::ModifiedCylinder;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
+use std::ops::RangeInclusive;
 
 /// The power of two that brings `x` near one, and its inverse.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
@@ -23,6 +24,10 @@ pub(super) fn power_of_two(x: Real) -> (Real, Real) {
 
 /// The unit vector along `v`, or nothing when `v` is zero or not finite.
 pub(super) fn unit(v: Vector) -> Option<Vector> {
+    let squared = v.length_squared();
+    if SQUARES.contains(&squared) {
+        return Some(v / squared.sqrt());
+    }
     let largest = v.abs().max_element();
     if !v.is_finite() || largest == 0.0 {
         return None;
@@ -31,10 +36,18 @@ pub(super) fn unit(v: Vector) -> Option<Vector> {
     Some(v / v.length())
 }
 
+/// Squares that have lost nothing to the range of f64, nor has any that is part of them and matters.
+const SQUARES: RangeInclusive<Real> = 1e-200..=1e200;
+
 /// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is
 /// along the axis as far as rounding can tell.
 pub(super) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
-    let first = unit(v - axis * v.dot(axis))?;
+    let across = v - axis * v.dot(axis);
+    let first = unit(across)?;
+    // The rounding of the difference is that of `v`.
+    if 4.0 * across.length_squared() >= v.length_squared() {
+        return Some(first);
+    }
     // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is
     // far shorter then, and otherwise perpendicular to the last digit.
     let second = first - axis * first.dot(axis);

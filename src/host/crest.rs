@@ -12,17 +12,20 @@
 use super::feature::{self, SAME_POINT};
 use super::footing::{self, centre, leans_round, outward};
 use super::meeting::Meeting;
+use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
 /// An edge that stays within this share of the radius from the crest lies along it.
 const ALONG_CREST: Real = 0.01;
+/// What is within this share of the radius from the crest is near it: the surface leans by 30 degrees at most.
+const NEAR_CREST: Real = 0.5;
 /// The share of its radius around a round cap's lowest point in which no edge counts.
 const LOWEST: Real = 0.25;
 
 /// Adds the points where edges meet the crest.
 pub(super) fn collect(meeting: &mut Meeting) {
-    let Some(crest) = Crest::of(meeting) else { return };
+    let Some(crest) = Crest::of(meeting.link, meeting.normal) else { return };
     for (j, (v, w)) in meeting.edges().into_iter().enumerate() {
         let edge = PackedFeatureId::edge(j as u32);
         if let Some(ends) = crest.along_barrel(v, w) {
@@ -45,7 +48,7 @@ pub(super) fn collect(meeting: &mut Meeting) {
 }
 
 /// The plane of axis and normal, from the link's start. All directions are unit vectors.
-struct Crest {
+pub(super) struct Crest {
     axis: Vector,
     normal: Vector,
     /// From the axis to the crest.
@@ -60,13 +63,21 @@ struct Crest {
 }
 
 impl Crest {
-    fn of(meeting: &Meeting) -> Option<Self> {
-        let (link, normal, axis) = (meeting.link, meeting.normal, meeting.link.axis());
+    /// The crest of a link that starts at the origin, if it has one.
+    pub fn of(link: &ModifiedCylinder, normal: Vector) -> Option<Self> {
+        let axis = link.axis();
         let lateral = footing::lateral(link, normal)?;
         let (across, slope) = (normal.dot(lateral), normal.dot(axis));
         let (radius, length) = (link.radius(), link.length());
         let side = axis.cross(lateral);
         Some(Self { axis, normal, lateral, side, across, slope, radius, length })
+    }
+
+    /// How far the barrel is from a point, back along the normal, if that leads to the barrel near the crest.
+    pub fn near(&self, q: Vector) -> Option<Real> {
+        let dist = self.drop(q);
+        let is_over = (0.0..=self.length).contains(&(q - self.normal * dist).dot(self.axis));
+        (is_over && q.dot(self.side).abs() <= NEAR_CREST * self.radius).then_some(dist)
     }
 
     /// How far the barrel is from a point of the triangle, back along the normal.

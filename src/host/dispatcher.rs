@@ -4,17 +4,17 @@ use super::elements::{self, FieldPair};
 use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
+use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
-use super::robot_pair::{RobotPair, in_range, links_of};
+use super::robot_pair::{RobotPair, links_of};
+use super::voxels;
 use super::watched::Watched;
-use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
     ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
 use parry3d_f64::shape::Shape;
-use std::ops::RangeInclusive;
 
 /// Answers parry's queries for links and chains, and passes the rest to `L`.
 ///
@@ -31,7 +31,7 @@ use std::ops::RangeInclusive;
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
 /// | `cast_shapes` | parry's: within 1e-5 | exact | parry's: within 1e-5 | parry's: within 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | parry's, on polygons that stand for the link's surface |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
 /// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond
@@ -100,7 +100,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
-            Parts::Voxels(voxels) => elements::intersection_test_voxels(self, pos12, voxels, g2),
+            Parts::Voxels(cells) => voxels::intersection_test(self, pos12, cells, g2),
             Parts::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
@@ -224,7 +224,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
-            Parts::Voxels(voxels) => elements::cast_voxels(self, (pos12, local_vel12), voxels, g2, options),
+            Parts::Voxels(cells) => voxels::cast(self, (pos12, local_vel12), cells, g2, options),
             Parts::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -297,9 +297,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Voxels(voxels) => elements::cast_voxels_nonlinear(
+            Parts::Voxels(cells) => voxels::cast_nonlinear(
                 self,
-                (motion1, voxels),
+                (motion1, cells),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
@@ -336,29 +336,7 @@ impl<L> ContinuumDispatcher<L> {
     /// [`Unsupported`] for a link out of the range of parry's iterations: squares of squares of lengths leave that of
     /// f64, and then they panic or answer NaN.
     pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
-        if links_of(g1).or(links_of(g2)).is_none() {
-            return Ok(&self.0);
-        }
-        let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
-        let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
-        let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
-        let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
-        if is_finite && ITERATED_RANGE.contains(&largest) { Ok(&self.0) } else { Err(Unsupported) }
+        let is_robot = links_of(g1).or(links_of(g2)).is_some();
+        if is_robot && !range::is_iterated(pos12, g1, g2) { Err(Unsupported) } else { Ok(&self.0) }
     }
-}
-
-/// From 2^-200 to 2^200.
-const ITERATED_RANGE: RangeInclusive<Real> =
-    Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 200) << 52);
-
-/// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
-pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
-    let largest = pose.translation.abs().max_element();
-    let is_rigid = pose.is_finite() && pose.rotation.is_normalized();
-    if is_rigid && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
-}
-
-/// A number that distances or times can be compared with.
-pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
-    if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
 }

@@ -1,9 +1,8 @@
-//! Height fields, voxels and moving composites, element by element: what parry has no version of that serves here.
+//! Height fields and moving composites, element by element: what parry has no version of that serves here.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no height component. Its
-//! cast against voxels goes through all the empty cells on the way, however many, and its nonlinear cast against a
-//! composite bisects for the balls around the parts, without end where a number is large. None of its queries on fields
-//! and voxels names the element that answered. So the elements are visited here: those whose boxes meet the box that
+//! parry's cast against a height field looks at the starting cells only when the motion has no height component, and its
+//! nonlinear cast against a composite bisects for the balls around the parts, without end where a number is large. None
+//! of its queries on fields names the element that answered. So the elements are visited here: those whose boxes meet the box that
 //! the other shape occupies, reaches or sweeps, loosened by what rounding can have taken from it.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
@@ -12,7 +11,7 @@ use parry3d_f64::query::{
     ClosestPoints, Contact, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastOptions,
     ShapeDistance, ShapeIntersection, Unsupported,
 };
-use parry3d_f64::shape::{CompositeShape, Cuboid, HeightField, Shape, Triangle, Voxels};
+use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Triangle};
 
 /// A height field and another shape, whose pose is in the field's frame.
 pub(super) struct FieldPair<'a, D> {
@@ -117,13 +116,13 @@ pub(super) fn cast_nonlinear(
 }
 
 /// What rounding can have taken from the meeting of two boxes.
-fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
+pub(super) fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
     let size = [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
     16.0 * Real::EPSILON * size.into_iter().fold(0.0, Real::max)
 }
 
 /// What a box sweeps along `path`, as far as there is something in `root`: the path may be infinite.
-fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
+pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     let mut swept = *start;
     for i in 0..3 {
         if path[i] > 0.0 {
@@ -137,7 +136,7 @@ fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
 
 /// A box in the first shape's frame that the second does not leave: in that frame the centre of the ball around it
 /// travels no further than both move and turn it together.
-fn reached(
+pub(super) fn reached(
     motion1: &NonlinearRigidMotion,
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
     (start_time, end_time): (Real, Real),
@@ -157,24 +156,6 @@ fn reached(
         return Err(Unsupported);
     }
     Ok(bounds)
-}
-
-/// The first hit of a shape that moves past voxels: as for a height field.
-pub(super) fn cast_voxels(
-    dispatcher: &impl QueryDispatcher,
-    (pos12, vel12): (&Pose, Vector),
-    voxels: &Voxels,
-    other: &dyn Shape,
-    options: ShapeCastOptions,
-) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let start = other.compute_aabb(pos12);
-    let root = voxels.local_aabb();
-    let loose = options.target_distance.max(0.0) + rounding(&start, &root);
-    let swept = swept(&start.loosened(loose), &root, vel12 * options.max_time_of_impact);
-    first_voxel(voxels, &swept, |cube, place| {
-        let pos12 = Pose::from_translation(-place) * *pos12;
-        dispatcher.cast_shapes(&pos12, vel12, cube, other, options)
-    })
 }
 
 /// The first hit of a moving shape on the moving parts of a composite.
@@ -215,71 +196,6 @@ pub(super) fn cast_parts_nonlinear(
         });
     }
     first
-}
-
-/// The first hit of a moving shape on moving voxels.
-pub(super) fn cast_voxels_nonlinear(
-    dispatcher: &impl QueryDispatcher,
-    (motion1, voxels): (&NonlinearRigidMotion, &Voxels),
-    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
-    (start_time, end_time): (Real, Real),
-    stop_at_penetration: bool,
-) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let bounds = reached(motion1, (motion2, other), (start_time, end_time))?;
-    first_voxel(voxels, &bounds, |cube, place| {
-        let motion1 = motion1.prepend_translation(place);
-        dispatcher.cast_shapes_nonlinear(
-            &motion1,
-            cube,
-            motion2,
-            other,
-            start_time,
-            end_time,
-            stop_at_penetration,
-        )
-    })
-}
-
-/// The first hit among the voxels in `bounds`; `cast` is told the voxel's shape and its centre.
-fn first_voxel(
-    voxels: &Voxels,
-    bounds: &Aabb,
-    cast: impl Fn(&Cuboid, Vector) -> Result<Option<ShapeCastHit>, Unsupported>,
-) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let cube = Cuboid::new(voxels.voxel_size() * 0.5);
-    let Some(common) = voxels.local_aabb().intersection(bounds) else { return Ok(None) };
-    let mut first: Option<ShapeCastHit> = None;
-    for voxel in voxels.voxels_intersecting_local_aabb(&common) {
-        let Some(hit) = cast(&cube, voxel.center)? else { continue };
-        if first.is_none_or(|first| hit.time_of_impact < first.time_of_impact) {
-            let subshape1 = voxel.linear_id.flat_id() as u32;
-            first = Some(ShapeCastHit { subshape1, witness1: hit.witness1 + voxel.center, ..hit });
-        }
-    }
-    Ok(first)
-}
-
-/// Whether a shape, whose pose is in the voxels' frame, meets one of them.
-pub(super) fn intersection_test_voxels(
-    dispatcher: &impl QueryDispatcher,
-    pos12: &Pose,
-    voxels: &Voxels,
-    other: &dyn Shape,
-) -> Result<ShapeIntersection, Unsupported> {
-    let Some(common) = voxels.local_aabb().intersection(&other.compute_aabb(pos12)) else {
-        return Ok(ShapeIntersection::new(false));
-    };
-    let cube = Cuboid::new(voxels.voxel_size() * 0.5);
-    let size = common.mins.abs().max(common.maxs.abs()).max_element();
-    let common = common.loosened(16.0 * Real::EPSILON * size);
-    for voxel in voxels.voxels_intersecting_local_aabb(&common) {
-        let pos12 = Pose::from_translation(-voxel.center) * *pos12;
-        let found = dispatcher.intersection_test(&pos12, &cube, other)?;
-        if found.intersecting {
-            return Ok(ShapeIntersection { subshape1: voxel.linear_id.flat_id() as u32, ..found });
-        }
-    }
-    Ok(ShapeIntersection::new(false))
 }
 
 /// The element in `bounds` that costs least, its id and what else `cost` says of it.

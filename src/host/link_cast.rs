@@ -19,7 +19,8 @@ use super::axial::unit;
 use super::closing::{Closing, Reach, Support};
 use super::footing::{centre, outward};
 use super::link_triangle::{self, LinkTriangle};
-use super::robot_pair::{in_range, links_of};
+use super::range::in_range;
+use super::robot_pair::links_of;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{

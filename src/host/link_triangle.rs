@@ -10,20 +10,25 @@
 //!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
 //!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
 //!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal.
-//! 2. **A capsule that the triangle enters, its axis outside.** The capsule is its axis swollen by a ball, so
+//! 2. **The triangle enters, the axis is outside, and no flat cap is near.** A capsule is its axis swollen by a ball, so
 //!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
-//!    distance `F`.
+//!    distance `F`. What a flat cap cuts away makes no shorter way out as long as it is at least as far along the axis
+//!    as the overlap is deep: see [`foot`](super::foot).
 //! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
 //!    [`separation`](super::separation), where the least translation must be. Moved apart by it the two touch,
 //!    and the touching points are the contact's.
 
 use super::axial::{perpendicular, power_of_two, unit, unit_across};
-use super::separation;
+use super::foot::Foot;
+use super::{separation, support_map};
 use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+
+/// What rounding can do to a distance or a gap where numbers are near one.
+const ROUNDING: Real = 8.0 * Real::EPSILON;
 
 /// A link and a finite triangle, in either order.
 pub(super) struct LinkTriangle<'a> {
@@ -125,62 +130,79 @@ impl Local {
 
     /// The contact, in local units, if the two are at most `margin` apart.
     pub fn contact_within(&self, margin: Real) -> Option<LinkContact> {
-        let closest = closest(&self.link, self.triangle);
-        (closest.0 <= margin).then(|| self.contact_from(closest))
-    }
-
-    /// The contact that belongs to the distance and the closest points.
-    fn contact_from(&self, (distance, on_link, on_triangle): (Real, Vector, Vector)) -> LinkContact {
-        let radius = self.link.radius();
-        let axis_distance = segment_triangle(
-            [Vec3::from(self.link.start()), Vec3::from(self.link.end())],
-            self.triangle.map(Vec3::from),
-        );
-        let on_axis = Vector::from(axis_distance.point1);
-        let from_axis = Vector::from(axis_distance.point2) - on_axis;
+        let (link, radius) = (&self.link, self.link.radius());
+        let axis = [Vec3::from(link.start()), Vec3::from(link.end())];
+        let to_axis = segment_triangle(axis, self.triangle.map(Vec3::from));
+        // The link is within its capsule.
+        if to_axis.distance - radius > margin + ROUNDING {
+            return None;
+        }
+        let on_axis = Vector::from(to_axis.point1);
+        let from_axis = Vector::from(to_axis.point2) - on_axis;
         let outward = unit(from_axis);
+        let foot = Foot::new(link, on_axis);
 
+        if let (Some(outward), true) = (outward, foot.to_flat > ROUNDING) {
+            let distance = to_axis.distance - radius;
+            if distance > margin {
+                return None;
+            }
+            // Cases 1 and 2.
+            if distance > 0.0 || foot.to_flat > ROUNDING - distance {
+                let (_, normal) = self.widest_gap([Some(outward), None], distance);
+                let (on_link, on_triangle) = (on_axis + normal * radius, on_axis + from_axis);
+                return Some(LinkContact { distance, on_link, on_triangle, normal });
+            }
+        }
+        let (distance, on_link, on_triangle) = closest(link, self.triangle);
+        if distance > margin {
+            return None;
+        }
         // Case 1.
         if distance > 0.0 {
-            let (_, normal) = self.widest_gap([unit(on_triangle - on_link), outward]);
-            return LinkContact { distance, on_link, on_triangle, normal };
-        }
-        // Case 2.
-        if let (Some(_), [Cap::Round, Cap::Round]) = (outward, self.link.caps()) {
-            let (_, normal) = self.widest_gap([outward, None]);
-            let distance = (axis_distance.distance - radius).min(0.0);
-            let on_triangle = on_axis + from_axis;
-            return LinkContact { distance, on_link: on_axis + normal * radius, on_triangle, normal };
+            let (_, normal) = self.widest_gap([unit(on_triangle - on_link), outward], distance);
+            return Some(LinkContact { distance, on_link, on_triangle, normal });
         }
         // Case 3.
-        let mut best = self.widest_gap([outward, None]);
-        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
+        let mut best = self.widest_gap([outward, None], Real::INFINITY);
+        separation::directions(link, self.triangle, |n| best = self.wider(best, n));
         let (gap, normal) = best;
         let distance = gap.min(0.0);
-        let (_, on_link, on_moved) =
-            closest(&self.link, self.triangle.map(|vertex| vertex - normal * distance));
-        LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal }
+        let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
+        Some(LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal })
     }
 
     /// The largest gap and its direction, among the features' normals and `more`, as they are and made
-    /// perpendicular to the edges and the axis.
-    fn widest_gap(&self, more: [Option<Vector>; 2]) -> (Real, Vector) {
+    /// perpendicular to the edges and the axis; or the first gap that is as large as `enough`, but for rounding.
+    fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> (Real, Vector) {
+        let enough = enough - ROUNDING;
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = self.link.axis();
-        let face = face_normal(self.triangle);
         // Some direction across whatever direction there is, should nothing else be left.
         let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
-        let edges = edges.map(unit);
-        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
-        let lines = [face, unit(axis), Some(across)].into_iter().chain(products).flatten();
-        let more = more.into_iter().flatten();
-        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
-        let turned = more.clone().flat_map(|n| straight().map(move |line| unit_across(n, line)));
-
         let mut best = (Real::NEG_INFINITY, across);
         // The first of equals stays, so `more` goes first.
-        for n in more.chain(turned.flatten()).chain(lines.flat_map(|n| [n, -n])) {
+        for n in more.into_iter().flatten() {
+            best = self.wider(best, n);
+        }
+        if best.0 >= enough {
+            return best;
+        }
+        let face = face_normal(self.triangle);
+        for n in face.into_iter().flat_map(|n| [n, -n]) {
+            best = self.wider(best, n);
+        }
+        if best.0 >= enough {
+            return best;
+        }
+        let edges = edges.map(unit);
+        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
+        let lines = [unit(axis), Some(across)].into_iter().chain(products).flatten();
+        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
+        let turned =
+            more.into_iter().flatten().flat_map(|n| straight().map(move |line| unit_across(n, line)));
+        for n in turned.flatten().chain(lines.flat_map(|n| [n, -n])) {
             best = self.wider(best, n);
         }
         best
@@ -188,8 +210,9 @@ impl Local {
 
     /// The best direction so far or `n`, whichever has the larger gap.
     fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
-        let reach = self.link.local_support_point(n);
-        let gap = self.triangle.iter().map(|vertex| (vertex - reach).dot(n)).fold(Real::INFINITY, Real::min);
+        let (centre, reach) = support_map::reach(&self.link, n);
+        let beyond = self.triangle.map(|vertex| (vertex - centre).dot(n));
+        let gap = beyond[0].min(beyond[1]).min(beyond[2]) - reach;
         if gap > best.0 { (gap, n) } else { best }
     }
 }

@@ -58,7 +58,8 @@ pub(super) fn update<M, C: Default + Copy>(
     let normal = if link_is_first { n1 } else { n2 };
     let is_turned = (normal - found.normal).length() > TURNED;
 
-    let mut meeting = Meeting::new(&local, if is_turned { normal } else { found.normal });
+    let mut meeting =
+        Meeting::new(&local.link, local.triangle, if is_turned { normal } else { found.normal });
     rim::collect(&mut meeting);
     let normal = meeting.normal;
     footing::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));

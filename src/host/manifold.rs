@@ -5,16 +5,21 @@
 //! one step to the next. What is left is
 //! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
 //! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
-//! - a link against another convex shape, answered by `L`: parry clips the polygons that stand for the link's
-//!   surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
+//! - two links of which at most one meets the other with a flat cap, answered [here](super::link_link_manifold), in
+//!   closed form;
+//! - a link against another convex shape, and two flat caps, answered by `L`: parry clips the polygons that stand for
+//!   the link's surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
 //!   small link does not rest on a stale one, it is told each time that the shapes have changed.
 
-use super::dispatcher::{ContinuumDispatcher, check_margin, check_pose};
+use super::dispatcher::ContinuumDispatcher;
 use super::joint::Side;
 use super::link_triangle::LinkTriangle;
+use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
 use super::watched::Watched;
-use super::{joint, link_halfspace_manifold, link_triangle_manifold, robot_mesh_manifold};
+use super::{
+    joint, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, robot_mesh_manifold,
+};
 use crate::Chain;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
@@ -72,10 +77,15 @@ where
         if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
             return Ok(());
         }
+        let inner = self.inner(pos12, g1, g2)?;
+        let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
+        if is_free && link_link_manifold::update(pos12, (g1, g2), prediction, manifold) {
+            return Ok(());
+        }
         if links_of(g1).or(links_of(g2)).is_some() {
             manifold.mark_shapes_deformed();
         }
-        self.inner(pos12, g1, g2)?.contact_manifold_convex_convex(
+        inner.contact_manifold_convex_convex(
             pos12,
             g1,
             g2,

@@ -4,7 +4,7 @@
 //! that coincide are one: the first.
 
 use super::feature::SAME_POINT;
-use super::link_triangle::{Local, face_normal};
+use super::link_triangle::face_normal;
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
@@ -35,8 +35,7 @@ pub(super) struct Meeting<'a> {
 }
 
 impl<'a> Meeting<'a> {
-    pub fn new(local: &'a Local, normal: Vector) -> Self {
-        let (link, triangle) = (&local.link, local.triangle);
+    pub fn new(link: &'a ModifiedCylinder, triangle: [Vector; 3], normal: Vector) -> Self {
         let size = link.length() + link.radius();
         Self { link, triangle, normal, face: face_normal(triangle), size, points: Vec::new() }
     }

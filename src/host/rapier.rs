@@ -30,10 +30,10 @@
 //! # What rapier cannot do with custom shapes
 //! | | why | the way round |
 //! |---|---|---|
-//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), build the colliders again after loading |
-//! | load a `NarrowPhase` | it comes back with parry's dispatcher, which reads our pairs as free | call [`install`] after loading |
+//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and give them back to their colliders after loading: `tests/rapier/saved.rs` |
+//! | load a `NarrowPhase` | it comes back with parry's dispatcher, whose answers for links are near and not exact, and wrong beside a half-space | call [`install`] after loading |
 //! | `KinematicCharacterController` | it always asks parry's dispatcher | move a kinematic body and ask [`ContinuumDispatcher`] for the way that is free |
-//! | draw in the debug renderer | it draws nothing for a custom shape | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link |
+//! | draw in the debug renderer | it draws boxes and contacts, and nothing for a custom shape itself | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
 //!
 //! A query pipeline takes its dispatcher when it is made: `broad_phase.as_query_pipeline(&dispatcher, ..)`, or
 //! `narrow_phase.query_dispatcher()` for the installed one. A kinematic robot and a fixed wall are compared only

@@ -6,7 +6,8 @@
 //! `contact` takes the pose the wrong way round where the half-space comes second, and it has no nonlinear cast.)
 
 use super::axial::unit;
-use super::robot_pair::{in_range, links_of};
+use super::range::in_range;
+use super::robot_pair::links_of;
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{

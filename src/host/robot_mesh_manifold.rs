@@ -10,10 +10,8 @@ use super::link_triangle_manifold;
 use super::robot_pair::links_of;
 use parry3d_f64::bounding_volume::BoundingVolume;
 use parry3d_f64::math::{Pose, Real};
-use parry3d_f64::query::details::NormalConstraints;
-use parry3d_f64::query::{
-    ContactManifold, ContactManifoldsWorkspace, TypedWorkspaceData, Unsupported, WorkspaceData,
-};
+use parry3d_f64::query::details::{NormalConstraints, VoxelsShapeContactManifoldsWorkspace};
+use parry3d_f64::query::{ContactManifold, ContactManifoldsWorkspace, Unsupported};
 use parry3d_f64::shape::Shape;
 use std::collections::HashMap;
 
@@ -38,8 +36,9 @@ where
         (_, _, Some(mesh), Some(links)) => (links, mesh, false),
         _ => return Ok(false),
     };
-    // rapier takes a workspace for the sign that manifolds come and go.
-    workspace.get_or_insert_with(|| Kept.into());
+    // rapier takes a workspace for the sign that manifolds come and go. The manifolds hold all there is to keep, and an
+    // empty one of parry's own can be saved and loaded, which one of ours could not.
+    workspace.get_or_insert_with(|| VoxelsShapeContactManifoldsWorkspace::<2>::new().into());
     let robot_pose = if robot_is_first { pos12.inverse() } else { *pos12 };
     let name = |manifold: &ContactManifold<M, C>| (manifold.subshape1, manifold.subshape2);
     let mut before: HashMap<_, _> = manifolds.drain(..).map(|manifold| (name(&manifold), manifold)).collect();
@@ -69,17 +68,4 @@ where
         }
     }
     Ok(true)
-}
-
-/// The manifolds hold all there is to keep.
-struct Kept;
-
-impl WorkspaceData for Kept {
-    fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
-        TypedWorkspaceData::Custom
-    }
-
-    fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
-        Box::new(Self)
-    }
 }

@@ -6,8 +6,8 @@
 
 use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{Until, search};
+use super::range::in_range;
 use crate::proximity::{Nearest, PlacedLink};
-use crate::robot::COORDINATE_LIMIT;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
@@ -227,11 +227,4 @@ impl<'a> RobotPair<'a> {
 /// How far to look for something at most `margin` away, a negative margin asking for overlap.
 fn within(margin: Real) -> Result<Real, Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(margin.max(0.0)) }
-}
-
-/// The largest coordinate, if all are within the range that is answered.
-pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
-    let largest = point.abs().max_element();
-    // Written so that NaN is out of range too.
-    if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
 }

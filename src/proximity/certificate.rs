@@ -19,6 +19,11 @@ use parry3d_f64::shape::TriMesh;
 /// The true distance is that between the triangle and the link whose axis ends are `pose * start` and `pose * end`,
 /// both computed in `f64`, and whose radius is as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "super::serialised::Bounds", into = "super::serialised::Bounds")
+)]
 #[non_exhaustive]
 pub struct Certificate {
     /// The distance is at least this, in the mesh's unit.

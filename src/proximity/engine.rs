@@ -73,3 +73,8 @@ pub trait Proximity {
     /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
 }
+
+/// The robots of a batch, one by one.
+pub(crate) fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
+    robots.iter().map(|(robot, pose)| (*robot, pose))
+}

@@ -36,6 +36,8 @@ mod wide_bvh;
 #[cfg(feature = "gpu")]
 pub(crate) use checks::check_margin;
 #[cfg(feature = "gpu")]
+pub(crate) use engine::pairs;
+#[cfg(feature = "gpu")]
 pub(crate) use mesh::Mesh;
 #[cfg(feature = "gpu")]
 pub(crate) use parallel::each;

@@ -31,6 +31,7 @@ impl LinkProximity {
 
 /// How much an engine has computed since it was built, batches left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Work {
     /// Nodes of the hierarchy whose up to 16 children were bounded; none in an exhaustive engine.

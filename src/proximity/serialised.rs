@@ -1,6 +1,6 @@
 //! Answers as data (feature `serde-serialize`).
 
-use super::LinkProximity;
+use super::{Certificate, LinkProximity};
 use parry3d_f64::math::{Real, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -36,5 +36,31 @@ impl TryFrom<Fields> for LinkProximity {
             return Err(format!("a closest point is not finite: {on_robot} or {on_mesh}"));
         }
         Ok(Self { link, triangle, distance, on_robot, on_mesh })
+    }
+}
+
+/// The fields of a [`Certificate`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Certificate")]
+pub(super) struct Bounds {
+    lower: Real,
+    upper: Real,
+}
+
+impl From<Certificate> for Bounds {
+    fn from(Certificate { lower, upper }: Certificate) -> Self {
+        Self { lower, upper }
+    }
+}
+
+/// No proof gives bounds on a distance that are negative, not finite or the wrong way round.
+impl TryFrom<Bounds> for Certificate {
+    type Error = String;
+
+    fn try_from(Bounds { lower, upper }: Bounds) -> Result<Self, String> {
+        if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+            return Err(format!("{lower} to {upper} bounds no distance"));
+        }
+        Ok(Self { lower, upper })
     }
 }

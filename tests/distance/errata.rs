@@ -7,17 +7,17 @@ use continuum_testing::rotation::Rotation;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 
-type V = Vec3<f64>;
+pub type V = Vec3<f64>;
 
-fn v(x: f64, y: f64, z: f64) -> V {
+pub fn v(x: f64, y: f64, z: f64) -> V {
     Vec3::new(x, y, z)
 }
 
-const ORIGIN: V = V::new(0.0, 0.0, 0.0);
-const Z: V = V::new(0.0, 0.0, 1.0);
+pub const ORIGIN: V = V::new(0.0, 0.0, 0.0);
+pub const Z: V = V::new(0.0, 0.0, 1.0);
 
 #[track_caller]
-fn assert_close(got: f64, expected: f64) {
+pub fn assert_close(got: f64, expected: f64) {
     assert!((got - expected).abs() <= 1e-14 * expected.abs().max(1.0), "{got} for {expected}");
 }
 

@@ -1,22 +1,9 @@
 //! The paper's formulas for capsules and cylinders (section III.E) where they err, each beside the answer that is
 //! right; and a suspicion that turned out unfounded.
 
+use crate::errata::{ORIGIN, V, Z, assert_close, v};
 use continuum_testing::Random;
 use parry_continuum::distance::*;
-
-type V = Vec3<f64>;
-
-fn v(x: f64, y: f64, z: f64) -> V {
-    Vec3::new(x, y, z)
-}
-
-const ORIGIN: V = V::new(0.0, 0.0, 0.0);
-const Z: V = V::new(0.0, 0.0, 1.0);
-
-#[track_caller]
-fn assert_close(got: f64, expected: f64) {
-    assert!((got - expected).abs() <= 1e-14 * expected.abs().max(1.0), "{got} for {expected}");
-}
 
 fn cylinder(triangle: [V; 3], start: V, end: V, radius: f64) -> Closest<f64> {
     triangle_modified_cylinder(triangle, start, end, radius, [true, true])

@@ -9,6 +9,7 @@ mod draw;
 mod halfspace;
 mod inner;
 mod joints;
+mod link_links;
 mod link_manifold;
 mod manifolds;
 mod mass;

@@ -6,7 +6,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Certificate, LinkProximity, Proximity, Work};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
 
@@ -20,9 +20,15 @@ fn what_is_written_is_read() {
         let read: Chain = from_str(&to_string(&chain).unwrap()).unwrap();
         assert_eq!(read, chain);
         let (vertices, triangles) = Ball::new(9.0).to_trimesh(9, 9);
-        let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles).unwrap()).unwrap();
+        let mesh = TriMesh::new(vertices, triangles).unwrap();
+        let mut search = BvhSearch::new(&mesh).unwrap();
         let found = search.minimum(&read, &Pose::IDENTITY).unwrap();
         assert_eq!(from_str::<LinkProximity>(&to_string(&found).unwrap()).unwrap(), found);
+        let proof = found.certify(&read, &Pose::IDENTITY, &mesh).unwrap();
+        assert_eq!(from_str::<Certificate>(&to_string(&proof).unwrap()).unwrap(), proof);
+        let work = search.work();
+        assert!(work.nodes > 0);
+        assert_eq!(from_str::<Work>(&to_string(&work).unwrap()).unwrap(), work);
     }
     assert_eq!(to_value(Cap::Flat).unwrap(), json!("Flat"));
 }
@@ -79,4 +85,10 @@ fn what_no_constructor_makes_is_an_error() {
     negative["distance"] = json!(-0.5);
     assert_eq!(refusal::<LinkProximity>(answer), "");
     assert!(refusal::<LinkProximity>(negative).contains("the distance is -0.5"));
+
+    let bounds = |lower: f64, upper: f64| refusal::<Certificate>(json!({"lower": lower, "upper": upper}));
+    assert_eq!(bounds(0.0, 0.5), "");
+    assert!(bounds(0.5, 0.25).contains("0.5 to 0.25 bounds no distance"));
+    assert!(bounds(-0.5, 0.25).contains("bounds no distance"));
+    assert!(refusal::<Work>(json!({"nodes": 1, "visited": -1})).contains("-1"));
 }

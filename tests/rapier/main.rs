@@ -2,10 +2,12 @@
 
 mod beam;
 mod chain;
+mod drawn;
 mod drop;
 mod fast;
 mod long;
 mod rest;
+mod saved;
 mod setup;
 mod soft;
 mod units;

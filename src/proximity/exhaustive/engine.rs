@@ -4,6 +4,7 @@ use super::kernels::Kernels;
 use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
 use crate::proximity::checks::check_margin;
+use crate::proximity::engine::pairs;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::PlacedLink;
 use crate::proximity::{LinkProximity, MeshError, Proximity, ProximityError, Work};
@@ -180,9 +181,4 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         triangles.refill(self.level);
         Ok(())
     }
-}
-
-/// The robots of a batch, one by one.
-fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
-    robots.iter().map(|(robot, pose)| (*robot, pose))
 }

@@ -1,0 +1,83 @@
+//! The contact of two links of which at most one meets the other with a flat cap, in closed form.
+//!
+//! 1. **Barrels and round caps** meet as capsules do: the axes' nearest points give the normal, and the distance less
+//!    the two radii.
+//! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the other's axis, which is a
+//!    triangle without a height to the narrow phase, less the other's radius.
+//!
+//! [`foot`](super::foot) tells where that is exact. Two flat caps, and what lies so deep that an axis gives no
+//! direction, have no closed form here.
+
+use super::axial::unit;
+use super::foot::Foot;
+use super::link_triangle::closest;
+use crate::ModifiedCylinder;
+use crate::distance::{Vec3, segment_segment};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding can do to a distance, as a share of the largest coordinate.
+const ROUNDING: Real = 8.0 * Real::EPSILON;
+/// Axes closer than this share of the largest coordinate give no direction: half of its digits would be rounding.
+const DIRECTION: Real = 1.5e-8;
+
+/// Where two links meet.
+pub(super) struct Touch {
+    /// Distance, or minus the length of the least separating translation.
+    pub dist: Real,
+    /// Unit vector out of the first.
+    pub normal: Vector,
+    pub on_first: Vector,
+}
+
+pub(super) enum Answer {
+    /// Further apart than the margin.
+    Apart,
+    Touch(Touch),
+    /// No closed form.
+    Unknown,
+}
+
+/// Cases 1 and 2, for links whose coordinates are at most `extent`.
+pub(super) fn touch(
+    first: &ModifiedCylinder,
+    second: &ModifiedCylinder,
+    extent: Real,
+    margin: Real,
+) -> Answer {
+    let rounding = ROUNDING * extent;
+    let axis = |link: &ModifiedCylinder| [link.start(), link.end()].map(Vec3::from);
+    let axes = segment_segment(axis(first), axis(second));
+    let feet = [Vector::from(axes.point1), Vector::from(axes.point2)];
+    let dist = axes.distance - first.radius() - second.radius();
+    // Each link is within its capsule.
+    if dist > margin + rounding {
+        return Answer::Apart;
+    }
+    let is_capsule = |link: &ModifiedCylinder, at| {
+        let to_flat = Foot::new(link, at).to_flat;
+        to_flat > rounding - dist.min(0.0) && (to_flat == Real::INFINITY || -dist <= link.radius())
+    };
+    let has_direction = axes.distance > DIRECTION * extent;
+    if let (Some(normal), true) = (unit(feet[1] - feet[0]), has_direction && is_capsule(first, feet[0]))
+        && is_capsule(second, feet[1])
+    {
+        return Answer::Touch(Touch { dist, normal, on_first: feet[0] + normal * first.radius() });
+    }
+    for (solid, swollen, is_swapped) in [(first, second, false), (second, first, true)] {
+        let (apart, on_solid, on_axis) = closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
+        let dist = apart - swollen.radius();
+        if dist > margin + rounding {
+            return Answer::Apart;
+        }
+        let is_exact = Foot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
+        if let (Some(out), true) = (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent) {
+            let on_swollen = on_axis - out * swollen.radius();
+            return Answer::Touch(if is_swapped {
+                Touch { dist, normal: -out, on_first: on_swollen }
+            } else {
+                Touch { dist, normal: out, on_first: on_solid }
+            });
+        }
+    }
+    Answer::Unknown
+}

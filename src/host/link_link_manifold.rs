@@ -1,0 +1,148 @@
+//! The contact manifold of two links that [`link_link`](super::link_link) has a closed form for.
+//!
+//! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal, exactly:
+//!
+//! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel, near its own crest.
+//! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in [`rim`](super::rim).
+//! 3. **The closest points themselves**, if none of the others are as close: barrels that cross, a round cap.
+
+use super::crest::Crest;
+use super::feature::{self, SAME_POINT};
+use super::link_link::{self, Answer};
+use super::meeting::Meeting as OneSided;
+use super::{footing, rim};
+use crate::ModifiedCylinder;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{ContactManifold, TrackedContact};
+use parry3d_f64::shape::{PackedFeatureId, Shape};
+
+/// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges of parry's polygons.
+/// Where they cross at a larger angle they roll on one point, and a second would come and go.
+const ALONG: Real = 0.924;
+
+/// Brings the manifold up to date, if the shapes are two links that this closed form is for. Returns whether they are.
+pub(super) fn update<M, C: Default + Copy>(
+    pos12: &Pose,
+    (g1, g2): (&dyn Shape, &dyn Shape),
+    prediction: Real,
+    manifold: &mut ContactManifold<M, C>,
+) -> bool {
+    let (Some(link1), Some(link2)) = (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>())
+    else {
+        return false;
+    };
+    let origin = link1.start();
+    let [first, second] = [*link1, link2.transformed(pos12)].map(|link| from(&link, origin));
+    let ends = [first.start(), first.end(), second.start(), second.end()];
+    let extent = ends.iter().fold(Vector::ZERO, |most, end| most.max(end.abs())).max_element();
+    let extent = extent.max(first.radius()).max(second.radius());
+
+    let touch = match link_link::touch(&first, &second, extent, prediction) {
+        Answer::Apart => {
+            manifold.points.clear();
+            return true;
+        }
+        Answer::Unknown => return false,
+        Answer::Touch(touch) => touch,
+    };
+    let normal = touch.normal;
+
+    let before = std::mem::take(&mut manifold.points);
+    let mut meeting = Meeting { points: Vec::new(), apart: SAME_POINT * extent };
+    if first.axis().dot(second.axis()).abs() >= ALONG {
+        meeting.add_ends(&first, &second, normal, false);
+        meeting.add_ends(&second, &first, -normal, true);
+    }
+    meeting.add_across_cap(&first, &second, normal, false);
+    meeting.add_across_cap(&second, &first, -normal, true);
+    meeting.add_closest(touch.on_first, touch.dist);
+    for point in meeting.points {
+        manifold.points.push(TrackedContact::new(
+            origin + point.on_first,
+            pos12.inverse_transform_point(origin + point.on_first + normal * point.dist),
+            point.names[0],
+            point.names[1],
+            point.dist,
+        ));
+    }
+    (manifold.local_n1, manifold.local_n2) = (normal, pos12.rotation.inverse() * -normal);
+    manifold.match_contacts(&before);
+    true
+}
+
+/// The link as it is seen from `origin`.
+fn from(link: &ModifiedCylinder, origin: Vector) -> ModifiedCylinder {
+    link.transformed(&Pose::from_translation(-origin))
+}
+
+struct Point {
+    on_first: Vector,
+    dist: Real,
+    names: [PackedFeatureId; 2],
+}
+
+/// The contact points of two links so far.
+struct Meeting {
+    points: Vec<Point>,
+    /// Points that are closer together than this are one.
+    apart: Real,
+}
+
+impl Meeting {
+    /// Case 1: the ends of one link's crest over the other's barrel, `normal` out of the one.
+    fn add_ends(
+        &mut self,
+        link: &ModifiedCylinder,
+        other: &ModifiedCylinder,
+        normal: Vector,
+        is_second: bool,
+    ) {
+        let Some(crest) = Crest::of(&from(other, other.start()), -normal) else { return };
+        footing::points(link, normal, |on_link, name| {
+            let Some(dist) = crest.near(on_link - other.start()) else { return };
+            let names = [name, feature::BARREL.into()];
+            if is_second {
+                self.add(on_link + normal * dist, dist, [names[1], names[0]]);
+            } else {
+                self.add(on_link, dist, names);
+            }
+        });
+    }
+
+    /// Case 2: what of the other's crest lies over a flat cap of one link, `normal` out of the one.
+    fn add_across_cap(
+        &mut self,
+        link: &ModifiedCylinder,
+        other: &ModifiedCylinder,
+        normal: Vector,
+        is_second: bool,
+    ) {
+        let faces = (0..2).any(|end| footing::faces_flat(link, normal, end));
+        let Some(lateral) = footing::lateral(other, -normal).filter(|_| faces) else { return };
+        let [v, w] = [other.start(), other.end()].map(|centre| centre + lateral * other.radius());
+        let mut below = OneSided::new(link, [v, w, w], normal);
+        rim::collect(&mut below);
+        for point in below.points {
+            let names = [point.of_link, feature::BARREL.into()];
+            if is_second {
+                self.add(point.on_link + normal * point.dist, point.dist, [names[1], names[0]]);
+            } else {
+                self.add(point.on_link, point.dist, names);
+            }
+        }
+    }
+
+    /// Case 3.
+    fn add_closest(&mut self, on_first: Vector, dist: Real) {
+        if self.points.iter().all(|point| point.dist > dist + self.apart) {
+            self.add(on_first, dist, [feature::BARREL.into(); 2]);
+        }
+    }
+
+    fn add(&mut self, on_first: Vector, dist: Real, names: [PackedFeatureId; 2]) {
+        let is_new = |point: &Point| (point.on_first - on_first).length() > self.apart;
+        if dist.is_finite() && on_first.is_finite() && self.points.iter().all(is_new) {
+            self.points.push(Point { on_first, dist, names });
+        }
+    }
+}

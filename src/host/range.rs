@@ -1,0 +1,40 @@
+//! The range of numbers that is answered.
+
+use crate::robot::COORDINATE_LIMIT;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::Unsupported;
+use parry3d_f64::shape::Shape;
+use std::ops::RangeInclusive;
+
+/// From 2^-200 to 2^200.
+const ITERATED_RANGE: RangeInclusive<Real> =
+    Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 200) << 52);
+
+/// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
+pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
+    let largest = pose.translation.abs().max_element();
+    let is_rigid = pose.is_finite() && pose.rotation.is_normalized();
+    if is_rigid && largest <= COORDINATE_LIMIT { Ok(()) } else { Err(Unsupported) }
+}
+
+/// A number that distances or times can be compared with.
+pub(super) fn check_margin(margin: Real) -> Result<(), Unsupported> {
+    if margin.is_nan() { Err(Unsupported) } else { Ok(()) }
+}
+
+/// The largest coordinate, if all are within the range that is answered.
+pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
+    let largest = point.abs().max_element();
+    // Written so that NaN is out of range too.
+    if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
+}
+
+/// Whether a pair is within the range of parry's iterations: squares of squares of lengths leave that of f64, and then
+/// they panic or answer NaN.
+pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
+    let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
+    let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
+    let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
+    let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
+    is_finite && ITERATED_RANGE.contains(&largest)
+}
