@@ -136,12 +136,19 @@ impl Tube {
         end_tangents: Option<[Vector; 2]>,
     ) -> Result<(), RobotError> {
         // In one sweep without branches; what it does not find good is looked at closely.
-        let reach = samples.iter().fold(Vector::ZERO, |reach, point| reach.max(point.abs())).max_element();
-        let sum = samples.iter().fold(Vector::ZERO, |sum, &point| sum + point).element_sum();
-        let all_finite = reach <= COORDINATE_LIMIT && sum.is_finite();
-        if !all_finite || samples.len() < 2 || radii.len() + 1 != samples.len() || !radii_are_good(radii) {
+        let (mut reach, mut is_good) = ([0.0; 3], samples.len() >= 2 && radii.len() + 1 == samples.len());
+        for point in samples {
+            for (reach, value) in reach.iter_mut().zip(point.abs().to_array()) {
+                // NaN is not larger, but not good either.
+                *reach = if value > *reach { value } else { *reach };
+                is_good &= value <= COORDINATE_LIMIT;
+            }
+        }
+        is_good &= radii.iter().fold(true, |good, &radius| good & (0.0..=COORDINATE_LIMIT).contains(&radius));
+        if !is_good {
             check(samples, radii, samples.len().saturating_sub(1))?;
         }
+        let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
 
         let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
@@ -261,10 +268,6 @@ fn direction_at_end(
     let tilt = miss + 8.0 * (first.noise + second.noise + third.noise);
     // A turn so wild that the continuation is worth less than the segment itself.
     if tilt < plain.1 + (outward - plain.0).length() { (outward, tilt) } else { plain }
-}
-
-fn radii_are_good(radii: &[Real]) -> bool {
-    radii.iter().all(|radius| (0.0..=COORDINATE_LIMIT).contains(radius))
 }
 
 impl Tube {
