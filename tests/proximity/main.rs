@@ -11,3 +11,4 @@ mod patches;
 mod planner;
 mod scenes;
 mod thin_links;
+mod ties;
