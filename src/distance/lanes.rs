@@ -17,6 +17,8 @@ pub(crate) trait Pack: Scalar {
     /// How many numbers.
     const LANES: usize;
 
+    /// The proof that this pack is made by.
+    fn token(self) -> Self::Token;
     /// The same number in every lane.
     fn splat(token: Self::Token, value: Self::Element) -> Self;
     /// The first [`Pack::LANES`] numbers of a slice.
@@ -129,6 +131,10 @@ macro_rules! lanes {
             type Token = S;
             const LANES: usize = <S::$vector as SimdBase<S>>::LEN;
 
+            #[inline(always)]
+            fn token(self) -> S {
+                self.0.token()
+            }
             #[inline(always)]
             fn splat(token: S, value: $element) -> Self {
                 Self(S::$vector::splat(token, value))

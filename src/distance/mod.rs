@@ -33,6 +33,7 @@ mod segment_segment;
 mod segment_triangle;
 mod triangle_disc;
 mod triangle_modified_cylinder;
+mod unfused;
 mod vec3;
 
 pub(crate) use face::Face;
@@ -59,6 +60,7 @@ pub use triangle_disc::{triangle_disc, triangle_disc_by};
 pub use triangle_modified_cylinder::{
     triangle_capsule, triangle_modified_cylinder, triangle_modified_cylinder_by,
 };
+pub(crate) use unfused::Unfused;
 pub use vec3::Vec3;
 
 /// The distance between two shapes and a pair of points that realises it.

@@ -9,7 +9,7 @@ pub(super) fn least_distance(candidates: &[Candidate]) -> Real {
     candidates.iter().map(|candidate| candidate.distance).fold(Real::INFINITY, Real::min)
 }
 
-/// The nearest of some triangles, in their order, of those at most `bound` away. The first that touches ends the search.
+/// The nearest of some triangles, of those at most `bound` away. Once one touches, only lower ones are measured.
 pub(super) fn nearest_of(
     link: &PlacedLink,
     triangles: impl Iterator<Item = u32>,
@@ -18,9 +18,8 @@ pub(super) fn nearest_of(
 ) -> Option<Nearest> {
     let mut best = Best::within(bound);
     for triangle in triangles {
-        best.measure(link, triangle, mesh.corners(triangle));
-        if best.touches() {
-            break;
+        if triangle < best.wanted_below() {
+            best.measure(link, triangle, mesh.corners(triangle));
         }
     }
     best.nearest()

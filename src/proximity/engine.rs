@@ -6,7 +6,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 ///
 /// `pose` is the robot's in the mesh's frame, and answers are in that frame too. Distances are to the mesh's
 /// surface and unsigned: a link that touches nothing may be on either side of it. All engines give the same
-/// distances; where several triangles are equally close they may name different ones.
+/// distances. Of triangles that are as close as one another, touching ones included, [`BvhSearch`](super::BvhSearch) and
+/// [`Exhaustive`](super::Exhaustive) name the lowest, and of links that share it the lowest, on any number of threads.
 ///
 /// The batches take many robots, such as a planner's samples, and answer in their order on all cores.
 ///

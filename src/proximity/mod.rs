@@ -12,6 +12,7 @@
 //! | `search_frame` | mesh and links near one, in the precision of the search, and what rounding can do there |
 //! | `triangle_block` | how triangles stand in memory, to be loaded in packs |
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
+//! | `measure_lanes` | the same measurement, several triangles together |
 //! | `mesh` | the mesh as every engine keeps it |
 //! | `certificate` | proofs of an answer |
 //! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
@@ -22,6 +23,7 @@ mod engine;
 mod error;
 mod exhaustive;
 mod link_lanes;
+mod measure_lanes;
 mod mesh;
 mod parallel;
 mod placed;

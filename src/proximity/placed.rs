@@ -147,7 +147,12 @@ impl PlacedLink {
     pub(crate) fn measure(&self, triangle: u32, corners: [Vector; 3]) -> Nearest {
         let pair = self.pair(corners);
         let face = Face::new(pair.triangle);
-        pair.report(self.start, triangle, Axial::new(&pair.link, &face).with_caps(&pair.link, &face))
+        Pair::report(
+            pair.unit,
+            self.start,
+            triangle,
+            Axial::new(&pair.link, &face).with_caps(&pair.link, &face),
+        )
     }
 
     /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
@@ -166,11 +171,11 @@ impl PlacedLink {
         } else {
             axial.with_caps(&pair.link, &face)
         };
-        let nearest = pair.report(self.start, triangle, closest);
+        let nearest = Pair::report(pair.unit, self.start, triangle, closest);
         (nearest.distance <= bound).then_some(nearest)
     }
 
-    fn pair(&self, corners: [Vector; 3]) -> Pair {
+    pub(super) fn pair(&self, corners: [Vector; 3]) -> Pair {
         let offsets = corners.map(|corner| corner - self.start);
         let [a, b, c] = offsets.map(Vector::abs);
         let extent = a.max(b).max(c).max_element().max(self.extent);
@@ -207,11 +212,11 @@ impl PlacedLink {
 }
 
 /// A link and a triangle in coordinates of their own.
-struct Pair {
-    triangle: [Vec3<Real>; 3],
-    link: Link<Real>,
+pub(super) struct Pair {
+    pub triangle: [Vec3<Real>; 3],
+    pub link: Link<Real>,
     /// What 1 is in the mesh's unit.
-    unit: Real,
+    pub unit: Real,
 }
 
 impl Pair {
@@ -224,10 +229,10 @@ impl Pair {
         beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
-    /// An answer in the mesh's frame, in which the pair's origin is `start`.
-    fn report(&self, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
-        let place = |point: Vec3<Real>| start + Vector::from(point) * self.unit;
-        let (distance, on_mesh) = (closest.distance * self.unit, place(closest.point1));
+    /// An answer in the mesh's frame, in which the pair's origin is `start` and 1 is `unit`.
+    pub(super) fn report(unit: Real, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
+        let place = |point: Vec3<Real>| start + Vector::from(point) * unit;
+        let (distance, on_mesh) = (closest.distance * unit, place(closest.point1));
         // One common point where they touch: rounding may have put the two apart.
         let on_robot = if distance > 0.0 { place(closest.point2) } else { on_mesh };
         Nearest { triangle, distance, on_robot, on_mesh }
@@ -245,17 +250,24 @@ fn offset_from_axis(link: &Link<Real>, point: Vec3<Real>) -> Vec3<Real> {
 pub(crate) struct Best {
     bound: Real,
     nearest: Option<Nearest>,
+    /// Of the triangles that touch, only those with a lower number than this are wanted.
+    below: u32,
 }
 
 impl Best {
     /// Nothing yet.
     pub(crate) fn within(bound: Real) -> Self {
-        Self { bound, nearest: None }
+        Self { bound, nearest: None, below: u32::MAX }
+    }
+
+    /// The same, where of the triangles that touch only those with a lower number than `below` are wanted.
+    pub(super) fn touching_below(self, below: u32) -> Self {
+        Self { below, ..self }
     }
 
     /// What was found so far, of which something at most `bound` away would be an improvement.
     pub(crate) fn resume(bound: Real, nearest: Option<Nearest>) -> Self {
-        Self { bound, nearest }
+        Self { bound, nearest, below: u32::MAX }
     }
 
     /// What a triangle must not be farther than.
@@ -267,9 +279,10 @@ impl Best {
         self.nearest
     }
 
-    /// Whether a triangle touches the link, so that none is nearer.
-    pub(crate) fn touches(&self) -> bool {
-        self.nearest.is_some_and(|nearest| nearest.distance <= 0.0)
+    /// Only triangles with a lower number than this can still be better: nothing is nearer than what touches.
+    #[inline(always)]
+    pub(crate) fn wanted_below(&self) -> u32 {
+        if self.bound <= 0.0 { self.below } else { u32::MAX }
     }
 
     /// Measures a triangle. True if it is the best so far.
@@ -285,8 +298,10 @@ impl Best {
                 other.distance < mine.distance
                     || (other.distance <= mine.distance && other.triangle < mine.triangle)
             });
+        let is_better = is_better && (other.distance > 0.0 || other.triangle < self.below);
         if is_better {
-            *self = Self { bound: other.distance, nearest: Some(other) };
+            let below = if other.distance > 0.0 { self.below } else { other.triangle };
+            *self = Self { bound: other.distance, nearest: Some(other), below };
         }
         is_better
     }

@@ -11,4 +11,5 @@ mod patches;
 mod planner;
 mod scenes;
 mod thin_links;
+mod ties;
 mod tube;

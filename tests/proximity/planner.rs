@@ -8,7 +8,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 
 /// Random shapes of the three tubes with about 30 links, by Algorithm 1, as capsules and as cylinders.
-fn shapes(count: usize) -> Vec<Chain> {
+pub fn shapes(count: usize) -> Vec<Chain> {
     let (robot, mut random) = (ctr::three_tubes(), Random(5));
     (0..count)
         .map(|shape| {
@@ -19,7 +19,7 @@ fn shapes(count: usize) -> Vec<Chain> {
         .collect()
 }
 
-fn scene() -> (TriMesh, Pose) {
+pub fn scene() -> (TriMesh, Pose) {
     let (vertices, indices) = ventricle::mesh(6_000);
     (TriMesh::new(vertices, indices).unwrap(), ventricle::entry())
 }

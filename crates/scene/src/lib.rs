@@ -3,7 +3,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`], of any size; [`subdivide`] |
+//! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
 //! | the robot | [`ctr`]; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
 //! | files | `mesh_file` (feature `files`) |
@@ -26,6 +26,7 @@ pub mod figure;
 #[cfg(feature = "pictures")]
 pub mod lettering;
 pub mod levels;
+pub mod lumen;
 #[cfg(feature = "files")]
 pub mod mesh_file;
 #[cfg(feature = "pictures")]

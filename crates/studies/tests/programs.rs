@@ -85,6 +85,16 @@ fn speed_is_measured_drawn_and_quoted() {
         let of: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[1])).collect();
         assert_eq!(of, [("wall", "5120"), ("middle", "5120")], "{head}");
     }
+    let planner = table(&page, "| scene | triangles | shapes | how many |");
+    let of: Vec<_> = planner.iter().map(|row| (&*row[0], &*row[2])).collect();
+    let expected = ["ventricle", "cavity", "vessel"].map(|scene| [(scene, "colliding"), (scene, "free")]);
+    assert_eq!(of, expected.as_flattened());
+    for pair in planner.chunks(2) {
+        let of_a_kind = |row: &[String]| row[3].parse::<u32>().unwrap();
+        let (colliding, free) = (of_a_kind(&pair[0]), of_a_kind(&pair[1]));
+        assert!(colliding > 100 && free > 100 && colliding + free == 1500, "{pair:?}");
+    }
+    assert_eq!(table(&page, "| scene | triangles | one thread |").len(), 3);
     assert!(page.contains("6,000 triangles divided in four once"), "{page}");
     assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
     let shares = table(&page, "| order | precision | K |");

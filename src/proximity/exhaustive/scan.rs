@@ -11,7 +11,7 @@ use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::BLOCK;
 use parry3d_f64::math::Real;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 /// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest cache.
 const CHUNK: usize = 64;
@@ -44,23 +44,39 @@ pub(super) struct JobLink<E> {
 /// threads.
 ///
 /// Numbers that are not negative are ordered as their bits, to which one is added: 0 is the end.
-pub(super) struct SharedBound(AtomicU64);
+pub(super) struct SharedBound {
+    distance: AtomicU64,
+    /// The lowest triangle that touches: of those that touch, only lower ones are still wanted, or for another link the
+    /// same.
+    touching: AtomicU32,
+}
 
 impl SharedBound {
     pub(super) fn new(distance: Real) -> Self {
-        Self(AtomicU64::new(distance.abs().to_bits() + 1))
+        let distance = AtomicU64::new(distance.abs().to_bits() + 1);
+        Self { distance, touching: AtomicU32::new(u32::MAX) }
     }
 
     fn get(&self) -> Option<Real> {
-        self.0.load(Ordering::Relaxed).checked_sub(1).map(Real::from_bits)
+        self.distance.load(Ordering::Relaxed).checked_sub(1).map(Real::from_bits)
     }
 
     fn shrink_to(&self, distance: Real) {
-        self.0.fetch_min(distance.abs().to_bits() + 1, Ordering::Relaxed);
+        self.distance.fetch_min(distance.abs().to_bits() + 1, Ordering::Relaxed);
+    }
+
+    fn touching(&self) -> u32 {
+        self.touching.load(Ordering::Relaxed)
+    }
+
+    /// Takes over that a triangle touches.
+    fn touch(&self, triangle: u32) {
+        self.touching.fetch_min(triangle, Ordering::Relaxed);
+        self.shrink_to(0.0);
     }
 
     fn end(&self) {
-        self.0.store(0, Ordering::Relaxed);
+        self.distance.store(0, Ordering::Relaxed);
     }
 }
 
@@ -125,7 +141,12 @@ impl<E: Lane> Job<'_, E> {
         for link in self.links {
             let shared = &self.bounds[link.bound];
             let Some(bound) = shared.get() else { continue };
+            let touching = shared.touching();
+            if blocks.start * BLOCK > touching as usize {
+                continue;
+            }
             let best = Best::resume(bound, findings.nearest[link.place]);
+            let best = best.touching_below(touching.saturating_add(1));
             let mut turn = Turn { job: self, link: &link.link, best, work: &mut findings.work };
             match &link.searched {
                 Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
@@ -133,8 +154,10 @@ impl<E: Lane> Job<'_, E> {
             }
             let best = turn.best;
             findings.nearest[link.place] = best.nearest();
-            if best.touches() || (self.stop_at_first && best.nearest().is_some()) {
+            if self.stop_at_first && best.nearest().is_some() {
                 shared.end();
+            } else if let Some(nearest) = best.nearest().filter(|nearest| nearest.distance <= 0.0) {
+                shared.touch(nearest.triangle);
             } else {
                 shared.shrink_to(best.bound());
             }
@@ -200,7 +223,7 @@ impl<E: Lane> Turn<'_, E> {
     /// Measures one triangle in double precision. True if it is the nearest so far.
     #[inline(never)] // the same code whatever the instruction set
     fn measure(&mut self, triangle: usize) -> bool {
-        if triangle >= self.job.mesh.len() {
+        if triangle >= self.job.mesh.len().min(self.best.wanted_below() as usize) {
             return false;
         }
         self.work.measured += 1;

@@ -61,6 +61,7 @@ impl<E: Lane> WideBvh<E> {
             parts.extend([low, high]);
         }
         for part in parts {
+            let lowest = part.iter().map(|&(triangle, _)| triangle).min().unwrap_or(u32::MAX);
             let child = if part.len() <= BLOCK {
                 self.leaves.push(Leaf::of(|lane| part[lane].0, part.len()));
                 let leaf = self.leaves.len() as u32 - 1;
@@ -72,7 +73,7 @@ impl<E: Lane> WideBvh<E> {
                 self.split(child, part);
                 Child::Node(child as u32)
             };
-            self.nodes[node].push(child);
+            self.nodes[node].push(child, lowest);
         }
     }
 

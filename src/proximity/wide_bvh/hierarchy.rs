@@ -4,6 +4,7 @@ use super::build::WideBvh;
 use super::joint::{JointSearch, Pairs, Verdict};
 use super::traverse::{Stack, Traversal};
 use crate::proximity::Work;
+use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
@@ -101,11 +102,25 @@ impl MeshSearch<'_> {
         }
     }
 
+    /// About the triangle nearest to a capsule around links, if any is within reach.
+    pub(super) fn about_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
+        match self.hierarchy.searched(self.level, capsule) {
+            Searched::Single(searched) => self.single().about_nearest(&searched),
+            Searched::Double(searched) => self.double().about_nearest(&searched),
+            Searched::OutOfReach => None,
+        }
+    }
+
     /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.
     pub(super) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
+        self.may_meet_below(capsule, bound, u32::MAX)
+    }
+
+    /// The same of the triangles with a lower number than `below`.
+    pub(super) fn may_meet_below(&mut self, capsule: &PlacedLink, bound: Real, below: u32) -> bool {
         match self.hierarchy.searched(self.level, capsule) {
-            Searched::Single(searched) => self.single().may_meet(&searched, bound),
-            Searched::Double(searched) => self.double().may_meet(&searched, bound),
+            Searched::Single(searched) => self.single().may_meet(&searched, bound, below),
+            Searched::Double(searched) => self.double().may_meet(&searched, bound, below),
             Searched::OutOfReach => true,
         }
     }
@@ -117,10 +132,17 @@ impl MeshSearch<'_> {
         match (JointSearch { level: self.level, tree: single, robot, margin, pairs, work }).verdict() {
             Verdict::Unresolved => None,
             Verdict::Near => Some(false),
-            Verdict::Doubtful => Some(!pairs.doubtful().iter().any(|&(link, triangle)| {
-                work.measured += 1;
-                Best::within(margin).measure(&robot.link(link as usize), triangle, mesh.corners(triangle))
-            })),
+            Verdict::Doubtful => {
+                let is_within = |pairs: &[(u32, u32)]| {
+                    let (mut together, link) = ([0; TOGETHER], robot.link(pairs[0].0 as usize));
+                    together.iter_mut().zip(pairs).for_each(|(triangle, pair)| *triangle = pair.1);
+                    work.measured += pairs.len() as u64;
+                    let together = &together[..pairs.len()];
+                    Best::within(margin).measure_together(self.level, &link, mesh, together)
+                };
+                let of_one_link = pairs.doubtful().chunk_by(|one, other| one.0 == other.0);
+                Some(!of_one_link.flat_map(|pairs| pairs.chunks(TOGETHER)).any(is_within))
+            }
         }
     }
 

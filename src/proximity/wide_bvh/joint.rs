@@ -234,7 +234,11 @@ impl JointSearch<'_> {
             while near != 0 {
                 let triangle = leaf.triangles[lane + near.trailing_zeros() as usize];
                 near &= near - 1;
-                self.pairs.doubtful.push((link as u32, triangle));
+                let pair = (link as u32, triangle);
+                // A leaf that is not full repeats its last triangle.
+                if self.pairs.doubtful.last() != Some(&pair) {
+                    self.pairs.doubtful.push(pair);
+                }
             }
         }
         false

@@ -38,6 +38,8 @@ pub(super) struct Node<E> {
     /// Rows of centre, half extents and normal (x, y, z each), thickness and radius; see [`NodeBounds`].
     rows: [E; BOUND_ROWS * WIDTH],
     pub children: [u32; WIDTH],
+    /// The lowest number of a triangle below each child.
+    pub lowest: [u32; WIDTH],
     count: usize,
 }
 
@@ -56,11 +58,12 @@ impl<E: Lane> Node<E> {
             std::array::from_fn(
                 |slot| if slot < 3 * WIDTH { E::round(1.0e9 * E::FARTHEST) } else { E::default() },
             );
-        Self { rows, children: [0; WIDTH], count: 0 }
+        Self { rows, children: [0; WIDTH], lowest: [u32::MAX; WIDTH], count: 0 }
     }
 
-    pub(super) fn push(&mut self, child: Child) {
+    pub(super) fn push(&mut self, child: Child, lowest: u32) {
         self.children[self.count] = child.pack();
+        self.lowest[self.count] = lowest;
         self.count += 1;
     }
 

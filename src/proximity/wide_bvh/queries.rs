@@ -41,20 +41,18 @@ impl RobotSearch<'_> {
         let mut place = 0;
         while let Some(node) = tree.get(place) {
             let bound = best.1.distance;
-            if bound <= 0.0 {
-                break;
-            }
+            // Of the links that touch, the one with the lowest triangle counts, then the lowest link.
+            let below = if bound > 0.0 { u32::MAX } else { best.1.triangle.saturating_add(1) };
             match node {
-                LinkNode::Inner { bound: capsule, below } => {
-                    if !self.search.may_meet(&self.robot.bound(capsule), bound) {
-                        place += below;
+                LinkNode::Inner { bound: capsule, below: links_below } => {
+                    if !self.search.may_meet_below(&self.robot.bound(capsule), bound, below) {
+                        place += links_below;
                     }
                 }
                 LinkNode::Leaf(link) if *link != first => {
                     let placed = self.robot.link(*link);
-                    if let Some(nearest) =
-                        self.search.nearest(&placed, Best::within(bound), [None, None]).nearest()
-                    {
+                    let wanted = Best::within(bound).touching_below(below);
+                    if let Some(nearest) = self.search.nearest(&placed, wanted, [None, None]).nearest() {
                         best = nearer((*link, nearest), best);
                     }
                 }
@@ -91,12 +89,10 @@ impl RobotSearch<'_> {
         true
     }
 
-    /// The triangle nearest to the capsule around the robot, and the link nearest to that triangle.
+    /// About the triangle nearest to the capsule around the robot, and the link nearest to that triangle.
     fn likely_minimum(&mut self) -> (usize, u32) {
         let Some(LinkNode::Inner { bound, .. }) = self.robot.link_tree().first() else { return (0, 0) };
-        let capsule = self.robot.bound(bound);
-        let found = self.search.nearest(&capsule, Best::within(Real::INFINITY), [None, None]).nearest();
-        let triangle = found.map_or(0, |found| found.triangle);
+        let triangle = self.search.about_nearest(&self.robot.bound(bound)).unwrap_or(0);
         let [a, b, c] = self.search.hierarchy.mesh.corners(triangle);
         let centre = self.robot.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
         let distances = self

@@ -12,11 +12,16 @@ use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::Work;
 use crate::proximity::link_lanes::LinkLanes;
+use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
 use fearless_simd::{Level, dispatch};
+
+/// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
+/// another.
+const LEAVES_FOR_A_GUESS: u32 = 8;
 
 /// Memory that is used again.
 #[derive(Clone, Default)]
@@ -41,12 +46,16 @@ struct Target<'a, E> {
     searched: &'a SearchLink<E>,
     /// What a triangle's axis distance must be below.
     limit: E,
+    /// What its number must be below.
+    below: u32,
     aim: Aim<'a>,
 }
 
 enum Aim<'a> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
+    /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
+    About(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
 }
@@ -55,7 +64,9 @@ impl<E: Lane> Target<'_, E> {
     /// Whether nothing can change the answer any more.
     fn is_settled(&self) -> bool {
         match &self.aim {
-            Aim::Nearest(_, best) => best.touches(),
+            Aim::Nearest(..) => self.below == 0,
+            // Once a triangle overlaps, the limit is 0 and nothing is below it.
+            Aim::About(_, leaves) => *leaves == 0,
             Aim::Any(found) => *found,
         }
     }
@@ -72,17 +83,29 @@ impl<E: Lane> Traversal<'_, E> {
         start: [Option<u32>; 2],
     ) -> Best {
         let limit = searched.axis_limit(best.bound());
-        let mut target = Target { searched, limit, aim: Aim::Nearest(link, best) };
+        let below = best.wanted_below();
+        let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, start));
         self.settle(&mut target);
         if let Aim::Nearest(_, best) = target.aim { best } else { best }
     }
 
-    /// Whether some triangle may be at most `bound` from the link; false only if none is.
-    pub(super) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64) -> bool {
-        let mut target = Target { searched, limit: searched.axis_limit(bound), aim: Aim::Any(false) };
+    /// A triangle nearly as near as the nearest, or any that overlaps the link.
+    pub(super) fn about_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
+        let limit = searched.axis_limit(f64::INFINITY);
+        let below = u32::MAX;
+        let mut target = Target { searched, limit, below, aim: Aim::About(None, LEAVES_FOR_A_GUESS) };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
-        target.is_settled()
+        if let Aim::About(found, _) = target.aim { found } else { None }
+    }
+
+    /// Whether some triangle with a lower number than `below` may be at most `bound` from the link; false only if none
+    /// is.
+    pub(super) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
+        let limit = searched.axis_limit(bound);
+        let mut target = Target { searched, limit, below, aim: Aim::Any(false) };
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        matches!(target.aim, Aim::Any(true))
     }
 
     #[inline(always)]
@@ -114,7 +137,7 @@ impl<E: Lane> Traversal<'_, E> {
                 continue;
             }
             match Child::unpack(child) {
-                Child::Node(node) => self.visit_node(token, &lanes, node, target.limit),
+                Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
                 Child::Leaf(leaf) => self.visit_leaf(token, &lanes, leaf, target),
             }
@@ -132,11 +155,11 @@ impl<E: Lane> Traversal<'_, E> {
         token: L::Token,
         lanes: &LinkLanes<L>,
         node: u32,
-        limit: E,
+        target: &Target<E>,
     ) {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
-        let limit = L::splat(token, limit * limit);
+        let limit = L::splat(token, target.limit * target.limit);
         let mut bounds = [E::default(); WIDTH];
         let mut near = 0;
         for lane in (0..WIDTH).step_by(L::LANES) {
@@ -149,6 +172,9 @@ impl<E: Lane> Traversal<'_, E> {
         while near != 0 {
             let child = near.trailing_zeros() as usize;
             near &= near - 1;
+            if node.lowest[child] >= target.below {
+                continue;
+            }
             // Insertion keeps the few new entries in order.
             let entry = (bounds[child], node.children[child]);
             waiting.push(entry);
@@ -186,43 +212,68 @@ impl<E: Lane> Traversal<'_, E> {
             bounds.upper.store(&mut upper[lane..]);
             near |= bounds.nearer << lane;
         }
-        if let Aim::Any(found) = &mut target.aim {
-            *found = near != 0;
-            return;
+        match &mut target.aim {
+            Aim::Any(found) => {
+                // A triangle whose number is too high does no harm.
+                *found = near != 0;
+                return;
+            }
+            Aim::About(_, leaves) => *leaves -= 1,
+            Aim::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
+        // The lowest of those that overlap for certain: of these no other is wanted.
+        let mut overlapping = u32::MAX;
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
-            if lower[lane] >= target.limit {
+            let triangle = leaf.triangles[lane];
+            if lower[lane] >= target.limit || triangle >= target.below {
                 continue;
             }
-            if upper[lane] + error < radius {
-                // They overlap: the distance is 0, and the search is at its end.
-                self.measure(target, leaf.triangles[lane]);
-            } else {
-                self.stack.candidates.push((lower[lane], leaf.triangles[lane]));
+            if let Aim::About(found, _) = &mut target.aim {
+                *found = Some(triangle);
+                target.limit = upper[lane];
+            } else if upper[lane] + error < radius {
+                overlapping = overlapping.min(triangle);
+            } else if self.stack.candidates.last().is_none_or(|last| last.1 != triangle) {
+                // A leaf that is not full repeats its last triangle.
+                self.stack.candidates.push((lower[lane], triangle));
                 target.limit = target.limit.min(upper[lane] + error + error);
             }
         }
+        if overlapping != u32::MAX {
+            self.measure(target, overlapping);
+        }
     }
 
-    /// Measures the candidates that are still in question, the nearest first.
+    /// Measures the candidates that are still in question, several at a time and first those that are likely to rule out
+    /// others.
     #[inline(never)] // the same code whatever the instruction set
     fn settle(&mut self, target: &mut Target<E>) {
-        let mut candidates = std::mem::take(&mut self.stack.candidates);
-        candidates.retain(|candidate| candidate.0 < target.limit);
-        let lower = |candidate: &(E, u32)| -> f64 { candidate.0.into() };
-        candidates.sort_unstable_by(|a, b| lower(a).total_cmp(&lower(b)));
-        // A leaf that is not full repeats its last triangle.
-        candidates.dedup_by_key(|candidate| candidate.1);
-        for &(distance, triangle) in &candidates {
-            if distance >= target.limit || target.is_settled() {
-                break;
-            }
-            self.measure(target, triangle);
+        let Aim::Nearest(link, best) = &mut target.aim else { return };
+        let candidates = &mut self.stack.candidates;
+        let (limit, below) = (target.limit, target.below);
+        candidates.retain(|candidate| candidate.0 < limit && candidate.1 < below);
+        if candidates.len() > TOGETHER {
+            let lower = |candidate: &(E, u32)| -> f64 { candidate.0.into() };
+            candidates.select_nth_unstable_by(TOGETHER - 1, |a, b| lower(a).total_cmp(&lower(b)));
         }
-        self.stack.candidates = candidates;
+        let (mut limit, mut place) = (target.limit, 0);
+        while place < candidates.len() {
+            let (mut together, mut count) = ([0; TOGETHER], 0);
+            while place < candidates.len() && count < TOGETHER {
+                if candidates[place].0 < limit && candidates[place].1 < best.wanted_below() {
+                    together[count] = candidates[place].1;
+                    count += 1;
+                }
+                place += 1;
+            }
+            self.work.measured += count as u64;
+            if best.measure_together(self.level, link, self.mesh, &together[..count]) {
+                limit = limit.min(target.searched.axis_limit(best.bound()));
+            }
+        }
     }
 
     /// Measures one triangle in double precision.
@@ -231,6 +282,7 @@ impl<E: Lane> Traversal<'_, E> {
         self.work.measured += 1;
         if best.measure(link, triangle, self.mesh.corners(triangle)) {
             target.limit = target.limit.min(target.searched.axis_limit(best.bound()));
+            target.below = best.wanted_below();
         }
     }
 }

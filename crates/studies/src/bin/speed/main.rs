@@ -12,6 +12,7 @@ mod exhaustive;
 mod goals;
 mod growth;
 mod moving;
+mod planner;
 mod search;
 
 use clap::Parser;
@@ -72,9 +73,10 @@ fn measure(options: &Options) -> Result<(), String> {
     let memory = exhaustive::memory(effort)?;
     let mut goals = Goals::default();
     let (search, table) = search::chapter(effort, &mut goals)?;
+    let planner = planner::chapter(effort, &mut goals)?;
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
     let growth = growth::chapter(effort, &options.out)?;
-    for chapter in [search, exhaustive, growth, moving::chapter(effort)?, memory, goals.chapter()] {
+    for chapter in [search, planner, exhaustive, growth, moving::chapter(effort)?, memory, goals.chapter()] {
         page.push('\n');
         page.push_str(&chapter);
     }

@@ -1,0 +1,167 @@
+//! A planner's question: is this new shape free? Random shapes, free and colliding apart, and many of them at once.
+
+use crate::Effort;
+use crate::goals::{Goal, Goals};
+use continuum_scene::steer::Random;
+use continuum_scene::timing::{self, medians};
+use continuum_scene::{cavity, ctr, lumen, ventricle};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Rot3, Vector};
+use parry_continuum::parry::query;
+use parry_continuum::parry::shape::{Cylinder, TriMesh};
+use parry_continuum::proximity::{BvhSearch, Proximity, ProximityError};
+use std::fmt::Write;
+use std::hint::black_box;
+use std::time::Duration;
+
+/// How many random shapes a scene is asked about, and how many of each kind are timed at the most.
+const SHAPES: usize = 1500;
+const TIMED: usize = 200;
+/// How many shapes a batch has.
+const BATCH: usize = 10_000;
+
+struct Shape {
+    chain: Chain,
+    cylinders: Vec<(Pose, Cylinder)>,
+}
+
+/// Shapes of the three tubes with 30 links, by Algorithm 1.
+fn shapes() -> Result<Vec<Shape>, String> {
+    let (robot, mut random) = (ctr::three_tubes(), Random(7));
+    let shape = |_| {
+        let line = robot.centreline(&robot.any_joints(&mut random), 30);
+        let chain = Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
+        Ok(Shape { cylinders: timing::cylinders(&chain), chain })
+    };
+    (0..SHAPES).map(shape).collect()
+}
+
+/// parry's answer: link by link, to the first that meets the mesh.
+fn parry_clears(mesh: &TriMesh, shape: &Shape, base: &Pose) -> Result<bool, String> {
+    for (place, cylinder) in &shape.cylinders {
+        let met = query::intersection_test(&(*base * *place), cylinder, &Pose::IDENTITY, mesh);
+        if met.map_err(|error| error.to_string())?.intersecting {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Meshes by name, with the pose at which the robot enters, the smallest first.
+fn scenes(effort: Effort) -> Result<Vec<(&'static str, TriMesh, Pose)>, String> {
+    let inwards = Vector::new(-0.3, 0.2, 1.0).normalize();
+    let aside = Pose::from_parts(Vector::new(20.0, 0.0, -30.0), Rot3::from_rotation_arc(Vector::Z, inwards));
+    let mut scenes = Vec::new();
+    for times in [0, 2].into_iter().filter(|times| *times <= effort.largest) {
+        let (vertices, indices) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES << (2 * times));
+        let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
+        scenes.push(("ventricle", mesh, ventricle::entry()));
+        scenes.push(("cavity", cavity::mesh(4 + times), aside));
+        scenes.push(("vessel", lumen::mesh(32 << times), lumen::entry()));
+    }
+    Ok(scenes)
+}
+
+/// The chapter of the page.
+pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
+    let mut page = String::from(
+        "## Planner\n\n\
+         Random shapes of three tubes, 30 links each, from a fixed entry: does the shape touch the wall? `clears` with \
+         margin 0, and the minimum, each without any memory of the last shape. The peer is parry's \
+         `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. Microseconds a shape.\n\n\
+         | scene | triangles | shapes | how many | parry | clears | times faster | minimum |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    let mut batches = format!(
+        "\nShapes a second by `clears_batch` of {BATCH} such shapes, margin 0:\n\n\
+         | scene | triangles | one thread | two threads |\n|---|---|---|---|\n"
+    );
+    let shapes = shapes()?;
+    for (scene, mesh, base) in scenes(effort)? {
+        let mut search = BvhSearch::new(&mesh).map_err(|error| error.to_string())?;
+        let clear = |shape: &Shape| search.clears(&shape.chain, &base, 0.0).map_err(text);
+        let clear: Vec<_> = shapes.iter().map(clear).collect::<Result<_, _>>()?;
+        for (kind, is_clear) in [("colliding", false), ("free", true)] {
+            let group: Vec<_> = shapes
+                .iter()
+                .zip(&clear)
+                .filter(|(_, clear)| **clear == is_clear)
+                .map(|(shape, _)| shape)
+                .collect();
+            let timed = &group[..group.len().min(TIMED)];
+            let [parry, clears, minimum] = times(&mesh, &search, timed, &base, effort.enough / 4)?;
+            let _ = writeln!(
+                page,
+                "| {scene} | {} | {kind} | {} | {parry:.2} | {clears:.2} | {:.1} x | {minimum:.2} |",
+                mesh.num_triangles(),
+                group.len(),
+                parry / clears,
+            );
+            let goal = if is_clear { 20.0 } else { 10.0 };
+            goals.note(&format!("clears, random shapes, {kind}"), Goal::AtLeast(goal), parry / clears);
+        }
+        let _ = write!(batches, "| {scene} | {} |", mesh.num_triangles());
+        let robots: Vec<_> = shapes.iter().cycle().take(BATCH).map(|shape| (&shape.chain, base)).collect();
+        for threads in [1, 2] {
+            let a_second = batch(&search, &robots, threads, effort.enough / 8)?;
+            let _ = write!(batches, " {:.0} thousand |", a_second * 1e-3);
+        }
+        batches.push('\n');
+    }
+    Ok(page + &batches)
+}
+
+fn text(error: ProximityError) -> String {
+    error.to_string()
+}
+
+/// Microseconds a shape: parry, `clears` and the minimum.
+fn times(
+    mesh: &TriMesh,
+    search: &BvhSearch,
+    shapes: &[&Shape],
+    base: &Pose,
+    enough: Duration,
+) -> Result<[f64; 3], String> {
+    let (mut clears, mut minimum) = (search.clone(), search.clone());
+    let times = medians::<String>(
+        &mut [
+            &mut || shapes.iter().try_for_each(|shape| parry_clears(mesh, shape, base).map(keep)),
+            &mut || {
+                shapes.iter().try_for_each(|shape| {
+                    clears.forget();
+                    clears.clears(&shape.chain, base, 0.0).map(keep).map_err(text)
+                })
+            },
+            &mut || {
+                shapes.iter().try_for_each(|shape| {
+                    minimum.forget();
+                    minimum.minimum(&shape.chain, base).map(keep).map_err(text)
+                })
+            },
+        ],
+        enough,
+    )?;
+    let each = |time: Duration| time.as_secs_f64() * 1e6 / shapes.len().max(1) as f64;
+    Ok([each(times[0]), each(times[1]), each(times[2])])
+}
+
+/// Uses an answer, so that the query is not optimised away.
+fn keep<T>(answer: T) {
+    black_box(answer);
+}
+
+/// How many shapes a second a batch answers on so many threads.
+fn batch(
+    search: &BvhSearch,
+    robots: &[(&Chain, Pose)],
+    threads: usize,
+    enough: Duration,
+) -> Result<f64, String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| error.to_string())?;
+    let (mut search, mut out) = (search.clone(), Vec::new());
+    let mut job = || pool.install(|| search.clears_batch(robots, 0.0, &mut out)).map_err(text);
+    let times = medians::<String>(&mut [&mut job], enough)?;
+    Ok(robots.len() as f64 / times[0].as_secs_f64())
+}
