@@ -4,6 +4,8 @@ mod bound;
 mod build;
 mod engine;
 mod hierarchy;
+mod motion_engine;
+mod motion_queries;
 mod node;
 mod queries;
 mod traverse;
