@@ -4,6 +4,8 @@ mod bending;
 mod linear;
 mod rigid;
 mod sections;
+#[cfg(test)]
+mod tests;
 mod verify;
 
 pub use bending::{BendingMotion, BendingRates, BendingSection, bending_speed};
