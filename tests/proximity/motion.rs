@@ -616,3 +616,18 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     let lost = Pose::from_translation(Vector::splat(Real::NAN));
     assert!(RigidMotion::new(Tube::from(&Chain::capsules(&a, &[1.0]).unwrap()), [lost, lost]).is_err());
 }
+
+/// A link's start becomes round when it is one radius away from the base, and fills a corner of the robot at once.
+#[test]
+fn an_end_that_becomes_round_counts() {
+    let corner = Vector::new(-1.0, 0.0, 1.0).normalize() * 0.95;
+    let speck = [corner, corner + Vector::Y * 1e-3, corner + Vector::new(-1e-3, 0.0, 1e-3)];
+    let mut search = BvhSearch::new(&TriMesh::new(speck.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let line = |base: Real| [Vector::Z * -base, Vector::ZERO, Vector::X * 0.5];
+    // Flat ends leave the speck 0.67 away.
+    let flat = LinearMotion::chain(&line(0.9), &line(0.99), &[1.0; 2]).unwrap();
+    assert_eq!(search.clears_motion(&flat, 0.3, 1e-3), Ok(MotionAnswer::Clear));
+    let opening = LinearMotion::chain(&line(0.9), &line(1.05), &[1.0; 2]).unwrap();
+    let answer = search.clears_motion(&opening, 0.3, 1e-3).unwrap();
+    assert!(matches!(answer, MotionAnswer::Contact { t, .. } if t > 0.666), "{answer:?}");
+}

@@ -207,7 +207,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let pose = self.shape(t)?;
         let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let (motion, times) = (self.motion, interval.times);
-        self.memory.tube.hold_faces(|section, end| {
+        let opening = self.memory.tube.hold_faces(|section, end| {
             // A speed that is not finite or NaN holds nothing; it is refused below.
             half * motion.speed(section, [end as Real; 2], times).point
         });
@@ -287,7 +287,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 if is_fine && !may_open {
                     search.check_resolved(gap, self.resolution)?;
                 }
-                if is_fine && (!may_open || reach <= half_resolution / 64.0) {
+                if is_fine && (!may_open || reach.max(opening) <= half_resolution / 64.0) {
                     seen.is_undecided = true;
                     continue;
                 }

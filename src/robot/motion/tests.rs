@@ -32,7 +32,12 @@ fn stated_speeds_hold_between_any_shares_and_times() {
         let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
         let from: Vec<_> = (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
         let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
-        let bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
+        let mut bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
+        if random.below(2) == 0 {
+            // Lengths alone change.
+            let bends = bent[0].clone();
+            bent[1].iter_mut().zip(&bends).for_each(|(to, from)| to.bend = from.bend);
+        }
         let poses = [random.pose(3.0), random.pose(3.0)];
         let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
         let mut tube = Tube::empty();

@@ -42,9 +42,10 @@ impl Tube {
     }
 
     /// Marks the flat ends that stay so for a time: `moves(section, end)` tells by how much that end of a section moves
-    /// in it at most.
-    pub(crate) fn hold_faces(&mut self, moves: impl Fn(usize, usize) -> Real) {
+    /// in it at most. By how much those that may not stay so move, with their limits, is returned.
+    pub(crate) fn hold_faces(&mut self, moves: impl Fn(usize, usize) -> Real) -> Real {
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;
+        let mut opening: Real = 0.0;
         for end in [0, 1] {
             self.walk(end, |tube, number, limit| {
                 let section = &tube.sections[number];
@@ -53,14 +54,18 @@ impl Tube {
                 };
                 let at = &tube.sections[limit];
                 let from = tube.point(at, if end == 0 { at.first } else { at.last });
-                let apart = (face.centre - from).length() + moves(number, end) + moves(limit, end) + rounding;
-                if apart < section.radius
-                    && let Some(face) = &mut tube.sections[number].faces[end]
-                {
+                let change = moves(number, end) + moves(limit, end);
+                let apart = (face.centre - from).length() + change + rounding;
+                let stays = apart < section.radius;
+                if !stays {
+                    opening = opening.max(change);
+                }
+                if stays && let Some(face) = &mut tube.sections[number].faces[end] {
                     face.lasting = Lasting::Always;
                 }
             });
         }
+        opening
     }
 
     /// One walk of Algorithm 1: each section with the one at whose end the last limit is.
