@@ -66,10 +66,9 @@ mod robot;
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
-pub use robot::{
-    BendingMotion, BendingRates, BendingSection, Cap, Chain, LinearMotion, ModifiedCylinder, Motion,
-    RigidMotion, RobotError, Speed, Tube, TubeSection, bending_speed, simplify, verify_motion,
-};
+pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection};
+pub use robot::{bending_speed, simplify, verify_motion};
 
 /// Runs the code in the README.
 #[cfg(doctest)]
