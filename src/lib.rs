@@ -69,7 +69,9 @@ mod robot;
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection, simplify, stations};
+pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
+pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection};
+pub use robot::{bending_speed, simplify, stations, verify_motion};
 
 /// Runs the code in the README.
 #[cfg(doctest)]

@@ -1,5 +1,6 @@
 //! Why there is no answer. Each message names the value at fault and what to change.
 
+use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 use thiserror::Error;
 
@@ -86,6 +87,22 @@ pub enum ProximityError {
     CurveNotFinite {
         /// Where it is not.
         arc_length: Real,
+    },
+    /// A motion has no shape at some time, or breaks a promise.
+    #[error(transparent)]
+    Motion(#[from] RobotError),
+    /// A motion is so fast that time cannot be divided finely enough.
+    #[error(
+        "section {section} moves at the speed {speed}: time cannot be divided so finely that it moves by {resolution} \
+         alone; ask for a coarser resolution"
+    )]
+    TooFast {
+        /// The section, counted from the base.
+        section: usize,
+        /// The speed that the motion states for it.
+        speed: Real,
+        /// What was asked for.
+        resolution: Real,
     },
     /// An answer names a link that the robot does not have.
     #[error(

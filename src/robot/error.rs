@@ -58,6 +58,76 @@ pub enum RobotError {
         /// How many radii were given.
         radii: usize,
     },
+    /// A motion needs as many points at its end as at its start.
+    #[error("the motion starts with {from} points and ends with {to}; give both the same number")]
+    PointsDiffer {
+        /// How many points it starts with.
+        from: usize,
+        /// How many points it ends with.
+        to: usize,
+    },
+    /// A motion needs the same sections at its end as at its start, with the same radii.
+    #[error(
+        "section {index} of the motion is not the same at both ends; give as many sections, of the same radii"
+    )]
+    SectionsDiffer {
+        /// The first section that is missing or has another radius.
+        index: usize,
+    },
+    /// A pose has a component that is NaN or infinite, or lies out of range.
+    #[error("a pose of the motion is not finite or beyond +-{limit:e}")]
+    BadPose {
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
+    /// A point of a motion's centreline moves faster than the motion states.
+    #[error(
+        "around t = {t} the centreline at share {share} of section {section} moves at {found}, more than the {stated} \
+         stated; state more"
+    )]
+    FasterThanStated {
+        /// When.
+        t: Real,
+        /// The section, counted from the base.
+        section: usize,
+        /// Where in the section, from 0 to 1.
+        share: Real,
+        /// Its speed, at least.
+        found: Real,
+        /// The speed that the motion states.
+        stated: Real,
+    },
+    /// The direction of a motion's centreline turns faster than the motion states.
+    #[error(
+        "around t = {t} the centreline at share {share} of section {section} turns at {found} rad, more than the \
+         {stated} stated; state more"
+    )]
+    TurnsFasterThanStated {
+        /// When.
+        t: Real,
+        /// The section, counted from the base.
+        section: usize,
+        /// Where in the section, from 0 to 1.
+        share: Real,
+        /// Its angular speed, at least.
+        found: Real,
+        /// The angular speed that the motion states.
+        stated: Real,
+    },
+    /// A motion's sections must be the same at all times, with the same radii and faces.
+    #[error("at t = {t} the motion has other sections, radii or faces than before; keep them the same")]
+    SectionsChange {
+        /// When.
+        t: Real,
+    },
+    /// A stated speed is not a number that is at least 0.
+    #[error("the motion states the speed {value} for section {section}; it must be finite and at least 0")]
+    BadSpeed {
+        /// The section, counted from the base.
+        section: usize,
+        /// The offending speed.
+        value: Real,
+    },
     /// Every point of the centreline is the same.
     #[error("all points of the centreline are the same; a chain needs two distinct points")]
     AllPointsEqual,

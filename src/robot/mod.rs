@@ -9,6 +9,7 @@ mod convert;
 mod error;
 mod link_tree;
 mod modified_cylinder;
+mod motion;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
@@ -25,8 +26,13 @@ pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
 pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
+pub use motion::{
+    BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed, bending_speed,
+    verify_motion,
+};
+pub(crate) use motion::{Sampled, Sections};
 pub(crate) use scale::length;
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use tube::{Face, Section};
+pub(crate) use tube::{Face, Lasting, Section};
 pub use tube::{Tube, TubeSection};

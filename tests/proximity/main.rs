@@ -7,6 +7,7 @@ mod chain_cases;
 mod far_parts;
 mod fuzz;
 mod large;
+mod motion;
 mod patches;
 mod planner;
 mod scenes;

@@ -58,9 +58,10 @@ impl PlacedTube<'_> {
             return self.along_chord(section, piece, length, [false; 2]);
         }
         let sideways = 0.5 * bend * length;
+        let faces = self.faces(section);
         let ends = [
-            (piece.from == section.first).then_some(section.faces[0]).flatten(),
-            (piece.to == section.last).then_some(section.faces[1]).flatten(),
+            (piece.from == section.first).then_some(faces[0]).flatten(),
+            (piece.to == section.last).then_some(faces[1]).flatten(),
         ];
         let flat_ends = Real::from(u8::from(exposed[0])) + Real::from(u8::from(exposed[1]));
         let by_chord = 0.25 * sideways + 0.5 * section.radius * bend * flat_ends;

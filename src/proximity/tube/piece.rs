@@ -23,12 +23,24 @@ impl PlacedTube<'_> {
         [piece.from, piece.to].map(|tick| self.tube.arc(section, tick))
     }
 
+    /// The least piece that holds all between two shares of a section.
+    pub(crate) fn between(&self, section: u32, shares: [Real; 2]) -> Piece {
+        let [from, to] = self.tube.ticks_around(self.section(section), shares);
+        Piece { section, from, to }
+    }
+
+    /// The shares of a section between which a piece lies.
+    pub(crate) fn shares(&self, piece: &Piece) -> [Real; 2] {
+        let section = self.section(piece.section);
+        [piece.from, piece.to].map(|tick| self.tube.share(section, tick))
+    }
+
     /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.
     pub(super) fn exposed(&self, section: &Section, arcs: [Real; 2]) -> [bool; 2] {
-        let room = ROOM * section.room();
+        let (room, faces) = (ROOM * section.room(), self.faces(section));
         [
-            section.faces[0].is_some() && arcs[0] - section.start < room,
-            section.faces[1].is_some() && section.end - arcs[1] < room,
+            faces[0].is_some() && arcs[0] - section.start < room,
+            faces[1].is_some() && section.end - arcs[1] < room,
         ]
     }
 
@@ -70,7 +82,7 @@ impl PlacedTube<'_> {
     fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let room = ROOM * section.room();
-        let [first, last] = [section.faces[0].is_some(), section.faces[1].is_some()];
+        let [first, last] = self.faces(section).map(|face| face.is_some());
         let needed = room * (Real::from(u8::from(first)) + Real::from(u8::from(last)));
         if needed > 0.0 && section.end - section.start <= needed {
             return if first { [section.last; 2] } else { [section.first; 2] };
@@ -95,9 +107,10 @@ impl PlacedTube<'_> {
         let arcs = self.arcs(piece);
         let middle = 0.5 * (arcs[0] + arcs[1]);
         let near = (aim / section.curvature).sqrt();
+        let faces = self.faces(section);
         let at = [
-            piece.from == section.first && section.faces[0].is_some(),
-            piece.to == section.last && section.faces[1].is_some(),
+            piece.from == section.first && faces[0].is_some(),
+            piece.to == section.last && faces[1].is_some(),
         ];
         let arc = match at {
             [true, false] => middle.min(arcs[0] + near),

@@ -4,7 +4,7 @@ use super::Piece;
 use crate::distance::Scalar;
 use crate::proximity::ProximityError;
 use crate::proximity::placed::PlacedLink;
-use crate::robot::{COORDINATE_LIMIT, Face, Section, Tube};
+use crate::robot::{COORDINATE_LIMIT, Face, Lasting, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A tube at a pose in the frame of a mesh.
@@ -18,6 +18,8 @@ pub(crate) struct PlacedTube<'a> {
     /// distance errs by 16 u for each unit of extent, which is at most 2 reach; a placed point by less than 16 u reach;
     /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them.
     pub(super) slack: Real,
+    /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
+    is_moving: bool,
 }
 
 impl<'a> PlacedTube<'a> {
@@ -37,7 +39,30 @@ impl<'a> PlacedTube<'a> {
             return Err(ProximityError::EmptyTube);
         }
         let slack = 128.0 * Real::UNIT_ROUNDOFF * (reach + mesh_reach);
-        Ok(Self { tube, pose, slack })
+        Ok(Self { tube, pose, slack, is_moving: false })
+    }
+
+    /// The same shape as a moment of a motion, to which bodies at flat ends have to be prepared.
+    pub(crate) fn moving(self) -> Self {
+        Self { is_moving: true, ..self }
+    }
+
+    /// The flat ends of a section that bodies may end with.
+    pub(super) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
+        section.faces.map(|face| face.filter(|face| face.lasting == Lasting::Always || !self.is_moving))
+    }
+
+    /// Whether a piece has a flat end that bodies take for round.
+    pub(crate) fn may_open(&self, piece: &Piece) -> bool {
+        let section = self.section(piece.section);
+        let count = |faces: [Option<Face>; 2]| {
+            [piece.from == section.first, piece.to == section.last]
+                .into_iter()
+                .zip(faces)
+                .filter(|(is_there, face)| *is_there && face.is_some())
+                .count()
+        };
+        count(section.faces) > count(self.faces(section))
     }
 
     pub(crate) fn sections(&self) -> &'a [Section] {

@@ -1,6 +1,7 @@
 //! Proximity by a bounding volume hierarchy.
 
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
+use super::motion_queries::MotionMemory;
 use super::queries::RobotSearch;
 use super::tube_engine::TubeMemory;
 use crate::Chain;
@@ -56,6 +57,7 @@ pub struct BvhSearch {
 pub(super) struct Memory {
     pub scratch: Scratch,
     pub tube: TubeMemory,
+    pub motion: MotionMemory,
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.

@@ -5,6 +5,8 @@ mod build;
 mod engine;
 mod hierarchy;
 mod joint;
+mod motion_engine;
+mod motion_queries;
 mod node;
 mod queries;
 mod traverse;

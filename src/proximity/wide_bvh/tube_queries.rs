@@ -28,12 +28,18 @@ pub(super) struct Place {
     arc: Real,
 }
 
+impl Place {
+    pub(super) fn section(&self) -> u32 {
+        self.section
+    }
+}
+
 /// The least upper bound so far.
 #[derive(Clone, Copy)]
-struct Found {
-    place: Place,
-    witness: Witness,
-    on_mesh: Vector,
+pub(super) struct Found {
+    pub place: Place,
+    pub witness: Witness,
+    pub on_mesh: Vector,
 }
 
 impl TubeSearch<'_> {
@@ -153,7 +159,7 @@ impl TubeSearch<'_> {
 
     /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
     /// the radius where that is less.
-    fn begin(&mut self, scale: Real) {
+    pub(super) fn begin(&mut self, scale: Real) {
         let radius =
             self.tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
         self.tube.begin(scale.max(0.25 * radius), self.pieces);
@@ -161,7 +167,7 @@ impl TubeSearch<'_> {
 
     /// # Errors
     /// The curve is not finite there.
-    fn outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
+    pub(super) fn outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
         let outer = self.tube.outer(piece);
         if outer.body.is_finite() {
             Ok(outer)
@@ -171,7 +177,7 @@ impl TubeSearch<'_> {
     }
 
     /// The halves of a piece whose body can become narrower.
-    fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
+    pub(super) fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
         if outer.over > self.tube.slack() { self.tube.halves(piece, aim) } else { None }
     }
 
@@ -181,7 +187,7 @@ impl TubeSearch<'_> {
         self.pieces.extend(if is_in_first { [second, first] } else { [first, second] });
     }
 
-    fn witness(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
+    pub(super) fn witness(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         let found = self.witness_at(piece.section, arc, nearest);
@@ -210,7 +216,7 @@ impl TubeSearch<'_> {
 
     /// # Errors
     /// The bounds are farther apart than was asked for, but for rounding: the samples allow no more.
-    fn check_resolved(&self, possible: Real, tolerance: Real) -> Result<(), ProximityError> {
+    pub(super) fn check_resolved(&self, possible: Real, tolerance: Real) -> Result<(), ProximityError> {
         // Written so that NaN is an error.
         if possible <= tolerance + 16.0 * self.tube.slack() {
             Ok(())

@@ -1,6 +1,8 @@
 //! The centreline: samples, or a function of arc length.
 
 use super::Section;
+use crate::distance::Scalar;
+use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
 
@@ -70,6 +72,68 @@ impl Curve {
                 let share = (arc - section.start) / (section.end - section.start);
                 // A number out of range becomes the nearest that is in it.
                 ((share * Real::from(TICKS)).ceil() as u32).min(TICKS)
+            }
+        }
+    }
+
+    /// The place of a tick as a share of the section's length; 0 and 1 at its ends.
+    pub(super) fn share(&self, section: &Section, tick: u32) -> Real {
+        match self {
+            _ if tick <= section.first => 0.0,
+            _ if tick >= section.last => 1.0,
+            Self::Samples { arcs, .. } => {
+                (arcs[tick as usize] - section.start) / (section.end - section.start)
+            }
+            Self::Function(_) => Real::from(tick) / Real::from(TICKS),
+        }
+    }
+
+    /// The last tick at a share or before it, and the first tick at another or behind that.
+    pub(super) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
+        match self {
+            Self::Samples { .. } => {
+                // The search through samples by their shares; those before `tick` come first.
+                let count = |is_before: &dyn Fn(Real) -> bool| {
+                    let (mut low, mut high) = (section.first, section.last);
+                    while low < high {
+                        let tick = low + (high - low) / 2;
+                        if is_before(self.share(section, tick)) { low = tick + 1 } else { high = tick }
+                    }
+                    low
+                };
+                let behind = count(&|share| share <= shares[0]);
+                let from =
+                    if self.share(section, behind) <= shares[0] { behind } else { behind.saturating_sub(1) };
+                let to = count(&|share| share < shares[1]);
+                [from.min(section.last - 1), to.max(section.first + 1)]
+            }
+            Self::Function(_) => {
+                // Numbers out of range become the nearest that are in it.
+                let [from, to] = shares.map(|share| share * Real::from(TICKS));
+                [(from.floor() as u32).min(TICKS - 1), (to.ceil() as u32).clamp(1, TICKS)]
+            }
+        }
+    }
+
+    /// The point and the unit direction at a share of the section, and how far that direction may be off.
+    pub(super) fn at_share(&self, section: &Section, share: Real) -> (Vector, Vector, Real) {
+        match self {
+            Self::Samples { points, arcs } => {
+                let [from, to] = self.ticks_around(section, [share; 2]);
+                // At a sample the segment before it or behind it.
+                let (from, to) = (from as usize, (to as usize).max(from as usize + 1));
+                let (a, b) = (points[from], points[to]);
+                let [before, behind] = [from, to].map(|tick| self.share(section, tick as u32));
+                let along = (share - before) / (behind - before);
+                // What the curve may turn by, and what the rounding of a few operations can turn the line by.
+                let length = arcs[to] - arcs[from];
+                let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
+                let off = section.curvature * length * section.stretch + rounding / length;
+                (a + (b - a) * along, direction(b - a), off)
+            }
+            Self::Function(curve) => {
+                let (point, tangent) = curve(section.start + (section.end - section.start) * share);
+                (point, direction(tangent), 0.0)
             }
         }
     }

@@ -2,26 +2,91 @@
 
 use super::Tube;
 use super::curve::Curve;
+use super::lasting::Lasting;
 use super::section::{Face, Section};
+use crate::robot::algorithm_1;
+use crate::robot::modified_cylinder::has_direction;
+use crate::robot::scale::{direction, length};
 use crate::{Cap, Chain};
+use parry3d_f64::math::{Real, Vector};
 
 /// Each link is a section of its own, with the link's caps. Queries have no error but rounding, so any tolerance will do.
 impl From<&Chain> for Tube {
     fn from(chain: &Chain) -> Self {
         let mut tube = Self::empty();
-        let (mut points, mut arcs, mut start) = (Vec::new(), Vec::new(), 0.0);
-        for link in chain.links() {
-            let (ends, axis, end) = ([link.start(), link.end()], link.axis(), start + link.length());
+        tube.set_chain(chain);
+        tube
+    }
+}
+
+impl Tube {
+    /// Makes this tube what `Tube::from(chain)` is, in the memory that it has.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, Tube, parry::math::Vector};
+    ///
+    /// let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.5])?);
+    /// tube.set_chain(&Chain::capsules(&[Vector::ZERO, 2.0 * Vector::Z], &[0.5])?);
+    /// assert_eq!(tube.length(), 2.0);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    pub fn set_chain(&mut self, chain: &Chain) {
+        self.set_straight(chain.links().iter().map(|link| Straight {
+            ends: [link.start(), link.end()],
+            radius: link.radius(),
+            caps: link.caps(),
+        }));
+    }
+
+    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball.
+    pub(crate) fn set_links(
+        &mut self,
+        points: impl Iterator<Item = Vector>,
+        radii: &[Real],
+        by_algorithm_1: bool,
+    ) {
+        let (mut ends, mut caps) = (std::mem::take(&mut self.ends), std::mem::take(&mut self.caps));
+        ends.clear();
+        ends.extend(points);
+        if by_algorithm_1 {
+            algorithm_1::from_segment_radii(&ends, radii, &mut caps);
+        } else {
+            caps.clear();
+            caps.resize(radii.len(), [Cap::Round; 2]);
+        }
+        self.set_straight(ends.windows(2).zip(radii).zip(&caps).map(|((ends, &radius), &caps)| {
+            let ends = [ends[0], ends[1]];
+            let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
+            Straight { ends, radius, caps }
+        }));
+        (self.ends, self.caps) = (ends, caps);
+    }
+
+    /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
+    fn set_straight(&mut self, sections: impl Iterator<Item = Straight>) {
+        let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
+        points.clear();
+        arcs.clear();
+        self.sections.clear();
+        let mut start = 0.0;
+        for Straight { ends, radius, caps } in sections {
+            let along = ends[1] - ends[0];
+            let (axis, end) = (direction(along), start + length(along));
             let face = |end: usize| {
                 let outward = if end == 0 { -axis } else { axis };
-                (link.caps()[end] == Cap::Flat).then_some(Face { centre: ends[end], outward, tilt: 0.0 })
+                (caps[end] == Cap::Flat).then_some(Face {
+                    centre: ends[end],
+                    outward,
+                    tilt: 0.0,
+                    lasting: Lasting::WhileNear,
+                })
             };
-            tube.sections.push(Section {
+            self.sections.push(Section {
                 first: points.len() as u32,
                 last: points.len() as u32 + 1,
                 start,
                 end,
-                radius: link.radius(),
+                radius,
                 curvature: 0.0,
                 stretch: 1.0,
                 deviation: 0.0,
@@ -31,8 +96,16 @@ impl From<&Chain> for Tube {
             arcs.extend([start, end]);
             start = end;
         }
-        tube.reach = points.iter().fold(0.0, |reach, point| point.abs().max_element().max(reach));
-        tube.curve = Curve::Samples { points, arcs };
-        tube
+        self.error = 0.0;
+        self.reach = points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
+        self.curve = Curve::Samples { points, arcs };
+        self.mark_lasting_faces();
     }
+}
+
+/// A section without curvature.
+struct Straight {
+    ends: [Vector; 2],
+    radius: Real,
+    caps: [Cap; 2],
 }

@@ -1,6 +1,7 @@
 //! A tube whose centreline is a function of arc length.
 
 use super::curve::{Curve, TICKS};
+use super::lasting::Lasting;
 use super::section::{Face, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
@@ -83,11 +84,13 @@ impl Tube {
             for (end, (centre, tangent)) in [section.start, section.end].map(&curve).into_iter().enumerate() {
                 if tube.caps[index][end] == Cap::Flat {
                     let outward = direction(if end == 0 { -tangent } else { tangent });
-                    section.faces[end] = Some(Face { centre, outward, tilt: 0.0 });
+                    section.faces[end] =
+                        Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::WhileNear });
                 }
             }
             check_faces(section, index)?;
         }
+        tube.mark_lasting_faces();
         tube.curve = Curve::Function(Arc::new(curve));
         Ok(tube)
     }

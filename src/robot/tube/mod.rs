@@ -3,11 +3,13 @@
 mod curve;
 mod from_chain;
 mod function;
+mod lasting;
 mod samples;
 mod section;
 mod verify;
 
 pub use function::TubeSection;
+pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
 use super::{Cap, RobotError};
@@ -155,7 +157,23 @@ impl Tube {
         self.curve.foot(section, arc, point)
     }
 
-    fn empty() -> Self {
+    /// The place of a tick as a share of its section's length.
+    pub(crate) fn share(&self, section: &Section, tick: u32) -> Real {
+        self.curve.share(section, tick)
+    }
+
+    /// The ticks next to two shares of a section, outside of what is between them.
+    pub(crate) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
+        self.curve.ticks_around(section, shares)
+    }
+
+    /// The point and the unit direction at a share of a section, and how far the direction may be off. Between samples
+    /// they are those of the line that joins them.
+    pub(crate) fn at_share(&self, section: &Section, share: Real) -> (Vector, Vector, Real) {
+        self.curve.at_share(section, share)
+    }
+
+    pub(crate) fn empty() -> Self {
         Self {
             curve: Curve::default(),
             sections: Vec::new(),

@@ -19,6 +19,7 @@
 
 use super::Tube;
 use super::curve::Curve;
+use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::distance::Scalar;
 use crate::robot::chain::check;
@@ -238,10 +239,11 @@ impl Tube {
                     None => direction_at_end(ahead, stretch.len(), section.curvature, rounding),
                 };
                 let centre = ahead(0);
-                section.faces[end] = Some(Face { centre, outward, tilt });
+                section.faces[end] = Some(Face { centre, outward, tilt, lasting: Lasting::WhileNear });
             }
             super::check_faces(section, section.first as usize)?;
         }
+        self.mark_lasting_faces();
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! A stretch of the tube with one radius, and its flat faces.
 
+use super::lasting::Lasting;
 use parry3d_f64::math::{Real, Vector};
 
 /// A stretch of the tube with one radius. Places along it are *ticks*: the samples, or even shares of the section where
@@ -30,6 +31,8 @@ pub(crate) struct Face {
     pub outward: Vector,
     /// How large the angle between `outward` and the true normal may be.
     pub tilt: Real,
+    /// Whether it is there in other shapes of the robot, too.
+    pub lasting: Lasting,
 }
 
 impl Section {

@@ -1,0 +1,71 @@
+//! What is known of a motion through a mesh. Points are in the mesh's frame and unit.
+
+use parry3d_f64::math::{Real, Vector};
+
+/// Whether a motion keeps a margin from the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MotionAnswer {
+    /// The clearance is more than the margin at every time from 0 to 1.
+    Clear,
+    /// There is a shape whose clearance is at most the margin.
+    #[non_exhaustive]
+    Contact {
+        /// The time of the shape.
+        t: Real,
+        /// Its clearance is at most this, which is at most the margin.
+        upper: Real,
+        /// The arc length on the centreline at the place that realises `upper`.
+        arc_length: Real,
+        /// The section of constant radius at that place, counted from the base.
+        section: u32,
+        /// The triangle there.
+        triangle: u32,
+        /// A point of the tube that is `upper` away from `on_mesh`, or nearer.
+        on_robot: Vector,
+        /// A point of the triangle; the same as `on_robot` where `upper` is 0.
+        on_mesh: Vector,
+    },
+    /// No such shape was found, but one whose clearance is at most the margin and the resolution; or one in which the end
+    /// of a link becomes flat or round, by Algorithm 1, so close to the mesh that this decides.
+    #[non_exhaustive]
+    Undecided {
+        /// The first interval of time in which there is one. The clearance is more than the margin before it.
+        interval: [Real; 2],
+    },
+}
+
+/// When a motion first comes as close to the mesh as a margin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FirstContact {
+    /// The clearance is more than the margin at every time from 0 to 1.
+    Never,
+    /// It first is at most the margin between two times.
+    #[non_exhaustive]
+    Within {
+        /// The clearance is more than the margin before this time.
+        clear_until: Real,
+        /// The time of a shape whose clearance is at most the margin.
+        t: Real,
+        /// The clearance of that shape is at most this, which is at most the margin.
+        upper: Real,
+        /// The arc length on its centreline at the place that realises `upper`.
+        arc_length: Real,
+        /// The section of constant radius at that place, counted from the base.
+        section: u32,
+        /// The triangle there.
+        triangle: u32,
+        /// A point of the tube that is `upper` away from `on_mesh`, or nearer.
+        on_robot: Vector,
+        /// A point of the triangle; the same as `on_robot` where `upper` is 0.
+        on_mesh: Vector,
+    },
+    /// No such shape was found, but one whose clearance is at most the margin and the resolution; or one in which the end
+    /// of a link becomes flat or round, by Algorithm 1, so close to the mesh that this decides.
+    #[non_exhaustive]
+    Undecided {
+        /// The first interval of time in which there is one. The clearance is more than the margin before it.
+        interval: [Real; 2],
+    },
+}

@@ -1,0 +1,190 @@
+//! How fast sections of constant curvature move while their curvature, its direction and their length change.
+//!
+//! Let u(s, t) be the curvature vector at arc length s and time t in the frame R(s, t) that is carried along the curve
+//! without twist: dR/ds = R [u]. With the frame's angular velocity W, the mixed derivatives of R agree only if
+//! dW/ds = R du/dt, and the base stands still, so |W(s)| <= integral from 0 to s of |du/dt|. The point c(s) at a fixed arc
+//! length has the velocity integral W x c', by parts integral R du/dt x (c(s) - c(q)) dq, and c(s) is at most s - q away
+//! from c(q):
+//!
+//! |dc/dt| <= integral from 0 to s of |du/dt| (s - q) dq.
+//!
+//! u is constant in each section. Where section j ends, at the arc length b_j, it steps by J_j; as b_j moves, so does the
+//! step, which adds |b_j'| J_j to the integral of |du/dt| there. A point at a fixed share of a section moves along the
+//! curve besides, at the rate of its arc length s', and its direction turns by the section's curvature times that:
+//!
+//! point <= sum over sections |u_j'| l_j (s - middle of j) + sum over steps |b_j'| J_j (s - b_j) + |s'|
+//! turn  <= sum over sections |u_j'| l_j + sum over steps |b_j'| J_j + k |s'|
+//!
+//! where the last section counts as far as s. All terms grow with the lengths, so the longest during the motion count.
+//! With lengths that change at constant rates, s' is linear in the share and largest at an end of the piece.
+
+use super::{Motion, Speed};
+use crate::distance::Scalar;
+use crate::robot::modified_cylinder::check_points;
+use crate::robot::{RobotError, Tube, TubeSection};
+use parry3d_f64::math::{Pose, Real, Rotation, Vector};
+
+/// How a section of constant curvature changes during a motion, for [`bending_speed`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendingRates {
+    /// Its length where it is longest.
+    pub length: Real,
+    /// By how much its length grows from t = 0 to t = 1, at a constant rate; less than 0 if it becomes shorter.
+    pub growth: Real,
+    /// Its largest curvature, 1 / length.
+    pub curvature: Real,
+    /// How fast its curvature vector changes at most, in the frame that is carried along the curve without twist:
+    /// of curvature k in the direction of the angle a, |k'| + k |a'| at most.
+    pub bending: Real,
+    /// The largest difference between its curvature vector and that of the next section.
+    pub step: Real,
+}
+
+/// A bound on the speed of a robot of sections of constant curvature whose base stands still, between two shares of a
+/// section: what [`Motion::speed`] asks for.
+///
+/// What counts of the other sections is what lies before; so a motion of the tip alone leaves the rest at rest, and a
+/// section that grows without a change of curvature moves along itself.
+///
+/// ```
+/// use parry_continuum::{BendingRates, bending_speed};
+///
+/// // A section of 20 that is pushed out by 2, and one of 10 that turns its plane by 0.1 rad.
+/// let first = BendingRates { length: 20.0, growth: 2.0, curvature: 0.0, bending: 0.0, step: 0.05 };
+/// let second = BendingRates { length: 10.0, growth: 0.0, curvature: 0.05, bending: 0.005, step: 0.0 };
+/// assert!((bending_speed(&[first, second], 0, [0.0, 0.5]).point - 1.0).abs() < 1e-9);
+/// let tip = bending_speed(&[first, second], 1, [1.0, 1.0]);
+/// // Its plane moves the tip by 0.005 x 10^2 / 2, the growth by 2, and the step that moves on by 2 x 0.05 x 10.
+/// assert!((tip.point - (0.25 + 2.0 + 1.0)).abs() < 1e-9);
+/// ```
+pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2]) -> Speed {
+    let (mut turn, mut point) = (0.0, 0.0);
+    // How fast the arc length changes where the section begins and where it ends.
+    let (mut start, mut end) = (0.0, 0.0);
+    for (number, rates) in sections.iter().enumerate().take(section + 1) {
+        let length = if number == section { rates.length * shares[1] } else { rates.length };
+        // What has turned so far carries the rest with it.
+        point += turn * length + 0.5 * rates.bending * length * length;
+        turn += rates.bending * length;
+        start = end;
+        end += rates.growth;
+        if number < section {
+            turn += end.abs() * rates.step;
+        }
+    }
+    let along = |share: Real| (start + (end - start) * share).abs();
+    let along = along(shares[0]).max(along(shares[1]));
+    let curvature = sections.get(section).map_or(0.0, |rates| rates.curvature);
+    // Sums of positive terms, each of few roundings; rates of either sign may cancel, so theirs are added.
+    let growth: Real = sections.iter().take(section + 1).map(|rates| rates.growth.abs()).sum();
+    let rounding = 8.0 * (section as Real + 2.0) * Real::UNIT_ROUNDOFF;
+    let along = along + growth * rounding;
+    let up = 1.0 + 4.0 * rounding;
+    Speed { point: (point + along) * up, turn: (turn + curvature * along) * up }
+}
+
+/// A stretch of constant curvature, for [`BendingMotion`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendingSection {
+    /// Arc length of the centreline.
+    pub length: Real,
+    /// Radius of the tube.
+    pub radius: Real,
+    /// Its curvature, 1 / length, towards x and y of the frame that is carried along the curve without twist; at the base
+    /// that is the robot's, whose curve leaves the origin along z.
+    pub bend: [Real; 2],
+}
+
+/// The motion of a robot of sections of constant curvature, from one shape to another: lengths and curvatures, in both
+/// directions, change evenly.
+///
+/// The base stands still at `pose` in the mesh's frame. A concentric tube robot or a tendon robot is such one, if its
+/// actuators are driven so that curvatures change evenly; for other courses, [`bending_speed`] gives the bounds.
+///
+/// ```
+/// use parry_continuum::{BendingMotion, BendingSection, parry::math::Pose, verify_motion};
+///
+/// let straight = BendingSection { length: 30.0, radius: 1.0, bend: [0.0, 0.0] };
+/// let bent = BendingSection { length: 32.0, radius: 1.0, bend: [0.03, 0.01] };
+/// let motion = BendingMotion::new(&[straight], &[bent], Pose::IDENTITY)?;
+/// verify_motion(&motion, 100)?;
+/// # Ok::<(), parry_continuum::RobotError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BendingMotion {
+    from: Vec<BendingSection>,
+    to: Vec<BendingSection>,
+    rates: Vec<BendingRates>,
+    pose: Pose,
+}
+
+impl BendingMotion {
+    /// The motion from the sections `from` to the sections `to`.
+    ///
+    /// # Errors
+    /// The two differ in number or in radii; a length that is not positive, or a number that is not finite; or a section
+    /// with a flat end whose curvature times its radius may be 1 or more.
+    pub fn new(from: &[BendingSection], to: &[BendingSection], pose: Pose) -> Result<Self, RobotError> {
+        let differs = |k: &usize| from.get(*k).map(|s| s.radius) != to.get(*k).map(|s| s.radius);
+        if let Some(index) = (0..from.len().max(to.len())).find(differs) {
+            return Err(RobotError::SectionsDiffer { index });
+        }
+        check_points(&[pose.translation])?;
+        let bend = |section: &BendingSection| Vector::new(section.bend[0], section.bend[1], 0.0);
+        let rates = (0..from.len()).map(|k| BendingRates {
+            length: from[k].length.max(to[k].length),
+            growth: to[k].length - from[k].length,
+            curvature: bend(&from[k]).length().max(bend(&to[k]).length()),
+            bending: (bend(&to[k]) - bend(&from[k])).length(),
+            // Norms of vectors that change evenly are convex in time.
+            step: [from, to]
+                .map(|all| all.get(k + 1).map_or(0.0, |next| (bend(next) - bend(&all[k])).length()))
+                .into_iter()
+                .fold(0.0, Real::max),
+        });
+        let motion = Self { from: from.to_vec(), to: to.to_vec(), rates: rates.collect(), pose };
+        for t in [0.0, 1.0] {
+            motion.shape(t, &mut Tube::empty())?;
+        }
+        Ok(motion)
+    }
+}
+
+impl Motion for BendingMotion {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let (mut stated, mut arcs) =
+            (Vec::with_capacity(self.from.len()), Vec::with_capacity(self.from.len()));
+        let (mut frame, mut start) = (Pose::IDENTITY, 0.0);
+        for (from, to) in self.from.iter().zip(&self.to) {
+            let between = |from: Real, to: Real| from + (to - from) * t;
+            let length = between(from.length, to.length);
+            // Turning about this vector bends z towards `bend`.
+            let turn =
+                Vector::new(-between(from.bend[1], to.bend[1]), between(from.bend[0], to.bend[0]), 0.0);
+            stated.push(TubeSection { length, radius: from.radius, curvature: turn.length() });
+            arcs.push((start, frame, turn));
+            frame *= arc(turn, length);
+            start += length;
+        }
+        *tube = Tube::from_function(&stated, move |s| {
+            let number = arcs.partition_point(|(start, ..)| *start < s).max(1) - 1;
+            let (start, frame, turn) = arcs[number];
+            let frame = frame * arc(turn, s - start);
+            (frame.translation, frame.rotation * Vector::Z)
+        })?;
+        Ok(self.pose)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
+        bending_speed(&self.rates, section, shares)
+    }
+}
+
+/// The way along an arc that leaves the origin along z and turns by `turn` per length, which is perpendicular to z.
+fn arc(turn: Vector, length: Real) -> Pose {
+    let angle = turn.length() * length;
+    let sinc = |x: Real| if x == 0.0 { 1.0 } else { x.sin() / x };
+    let across = 0.5 * length * length * sinc(0.5 * angle) * sinc(0.5 * angle);
+    let point = Vector::Z * (length * sinc(angle)) + turn.cross(Vector::Z) * across;
+    Pose::from_parts(point, Rotation::from_scaled_axis(turn * length))
+}

@@ -1,0 +1,149 @@
+//! Every vertex of a chain moves on a straight line at a speed of its own.
+//!
+//! The point at the share u of a link from a(t) to b(t) has the velocity (1 - u) a' + u b', whose length is a convex
+//! function of u: between two shares it is at most the larger of that at the two.
+//!
+//! The link's direction n = d / |d|, d = b - a, turns at |n'| = |d x d'| / |d|^2. As d(t) = d0 + t w with a constant w,
+//! d x w = d0 x w does not change, and n turns fastest where |d| is least: |d|^2 is a parabola in t, and least at
+//! t = -<d0, w> / |w|^2 or at the end of the interval next to that.
+//!
+//! A link that may lose its length, and with it the direction of its faces, is marked: queries take its flat ends for
+//! round, which holds both.
+
+use super::{Motion, Speed};
+use crate::distance::Scalar;
+use crate::robot::chain::check;
+use crate::robot::{RobotError, Tube};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// The motion of a chain each of whose vertices moves straight and evenly from one place to another.
+///
+/// It is what a planner means by "interpolate the two centrelines". In between, links become shorter or longer. Points
+/// are in the mesh's frame. A segment that has no length at both ends has none in between, and is no link; one that loses
+/// its length for a moment is a ball then.
+///
+/// The links are its sections, numbered without those segments.
+///
+/// ```
+/// use parry_continuum::{LinearMotion, parry::math::Vector, verify_motion};
+///
+/// let from = [Vector::ZERO, Vector::new(0.0, 0.0, 10.0), Vector::new(0.0, 0.0, 20.0)];
+/// let to = [Vector::ZERO, Vector::new(1.0, 0.0, 10.0), Vector::new(4.0, 0.0, 19.0)];
+/// let motion = LinearMotion::chain(&from, &to, &[1.0, 0.5])?;
+/// verify_motion(&motion, 100)?;
+/// # Ok::<(), parry_continuum::RobotError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LinearMotion {
+    from: Vec<Vector>,
+    to: Vec<Vector>,
+    radii: Vec<Real>,
+    /// None for capsules; else the links whose direction may get lost.
+    fading: Option<Vec<usize>>,
+}
+
+impl LinearMotion {
+    /// All links with two round caps, as [`Chain::capsules`](crate::Chain::capsules), one radius for each segment.
+    ///
+    /// # Errors
+    /// As [`Chain::capsules`](crate::Chain::capsules) for either end, or not as many points at the one as at the other.
+    pub fn capsules(from: &[Vector], to: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        Self::new(from, to, segment_radii)
+    }
+
+    /// Links with the caps of [`Chain::from_centreline`](crate::Chain::from_centreline) at each time, one radius for each
+    /// segment.
+    ///
+    /// # Errors
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end, or not as many points at the one as
+    /// at the other.
+    pub fn chain(from: &[Vector], to: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+        let mut motion = Self::new(from, to, segment_radii)?;
+        motion.fading = Some(motion.fading_links());
+        Ok(motion)
+    }
+
+    fn new(from: &[Vector], to: &[Vector], radii: &[Real]) -> Result<Self, RobotError> {
+        if from.len() != to.len() {
+            return Err(RobotError::PointsDiffer { from: from.len(), to: to.len() });
+        }
+        for points in [from, to] {
+            check(points, radii, points.len().saturating_sub(1))?;
+        }
+        let moves = |k: &usize| from[*k] != from[*k + 1] || to[*k] != to[*k + 1];
+        let segments: Vec<_> = (0..radii.len()).filter(moves).collect();
+        let Some(&first) = segments.first() else { return Err(RobotError::AllPointsEqual) };
+        let vertices = || std::iter::once(first).chain(segments.iter().map(|k| k + 1));
+        Ok(Self {
+            from: vertices().map(|k| from[k]).collect(),
+            to: vertices().map(|k| to[k]).collect(),
+            radii: segments.iter().map(|&k| radii[k]).collect(),
+            fading: None,
+        })
+    }
+
+    /// From the start of a link to its end, at t = 0, and how fast that changes.
+    fn link(&self, link: usize) -> [Vector; 2] {
+        let start = self.to[link] - self.from[link];
+        let end = self.to[link + 1] - self.from[link + 1];
+        [self.from[link + 1] - self.from[link], end - start]
+    }
+
+    /// How fast a vertex moves.
+    fn velocity(&self, vertex: usize) -> Vector {
+        self.to[vertex] - self.from[vertex]
+    }
+
+    /// What rounding can do to a coordinate of a vertex on its way, and to a few such.
+    fn rounding(&self) -> Real {
+        let reach =
+            |points: &[Vector]| points.iter().fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
+        16.0 * Real::UNIT_ROUNDOFF * reach(&self.from).max(reach(&self.to))
+    }
+
+    /// The links whose direction may get lost.
+    fn fading_links(&self) -> Vec<usize> {
+        // `has_direction` asks for far less, where rounding is not all that there is.
+        let needed = |link: usize| 2.0 * self.rounding() + 1e-100 * self.radii[link];
+        (0..self.radii.len())
+            .filter(|&link| least_length(self.link(link), [0.0, 1.0]) <= needed(link))
+            .collect()
+    }
+}
+
+impl Motion for LinearMotion {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let points = self.from.iter().zip(&self.to).map(|(&from, &to)| from + (to - from) * t);
+        tube.set_links(points, &self.radii, self.fading.is_some());
+        for &link in self.fading.iter().flatten() {
+            tube.mark_fading(link);
+        }
+        Ok(Pose::IDENTITY)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        if section >= self.radii.len() {
+            return Speed { point: 0.0, turn: 0.0 };
+        }
+        // Differences, squares and quotients of rounded numbers: less than 32 roundings each.
+        let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
+        let [start, end] = [self.velocity(section), self.velocity(section + 1)];
+        let speed = |share: Real| (start + (end - start) * share).length();
+        let [along, change] = self.link(section);
+        let rounding = self.rounding();
+        // Each of the two vectors is off by up to `rounding`, and so is the length.
+        let cross =
+            along.cross(change).length() + 4.0 * rounding * (along.length() + change.length() + rounding);
+        let least = (least_length([along, change], times) - 2.0 * rounding).max(0.0);
+        let turn = if cross > 0.0 { cross / (least * least) * up } else { 0.0 };
+        Speed { point: speed(shares[0]).max(speed(shares[1])) * up + rounding, turn }
+    }
+}
+
+/// The least length that a vector has between two times: at time 0, and its change until time 1.
+fn least_length([along, change]: [Vector; 2], times: [Real; 2]) -> Real {
+    let fastest = -along.dot(change) / change.length_squared();
+    // Without a change the quotient is NaN, and any time will do.
+    let time = if fastest > times[0] { fastest.min(times[1]) } else { times[0] };
+    (along + change * time).length()
+}

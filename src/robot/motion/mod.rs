@@ -1,0 +1,83 @@
+//! A robot that changes with time: its shapes, and bounds on how fast its points move.
+
+mod bending;
+mod linear;
+mod rigid;
+mod sections;
+#[cfg(test)]
+mod tests;
+mod verify;
+
+pub use bending::{BendingMotion, BendingRates, BendingSection, bending_speed};
+pub use linear::LinearMotion;
+pub use rigid::RigidMotion;
+pub(crate) use sections::Sections;
+pub(crate) use verify::Sampled;
+pub use verify::verify_motion;
+
+use super::{RobotError, Tube};
+use parry3d_f64::math::{Pose, Real};
+
+/// A motion: the robot's shape and pose at each time t from 0 to 1, and a promise of how fast it moves.
+///
+/// Points of the centreline correspond by their section and by their share of its length, both from the base to the
+/// tip. So the number of sections and their radii stay the same; a section that is not out yet has a tiny length. Where
+/// the radii do not change, the flat ends that Algorithm 1 finds for them do not either: the robot's two ends, and the
+/// wider side of each step in radius. The model may not change on the way, say from capsules to Algorithm 1.
+///
+/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use. A motion of one's own needs bounds on its speed, and what is
+/// proven of it relies on them: [`verify_motion`] tries them.
+///
+/// ```
+/// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
+///
+/// /// A straight needle of 30 mm that bends to an arc of 0.02 / mm, 40 points along it.
+/// struct Bending;
+///
+/// impl Motion for Bending {
+///     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+///         let curvature = 0.02 * t.max(1e-9);
+///         let point = |k: u32| {
+///             let (sin, cos) = (curvature * 30.0 * Real::from(k) / 40.0).sin_cos();
+///             Vector::new((1.0 - cos) / curvature, 0.0, sin / curvature)
+///         };
+///         tube.set_samples(&(0..=40).map(point).collect::<Vec<_>>(), &[0.5; 40], None)?;
+///         Ok(Pose::IDENTITY)
+///     }
+///
+///     fn speed(&self, _section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
+///         // The curvature changes by 0.02 in all: s from the base that turns the needle by 0.02 s, and moves it by half of that times s.
+///         let s = 30.0 * shares[1];
+///         Speed { point: 0.01 * s * s, turn: 0.02 * s }
+///     }
+/// }
+///
+/// verify_motion(&Bending, 100)?;
+/// # Ok::<(), RobotError>(())
+/// ```
+pub trait Motion {
+    /// Makes `tube` the robot's shape at time `t`, and gives its pose in the mesh's frame.
+    ///
+    /// `tube` holds some shape from before; [`Tube::set_samples`] and [`Tube::set_chain`] use its memory again.
+    ///
+    /// # Errors
+    /// There is no such shape. Queries pass the error on.
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError>;
+
+    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame, anywhere between two shares of a
+    /// section and at any time between two times.
+    ///
+    /// Shares and times are from 0 to 1, the lower one first. The two shares, as the two times, may be equal. Bounds
+    /// that are too large cost time; one that is too small makes answers wrong.
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
+}
+
+/// How fast a centreline moves, per unit of the motion's time: over the whole motion, so far, if it moved evenly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// The speed of its points, in units of length.
+    pub point: Real,
+    /// The speed at which its direction turns, in rad. The rim of a disc moves by so much times the radius relative to
+    /// the disc's centre.
+    pub turn: Real,
+}

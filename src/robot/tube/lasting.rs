@@ -1,0 +1,86 @@
+//! Which flat ends stay flat while the robot moves.
+//!
+//! Algorithm 1 makes an end flat by the radii alone, at the limits of its walks, or because the end is less than a radius
+//! away from the last limit (`algorithm_1`). Radii do not change during a motion. A distance between two points changes
+//! by no more than the points move: if it is D at one time and the points are v and w fast, then it is below the radius
+//! for a time tau before and after as long as D + tau (v + w) is.
+
+use super::Tube;
+use crate::distance::Scalar;
+use parry3d_f64::math::Real;
+
+/// Whether a flat end is flat in other shapes of the robot, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lasting {
+    /// The robot's own two ends, and the wider side of a step in radius.
+    Always,
+    /// For want of room behind such a face.
+    WhileNear,
+    /// Its direction gets lost.
+    Never,
+}
+
+impl Tube {
+    /// Marks the flat ends that are so by the radii alone.
+    pub(crate) fn mark_lasting_faces(&mut self) {
+        for end in [0, 1] {
+            self.walk(end, |tube, number, limit| {
+                if number == limit
+                    && let Some(face) = &mut tube.sections[number].faces[end]
+                {
+                    face.lasting = Lasting::Always;
+                }
+            });
+        }
+    }
+
+    /// Marks the flat ends of a section as such that may get lost.
+    pub(crate) fn mark_fading(&mut self, number: usize) {
+        for face in self.sections[number].faces.iter_mut().flatten() {
+            face.lasting = Lasting::Never;
+        }
+    }
+
+    /// Marks the flat ends that stay so for a time: `moves(section, end)` tells by how much that end of a section moves
+    /// in it at most. By how much those that may not stay so move, with their limits, is returned.
+    pub(crate) fn hold_faces(&mut self, moves: impl Fn(usize, usize) -> Real) -> Real {
+        let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;
+        let mut opening: Real = 0.0;
+        for end in [0, 1] {
+            self.walk(end, |tube, number, limit| {
+                let section = &tube.sections[number];
+                let Some(face) = section.faces[end].filter(|face| face.lasting == Lasting::WhileNear) else {
+                    return;
+                };
+                let at = &tube.sections[limit];
+                let from = tube.point(at, if end == 0 { at.first } else { at.last });
+                let change = moves(number, end) + moves(limit, end);
+                let apart = (face.centre - from).length() + change + rounding;
+                let stays = apart < section.radius;
+                if !stays {
+                    opening = opening.max(change);
+                }
+                if stays && let Some(face) = &mut tube.sections[number].faces[end] {
+                    face.lasting = Lasting::Always;
+                }
+            });
+        }
+        opening
+    }
+
+    /// One walk of Algorithm 1: each section with the one at whose end the last limit is.
+    fn walk(&mut self, end: usize, mut visit: impl FnMut(&mut Self, usize, usize)) {
+        let count = self.sections.len();
+        let mut limit_and_last = None::<(usize, Real)>;
+        for step in 0..count {
+            let number = if end == 0 { step } else { count - 1 - step };
+            let radius = self.sections[number].radius;
+            let limit = match limit_and_last {
+                Some((limit, last)) if radius <= last => limit,
+                _ => number,
+            };
+            limit_and_last = Some((limit, radius));
+            visit(self, number, limit);
+        }
+    }
+}
