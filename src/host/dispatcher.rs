@@ -333,8 +333,7 @@ impl<L> ContinuumDispatcher<L> {
     /// The dispatcher for a pair that cannot be taken apart, nor is answered here.
     ///
     /// # Errors
-    /// [`Unsupported`] for a link out of the range of parry's iterations: squares of squares of lengths leave that of
-    /// f64, and then they panic or answer NaN.
+    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or answer NaN.
     pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
         let is_robot = links_of(g1).or(links_of(g2)).is_some();
         if is_robot && !range::is_iterated(pos12, g1, g2) { Err(Unsupported) } else { Ok(&self.0) }

@@ -10,6 +10,9 @@ use std::ops::RangeInclusive;
 const ITERATED_RANGE: RangeInclusive<Real> =
     Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 200) << 52);
 
+/// The least size of a shape beside the largest coordinate that iterations can tell from nothing: 2^-40.
+const LEAST_SHARE: Real = Real::from_bits((1023 - 40) << 52);
+
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
     let largest = pose.translation.abs().max_element();
@@ -29,12 +32,14 @@ pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
     if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
 }
 
-/// Whether a pair is within the range of parry's iterations: squares of squares of lengths leave that of f64, and then
-/// they panic or answer NaN.
+/// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
+/// of lengths leave the range of f64, and where the smaller shape is lost in the rounding of what is large.
 pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
     let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
     let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
     let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
     let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
-    is_finite && ITERATED_RANGE.contains(&largest)
+    let sizes = boxes.iter().map(|bounds| bounds.extents().max_element());
+    let is_seen = sizes.into_iter().all(|size| size == 0.0 || size >= LEAST_SHARE * largest);
+    is_finite && ITERATED_RANGE.contains(&largest) && is_seen
 }

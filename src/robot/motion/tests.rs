@@ -26,7 +26,7 @@ fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {
 fn stated_speeds_hold_between_any_shares_and_times() {
     let mut random = Random::new(1);
     // How much of the stated speed is used at most, by kind of motion: points and turns.
-    let mut used = [[0.0 as Real; 2]; 3];
+    let mut used = [[0.0_f64; 2]; 3];
     for _ in 0..300 {
         let count = 1 + random.below(4) as usize;
         let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
