@@ -3,7 +3,7 @@
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
 use super::motion_queries::MotionMemory;
 use super::queries::RobotSearch;
-use super::tube_engine::TubeMemory;
+use super::tube_queries::TubeMemory;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::mesh::Mesh;

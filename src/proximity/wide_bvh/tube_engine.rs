@@ -3,7 +3,7 @@
 use super::BvhSearch;
 use super::engine::Memory;
 use super::hierarchy::MeshSearch;
-use super::tube_queries::TubeSearch;
+use super::tube_queries::{TubeMemory, TubeSearch};
 use crate::Tube;
 use crate::proximity::checks::{check_margin, check_tolerance};
 use crate::proximity::parallel::in_shares;
@@ -134,19 +134,6 @@ impl BvhSearch {
             out.clear();
         }
         result
-    }
-}
-
-/// What a query about a tube leaves for the next.
-#[derive(Clone, Default)]
-pub(super) struct TubeMemory {
-    pieces: Vec<crate::proximity::tube::Piece>,
-    last: Option<super::tube_queries::Place>,
-}
-
-impl TubeMemory {
-    pub(super) fn forget(&mut self) {
-        self.last = None;
     }
 }
 

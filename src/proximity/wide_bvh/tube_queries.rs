@@ -34,6 +34,19 @@ impl Place {
     }
 }
 
+/// What a query about a tube leaves for the next.
+#[derive(Clone, Default)]
+pub(super) struct TubeMemory {
+    pub pieces: Vec<Piece>,
+    pub last: Option<Place>,
+}
+
+impl TubeMemory {
+    pub(super) fn forget(&mut self) {
+        self.last = None;
+    }
+}
+
 /// The least upper bound so far.
 #[derive(Clone, Copy)]
 pub(super) struct Found {
