@@ -231,8 +231,8 @@ mod tests {
             let (steps, links) = steps(count);
             let count = count as usize;
             assert!(links < 90, "{links}");
-            // Linear, but for a part of the square of what a link replaces, for every link.
-            let limit = 12 * count + count * count / links / 3;
+            // Linear, but for the square of what a link replaces, for every link.
+            let limit = 12 * count + count * count / links;
             assert!(steps < limit, "{count}: {steps}, {limit}");
         }
     }
