@@ -3,6 +3,7 @@
 //! The judge is the support function of the link's parts, each written down from its definition and searched by
 //! sampling: discs by angle, half balls by the directions that they contain.
 
+use continuum_testing::Random;
 use parry_continuum::parry::bounding_volume::Aabb;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
@@ -10,36 +11,15 @@ use parry_continuum::{Cap, Chain, ModifiedCylinder};
 const CAPS: [[Cap; 2]; 4] =
     [[Cap::Flat, Cap::Flat], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat], [Cap::Round, Cap::Round]];
 
-/// A small seeded generator (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> Real {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as Real / Real::powi(2.0, 53)
-    }
-
-    fn within(&mut self, low: Real, high: Real) -> Real {
-        low + (high - low) * self.unit()
-    }
-
-    fn vector(&mut self, size: Real) -> Vector {
-        Vector::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
-    }
-
-    /// A direction that may be along a coordinate axis, in a coordinate plane, or neither.
-    fn direction(&mut self) -> Vector {
-        let mut v = self.vector(1.0);
-        for i in 0..3 {
-            if self.unit() < 0.3 {
-                v[i] = 0.0;
-            }
+/// A direction that may be along a coordinate axis, in a coordinate plane, or neither.
+fn direction(random: &mut Random) -> Vector {
+    let mut v = random.point();
+    for i in 0..3 {
+        if random.unit() < 0.3 {
+            v[i] = 0.0;
         }
-        if v == Vector::ZERO { Vector::Y } else { v.normalize() }
     }
+    if v == Vector::ZERO { Vector::Y } else { v.normalize() }
 }
 
 /// Points of the link's surface, dense on the rims and caps; the link must have a length.
@@ -81,15 +61,15 @@ fn assert_touches(aabb: &Aabb, points: &[Vector], gap: Real) {
 }
 
 fn random_link(random: &mut Random, caps: [Cap; 2]) -> ModifiedCylinder {
-    let start = random.vector(1.0);
+    let start = random.point();
     // From a coin to a needle; axes along the coordinates included.
-    let length = Real::powf(10.0, random.within(-3.0, 1.0));
-    ModifiedCylinder::new(start, start + random.direction() * length, random.within(0.1, 2.0), caps).unwrap()
+    let length = Real::powf(10.0, random.between(-3.0, 1.0));
+    ModifiedCylinder::new(start, start + direction(random) * length, random.between(0.1, 2.0), caps).unwrap()
 }
 
 #[test]
 fn holds_the_surface_and_touches_it() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let around = 400;
     // Half a step on the rim or on the ball in each of two directions, and the sphere's curvature.
     let gap = 2.0 * 2.0 * (std::f64::consts::PI / Real::from(around)).powi(2);
@@ -144,7 +124,7 @@ fn a_coin_with_one_round_side() {
 
 #[test]
 fn capsules_as_parry_has_them() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for _ in 0..100 {
         let link = random_link(&mut random, [Cap::Round; 2]);
         let peer =
@@ -167,10 +147,10 @@ fn balls_and_wires() {
 
 #[test]
 fn moved_by_a_pose() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for i in 0..100 {
         let link = random_link(&mut random, CAPS[i % 4]);
-        let pose = Pose::new(random.vector(5.0), random.vector(3.0));
+        let pose = Pose::new(random.point() * 5.0, random.point() * 3.0);
         let moved: Vec<_> = surface(&link, 400).iter().map(|&p| pose * p).collect();
         assert_holds(&link.aabb(&pose), &moved, 1e-13);
         assert_touches(&link.aabb(&pose), &moved, 2.0 * 2.0 * (std::f64::consts::PI / 400.0).powi(2));
@@ -189,7 +169,7 @@ fn a_link_that_loses_its_length_is_still_held() {
 
 #[test]
 fn the_unit_does_not_matter() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     for i in 0..100 {
         let link = random_link(&mut random, CAPS[i % 4]);
         for exponent in [-700, -300, 300, 480] {
@@ -224,10 +204,10 @@ fn length_and_axis() {
 
 #[test]
 fn a_chain_is_held_with_all_its_links() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for n in [2, 3, 4, 30] {
-        let points: Vec<_> = (0..n).map(|_| random.vector(10.0)).collect();
-        let radii: Vec<_> = (1..n).map(|_| random.within(0.1, 1.0)).collect();
+        let points: Vec<_> = (0..n).map(|_| random.point() * 10.0).collect();
+        let radii: Vec<_> = (1..n).map(|_| random.between(0.1, 1.0)).collect();
         let chain = Chain::from_centreline(&points, &radii).unwrap();
         let union = chain
             .links()

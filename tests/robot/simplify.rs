@@ -3,37 +3,9 @@
 //! The judge of what stays within it is a dense sampling of both curves, in both directions; the judge of what is
 //! fewest tries every subset of the vertices.
 
+use continuum_testing::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{Chain, RobotError, simplify};
-
-/// A small seeded generator (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> Real {
-        (self.bits() >> 11) as Real / Real::powi(2.0, 53)
-    }
-
-    fn within(&mut self, low: Real, high: Real) -> Real {
-        low + (high - low) * self.unit()
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-
-    fn vector(&mut self, size: Real) -> Vector {
-        Vector::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
-    }
-}
 
 const SAMPLES: usize = 64;
 
@@ -122,22 +94,22 @@ impl Seen {
 
 /// Small robots that bend, hook, run back on themselves and cross themselves.
 fn robot(random: &mut Random) -> (Vec<Vector>, Vec<Real>) {
-    let n = [3, 5, 7, 8, 9][random.below(5)];
-    let noise = [0.02, 0.1, 0.3][random.below(3)];
+    let n = [3, 5, 7, 8, 9][random.below(5) as usize];
+    let noise = [0.02, 0.1, 0.3][random.below(3) as usize];
     let kind = random.below(3);
-    let mut points = vec![random.vector(1.0)];
-    let direction = random.vector(1.0);
+    let mut points = vec![random.point()];
+    let direction = random.point();
     for _ in 1..n {
         let step = match kind {
-            0 => random.vector(1.0),
+            0 => random.point(),
             // Forward, with noise.
-            1 => direction * random.within(0.2, 1.0) + random.vector(noise),
+            1 => direction * random.between(0.2, 1.0) + random.point() * noise,
             // To and fro along a line, with noise.
-            _ => direction * random.within(-0.8, 1.0) + random.vector(noise),
+            _ => direction * random.between(-0.8, 1.0) + random.point() * noise,
         };
         points.push(points[points.len() - 1] + step);
     }
-    let change = if random.below(3) == 0 { 4 } else { usize::MAX };
+    let change = if random.below(3) == 0 { 4 } else { u32::MAX };
     let mut radius = 1.0;
     let radii = (1..n).map(|_| {
         radius = if random.below(change) == 0 { random.unit() } else { radius };
@@ -149,12 +121,12 @@ fn robot(random: &mut Random) -> (Vec<Vector>, Vec<Real>) {
 
 #[test]
 fn as_few_links_as_brute_force_finds() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut seen, mut unclear) = (Seen::default(), 0);
     while seen.problems < 4000 {
         let (points, radii) = robot(&mut random);
         // From a fraction of the steps to the size of the whole robot.
-        let tolerance = Real::powf(10.0, random.within(-1.0, 0.3));
+        let tolerance = Real::powf(10.0, random.between(-1.0, 0.3));
         let Some(fewest) = brute_force(&points, &radii, tolerance, &mut seen) else {
             unclear += 1;
             continue;
@@ -192,12 +164,12 @@ fn assert_follows(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii
 
 #[test]
 fn long_centrelines() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let mut spared = 0;
     for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
         let helix = |i: i32| {
             let t = f64::from(i) * 0.05;
-            Vector::new(t.cos(), t.sin(), 0.1 * t) + random.vector(1e-3)
+            Vector::new(t.cos(), t.sin(), 0.1 * t) + random.point() * 1e-3
         };
         let points: Vec<_> = (0..200).map(helix).collect();
         let radii: Vec<_> = (0..199).map(|k| if k < 90 { 0.2 } else { 0.1 }).collect();
@@ -226,26 +198,26 @@ fn shortest_path(points: &[Vector], is_near: impl Fn(Vector, [Vector; 2]) -> boo
 /// Long enough that walls and gates rule out most chords.
 #[test]
 fn as_few_links_as_the_plain_search() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let (mut decided, mut bent, mut long) = (0, 0, 0);
     for problem in 0..1500 {
-        let count = 20 + random.below(100);
-        let noise = [0.0, 0.01, 0.1, 0.5][random.below(4)];
-        let (mut points, mut direction) = (vec![random.vector(1.0)], random.vector(1.0).normalize());
-        let mut bend = random.vector(1.0);
+        let count = 20 + random.below(100) as usize;
+        let noise = [0.0, 0.01, 0.1, 0.5][random.below(4) as usize];
+        let (mut points, mut direction) = (vec![random.point()], random.point().normalize());
+        let mut bend = random.point();
         for _ in 1..count {
             match random.below(40) {
-                0 => bend = random.vector(1.5),
+                0 => bend = random.point() * 1.5,
                 // A hook.
                 1 => direction = -direction,
                 _ => direction = (direction + bend.cross(direction) * 0.1).normalize(),
             }
             let last = points[points.len() - 1];
-            let step = if random.below(20) == 0 { 0.0 } else { random.within(0.02, 0.2) };
-            points.push(last + direction * step + random.vector(noise * step));
+            let step = if random.below(20) == 0 { 0.0 } else { random.between(0.02, 0.2) };
+            points.push(last + direction * step + random.point() * noise * step);
         }
         let (fewest, tolerance) = if problem % 3 > 0 {
-            let tolerance = Real::powf(10.0, random.within(-4.0, 0.5));
+            let tolerance = Real::powf(10.0, random.between(-4.0, 0.5));
             let within = |limit: Real| shortest_path(&points, |p, ends| distance_to(&ends, p) <= limit);
             let fewest = within(tolerance * (1.0 - 1e-9));
             if fewest != within(tolerance * (1.0 + 1e-9)) {
@@ -254,7 +226,7 @@ fn as_few_links_as_the_plain_search() {
             (fewest, tolerance)
         } else {
             // Whole numbers, whose products are exact, and often on a line.
-            let size = [3.0, 10.0, 40.0][random.below(3)];
+            let size = [3.0, 10.0, 40.0][random.below(3) as usize];
             points.iter_mut().for_each(|p| *p = (*p * size).round());
             let is_on = |p: Vector, [a, b]: [Vector; 2]| {
                 (p - a).cross(b - a) == Vector::ZERO && (p - a).dot(b - a) >= 0.0 && (p - b).dot(a - b) >= 0.0
@@ -353,10 +325,10 @@ fn ties_of_exact_squares_may_go() {
 
 #[test]
 fn the_unit_does_not_matter() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for _ in 0..200 {
         let (points, radii) = robot(&mut random);
-        let tolerance = random.within(0.01, 0.5);
+        let tolerance = random.between(0.01, 0.5);
         let (kept, kept_radii) = simplify(&points, &radii, tolerance).unwrap();
         for exponent in [-300, 300] {
             let scale = Real::powi(2.0, exponent);

@@ -2,46 +2,26 @@
 //!
 //! The judge of the distance is dense sampling of both curves, in both directions; of the number of links, `simplify`.
 
+use continuum_testing::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{RobotError, simplify, stations};
-
-/// A small seeded generator (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> Real {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as Real / Real::powi(2.0, 53)
-    }
-
-    fn within(&mut self, low: Real, high: Real) -> Real {
-        low + (high - low) * self.unit()
-    }
-
-    fn vector(&mut self, size: Real) -> Vector {
-        Vector::new(self.within(-size, size), self.within(-size, size), self.within(-size, size))
-    }
-}
 
 /// Curves that bend more and less, with noise, hooks, loops and repeated points, and one to three radii.
 fn robot(random: &mut Random) -> (Vec<Vector>, Vec<Real>) {
     let count = 2 + (random.unit() * 100.0) as usize;
     let noise = [0.0, 1e-4, 0.01, 0.3][(random.unit() * 4.0) as usize];
-    let (mut points, mut direction) = (vec![random.vector(1.0)], random.vector(1.0).normalize());
-    let mut curvature = random.vector(1.0);
+    let (mut points, mut direction) = (vec![random.point()], random.point().normalize());
+    let mut curvature = random.point();
     for _ in 1..count {
         if random.unit() < 0.05 {
-            curvature = random.vector(2.0);
+            curvature = random.point() * 2.0;
         }
         if random.unit() < 0.01 {
             direction = -direction;
         }
         direction = (direction + curvature.cross(direction) * 0.1).normalize();
-        let step = if random.unit() < 0.03 { 0.0 } else { random.within(0.05, 0.15) };
-        points.push(points[points.len() - 1] + direction * step + random.vector(noise * step));
+        let step = if random.unit() < 0.03 { 0.0 } else { random.between(0.05, 0.15) };
+        points.push(points[points.len() - 1] + direction * step + random.point() * noise * step);
     }
     let mut radius = 0.3;
     let radii = (1..count).map(|_| {
@@ -102,12 +82,12 @@ fn rims(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii: &[Real])
 
 #[test]
 fn centreline_and_faces_are_followed_within_the_tolerance() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut spared, mut bound_by_faces, mut coarse) = (0, 0, 0);
     for _ in 0..3000 {
         let (points, radii) = robot(&mut random);
         let (points, radii) = if random.unit() < 0.5 { distinct(&points, &radii) } else { (points, radii) };
-        let tolerance = Real::powf(10.0, random.within(-4.0, 0.0));
+        let tolerance = Real::powf(10.0, random.between(-4.0, 0.0));
         let (kept, kept_radii) = match stations(&points, &radii, tolerance) {
             Ok(kept) => kept,
             Err(error) => {
@@ -154,9 +134,9 @@ fn centreline_and_faces_are_followed_within_the_tolerance() {
 /// A wire whose bends change along the way: nearly as few links as are possible, and every one bends as much.
 #[test]
 fn few_and_evenly_spread() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for count in [150, 300, 1000, 3000] {
-        let (turns, wave) = (random.within(1.0, 3.0), random.within(0.5, 2.0));
+        let (turns, wave) = (random.between(1.0, 3.0), random.between(0.5, 2.0));
         let curve = |k: usize| {
             let t = turns * k as Real / count as Real;
             Vector::new(t, (2.0 * t).sin(), wave * (t * t).cos())
@@ -213,10 +193,10 @@ fn tolerance_0_repeats_and_loops() {
 
 #[test]
 fn the_unit_does_not_matter() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for _ in 0..300 {
         let (points, radii) = robot(&mut random);
-        let tolerance = random.within(0.001, 0.1);
+        let tolerance = random.between(0.001, 0.1);
         let Ok((kept, kept_radii)) = stations(&points, &radii, tolerance) else { continue };
         for exponent in [-300, 300] {
             let scale = Real::powi(2.0, exponent);
