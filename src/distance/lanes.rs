@@ -203,4 +203,4 @@ impl Lane for f64 {
 
 #[cfg(test)]
 #[path = "lanes_tests.rs"]
-mod tests;
+pub(crate) mod tests;

@@ -4,7 +4,8 @@ use super::*;
 use crate::distance::{Kernel, Vec3, at_level, segment_disc, triangle_modified_cylinder};
 use fearless_simd::{Level, dispatch};
 
-fn levels() -> Vec<Level> {
+/// The instruction sets of this machine.
+pub(crate) fn levels() -> Vec<Level> {
     let best = Level::new();
     #[allow(unused_mut)]
     let mut levels = vec![best];

@@ -120,6 +120,7 @@ fn point<L: Pack<Element = f64>>(token: L::Token, pairs: &Pairs, row: usize, lan
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::distance::lanes::tests::levels;
     use crate::{Cap, ModifiedCylinder};
     use parry3d_f64::math::{Pose, Vector};
 
@@ -131,19 +132,6 @@ mod tests {
             let number = (state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0;
             if lattice == 0 { (number * 4.0).round() / 4.0 } else { number }
         }
-    }
-
-    fn levels() -> Vec<Level> {
-        let best = Level::new();
-        #[allow(unused_mut)]
-        let mut levels = vec![best];
-        #[cfg(target_arch = "x86_64")]
-        {
-            levels.extend(best.as_avx2().map(Level::Avx2));
-            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-            levels.extend(best.as_sse2().map(Level::Sse2));
-        }
-        levels
     }
 
     /// Each triangle measured with any others, on each instruction set, has the bits it has alone.
