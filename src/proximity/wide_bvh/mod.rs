@@ -5,6 +5,7 @@ mod build;
 mod engine;
 mod hierarchy;
 mod joint;
+mod moment;
 mod motion_engine;
 mod motion_queries;
 mod node;

@@ -4,27 +4,21 @@
 //! where they are at the middle, tau being half of the interval; so if a body around the piece, as it is then, keeps more
 //! than margin + tau V away, the piece keeps the margin during the whole interval. Its points then are those of the same
 //! shares of its section: what bodies hold of them, besides the discs and the balls of the moment, is told in
-//! `tube::outer` and below. Pieces that fail are looked at again in what is left of the interval on either side: a piece d
-//! away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that fails,
-//! and not the motion, the piece is halved instead, in the same shape.
-//!
-//! **How fast.** A body with two round ends holds the balls around all points of its piece of the centreline, and so
-//! whatever the discs become when they turn: V is the speed of the centreline. One with a flat end holds discs, whose
-//! points move by the radius times the turn more. The ball at a round end of a section counts with its front half alone:
-//! the other half is in the discs behind it, or beyond a face, where it is no part of the tube. That half turns like a
-//! disc.
+//! `tube::outer` and in `moment`. Pieces that fail are looked at again in what is left of the interval on either side: a
+//! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
+//! fails, and not the motion, the piece is halved instead, in the same shape.
 //!
 //! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
 //! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::hierarchy::MeshSearch;
+use super::moment::{Moment, Verdict, Waiting};
 use super::tube_queries::{Found, TubeSearch};
 use crate::distance::Scalar;
-use crate::proximity::placed::Best;
-use crate::proximity::tube::{Outer, Piece, PlacedTube};
+use crate::proximity::tube::{Piece, PlacedTube};
 use crate::proximity::{FirstContact, MotionAnswer, ProximityError};
-use crate::robot::{Motion, RobotError, Sampled, Sections, Tube};
+use crate::robot::{Motion, Sampled, Sections, Tube};
 use parry3d_f64::math::{Pose, Real};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -57,13 +51,6 @@ impl Default for MotionMemory {
             intervals: VecDeque::new(),
         }
     }
-}
-
-/// What is between two shares of a section.
-#[derive(Clone, Copy, Debug)]
-struct Waiting {
-    section: u32,
-    shares: [Real; 2],
 }
 
 /// An interval of time and what has to be proven in it.
@@ -120,7 +107,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                     t,
                     upper: witness.upper,
                     arc_length: witness.arc,
-                    section: place.section(),
+                    section: place.section,
                     triangle: place.triangle,
                     on_robot: witness.on_robot,
                     on_mesh,
@@ -166,7 +153,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             t,
             upper: witness.upper,
             arc_length: witness.arc,
-            section: place.section(),
+            section: place.section,
             triangle: place.triangle,
             on_robot: witness.on_robot,
             on_mesh,
@@ -239,112 +226,27 @@ impl<M: Motion> MotionSearch<'_, M> {
             failed: first..first,
             still: Real::INFINITY,
         };
-        let moment = Moment { motion, times, half };
-        let half_resolution = 0.5 * self.resolution;
+        let (margin, resolution) = (self.margin, self.resolution);
+        let moment = Moment { motion, times, half, margin, resolution, opening };
         while let Some(waiting) = pieces.pop() {
-            let piece = tube.between(waiting.section, waiting.shares);
-            let outer = search.outer(&piece)?;
-            let speed = moment.speed(&waiting, &outer, tube.radius(&piece))?;
-            let reach = moment.half * speed;
-            let bound = self.margin + reach + tube.slack();
-            let is_wide = outer.over > 2.0 * reach.max(self.resolution)
-                && outer.over > 0.5 * tube.radius(&piece).max(self.margin);
-            if is_wide && let Some(halves) = search.halves(&piece, &outer, reach.max(half_resolution)) {
-                if search.search.may_meet(&outer.body, bound) {
-                    pieces.extend(waiting.halves(&tube, halves));
+            match moment.judge(&mut search, &waiting, &mut self.last)? {
+                Verdict::Keeps => {}
+                Verdict::Part(halves) => pieces.extend(waiting.halves(&tube, halves)),
+                Verdict::Undecided => seen.is_undecided = true,
+                Verdict::Fails { still } => {
+                    seen.still = seen.still.min(still);
+                    failed.push(waiting);
                 }
-                continue;
-            }
-            let Some(nearest) =
-                search.search.nearest(&outer.body, Best::within(bound), [self.last, None]).nearest()
-            else {
-                continue;
-            };
-            self.last = Some(nearest.triangle);
-            let found = search.witness(&piece, &outer, &nearest);
-            let upper = found.witness.upper;
-            let is_fine = reach <= half_resolution;
-            if upper <= self.margin {
-                seen.contact = Some(found);
-                seen.is_fine = is_fine;
-                seen.still = 0.0;
-                failed.push(waiting);
-                failed.append(pieces);
-                break;
-            }
-            let is_time_to_blame = !is_fine && (upper <= bound || outer.over <= 0.25 * reach);
-            if !is_time_to_blame {
-                let gap = upper - nearest.distance;
-                if is_fine && gap <= half_resolution {
-                    seen.is_undecided = true;
-                    continue;
-                }
-                if let Some(halves) = search.halves(&piece, &outer, 0.25 * outer.over) {
-                    pieces.extend(waiting.halves(&tube, halves));
-                    continue;
-                }
-                let may_open = tube.may_open(&piece);
-                if is_fine && !may_open {
-                    search.check_resolved(gap, self.resolution)?;
-                }
-                if is_fine && (!may_open || reach.max(opening) <= half_resolution / 64.0) {
-                    seen.is_undecided = true;
-                    continue;
+                Verdict::Contact { found, is_fine } => {
+                    (seen.contact, seen.is_fine, seen.still) = (Some(found), is_fine, 0.0);
+                    failed.push(waiting);
+                    failed.append(pieces);
+                    break;
                 }
             }
-            if speed > MOST_INTERVALS * self.resolution {
-                let (section, resolution) = (waiting.section as usize, self.resolution);
-                return Err(ProximityError::TooFast { section, speed, resolution });
-            }
-            seen.still = seen.still.min(moment.still(nearest.distance - self.margin - tube.slack(), speed));
-            failed.push(waiting);
         }
         seen.failed = first..failed.len();
         Ok(seen)
-    }
-}
-
-/// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
-/// far less; and more shapes than this nobody waits for.
-const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
-
-impl Waiting {
-    /// Its halves, as the piece that holds it is halved.
-    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
-        let [_, between] = tube.shares(&halves[0]);
-        let [from, to] = self.shares;
-        [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
-    }
-}
-
-/// A motion during an interval.
-struct Moment<'a, M> {
-    motion: &'a M,
-    times: [Real; 2],
-    /// Half of its length, or a little more.
-    half: Real,
-}
-
-impl<M: Motion> Moment<'_, M> {
-    /// How fast what the body has to hold moves.
-    fn speed(&self, waiting: &Waiting, outer: &Outer, radius: Real) -> Result<Real, RobotError> {
-        let section = waiting.section as usize;
-        let stated = self.motion.speed(section, waiting.shares, self.times);
-        // A wire has no rim.
-        let turn = if outer.is_flat() && radius > 0.0 { stated.turn } else { 0.0 };
-        for value in [stated.point, turn] {
-            if !(0.0..Real::INFINITY).contains(&value) {
-                return Err(RobotError::BadSpeed { section, value });
-            }
-        }
-        Ok((stated.point + radius * turn) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
-    }
-
-    /// For how long before and after the middle what moves at a speed does not come nearer by more than `room`.
-    fn still(&self, room: Real, speed: Real) -> Real {
-        // The quotient is rounded, and so are times, which are at most 1.
-        let time = room.max(0.0) / speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF) - 8.0 * Real::UNIT_ROUNDOFF;
-        time.max(0.0)
     }
 }
 

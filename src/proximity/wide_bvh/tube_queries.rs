@@ -24,14 +24,8 @@ pub(super) struct TubeSearch<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub triangle: u32,
-    section: u32,
+    pub section: u32,
     arc: Real,
-}
-
-impl Place {
-    pub(super) fn section(&self) -> u32 {
-        self.section
-    }
 }
 
 /// What a query about a tube leaves for the next.
