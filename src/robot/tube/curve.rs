@@ -207,7 +207,8 @@ fn foot_on_function(curve: &Function, section: &Section, from: Real, point: Vect
     let (mut place, mut direction) = curve(arc);
     let mut squared = (point - place).length_squared();
     for _ in 0..4 {
-        let along = (point - place).dot(direction);
+        // The direction may have any length.
+        let along = (point - place).dot(direction) / direction.length();
         let next = (arc + along).max(section.start).min(section.end);
         let (there, ahead) = curve(next);
         let nearer = (point - there).length_squared();

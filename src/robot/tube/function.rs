@@ -52,8 +52,17 @@ impl Tube {
         check_sections(sections)?;
         let mut tube = Self::empty();
         let mut start = 0.0;
-        for given in sections {
+        for (index, given) in sections.iter().enumerate() {
             let end = start + given.length;
+            let face = |end: usize, arc_length: Real| {
+                let (centre, tangent) = curve(arc_length);
+                check_points(&[centre])?;
+                if !(tangent.length_squared() > 0.0 && tangent.is_finite()) {
+                    return Err(RobotError::BadTangent { index });
+                }
+                let outward = direction(if end == 0 { -tangent } else { tangent });
+                Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::WhileNear }))
+            };
             tube.sections.push(Section {
                 first: 0,
                 last: TICKS,
@@ -64,29 +73,19 @@ impl Tube {
                 curvature: given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF),
                 stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
                 deviation: 0.0,
-                faces: [None; 2],
+                // As if both were flat; the round ones are taken away below.
+                faces: [face(0, start)?, face(1, end)?],
             });
             start = end;
         }
-        let ends = |section: &Section| [section.start, section.end].map(&curve);
-        for (index, section) in tube.sections.iter().enumerate() {
-            for (point, direction) in ends(section) {
-                check_points(&[point])?;
-                if !(direction.length_squared() > 0.0 && direction.is_finite()) {
-                    return Err(RobotError::BadTangent { index });
-                }
-                tube.reach = tube.reach.max(point.abs().max_element());
-            }
-        }
-        tube.reach += start;
-        tube.find_caps(|section, end| ends(section)[end].0);
+        let centre =
+            |section: &Section, end: usize| section.faces[end].map_or(Vector::ZERO, |face| face.centre);
+        let ends = tube.sections.iter().flat_map(|section| [0, 1].map(|end| centre(section, end)));
+        tube.reach = ends.fold(0.0, |reach, point| point.abs().max_element().max(reach)) + start;
+        tube.find_caps(centre);
         for (index, section) in tube.sections.iter_mut().enumerate() {
-            for (end, (centre, tangent)) in [section.start, section.end].map(&curve).into_iter().enumerate() {
-                if tube.caps[index][end] == Cap::Flat {
-                    let outward = direction(if end == 0 { -tangent } else { tangent });
-                    section.faces[end] =
-                        Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::WhileNear });
-                }
+            for (face, cap) in section.faces.iter_mut().zip(tube.caps[index]) {
+                *face = face.filter(|_| cap == Cap::Flat);
             }
             check_faces(section, index)?;
         }

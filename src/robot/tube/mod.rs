@@ -12,7 +12,7 @@ pub use function::TubeSection;
 pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
-use super::{Cap, RobotError};
+use super::{Cap, RobotError, algorithm_1};
 use curve::{Curve, Foot};
 use parry3d_f64::math::{Real, Vector};
 
@@ -23,8 +23,9 @@ use parry3d_f64::math::{Real, Vector};
 /// answer has bounds.
 ///
 /// A section is a stretch with one radius. Its end is flat at the robot's two ends, on the wider side of a step in
-/// radius, and where a round end would stick out of such a face; elsewhere it is round, and a ball stands there,
-/// less what would stick out of the section's own flat end (Algorithm 1 with each section as a link). Lengths are in one unit, points in the robot's frame.
+/// radius, and where a round end would stick out of such a face; elsewhere it is round, and a ball stands there, less what
+/// would stick out of the section's own flat end (Algorithm 1 with each section as a link). Lengths are in one unit, points
+/// in the robot's frame.
 ///
 /// # What is known of the curve
 /// - [`from_samples`](Self::from_samples): the curve goes through the samples and bends nowhere more than they show. A
@@ -171,6 +172,16 @@ impl Tube {
     /// they are those of the line that joins them.
     pub(crate) fn at_share(&self, section: &Section, share: Real) -> (Vector, Vector, Real) {
         self.curve.at_share(section, share)
+    }
+
+    /// Which ends of the sections are flat: Algorithm 1 with each section as a link. `end` tells where sections end.
+    fn find_caps(&mut self, end: impl Fn(&Section, usize) -> Vector) {
+        self.ends.clear();
+        self.radii.clear();
+        self.ends.extend(self.sections.iter().map(|section| end(section, 0)));
+        self.ends.extend(self.sections.last().map(|section| end(section, 1)));
+        self.radii.extend(self.sections.iter().map(|section| section.radius));
+        algorithm_1::from_segment_radii(&self.ends, &self.radii, &mut self.caps);
     }
 
     pub(crate) fn empty() -> Self {

@@ -24,7 +24,7 @@ use super::section::{Face, Section};
 use crate::distance::Scalar;
 use crate::robot::chain::check;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
-use crate::robot::{Cap, RobotError, algorithm_1};
+use crate::robot::{Cap, RobotError};
 use parry3d_f64::math::{Real, Vector};
 
 /// A segment between two samples.
@@ -168,11 +168,10 @@ impl Tube {
                 if radius == open.section.radius {
                     open.bend(before, &segment, k);
                 } else {
-                    let here = last;
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
-                    let next = Open { at_ends: turn, ..Open::new(here, arc, radius) };
-                    match std::mem::replace(&mut open, next).close(here, arc) {
+                    let next = Open { at_ends: turn, ..Open::new(last, arc, radius) };
+                    match std::mem::replace(&mut open, next).close(last, arc) {
                         Ok(section) => self.sections.push(section),
                         Err(error) => result = result.and(Err(error)),
                     }
@@ -270,16 +269,4 @@ fn direction_at_end(
     let tilt = miss + 8.0 * (first.noise + second.noise + third.noise);
     // A turn so wild that the continuation is worth less than the segment itself.
     if tilt < plain.1 + (outward - plain.0).length() { (outward, tilt) } else { plain }
-}
-
-impl Tube {
-    /// Which ends of the sections are flat: Algorithm 1 with each section as a link. `end` tells where sections end.
-    pub(super) fn find_caps(&mut self, end: impl Fn(&Section, usize) -> Vector) {
-        self.ends.clear();
-        self.radii.clear();
-        self.ends.extend(self.sections.iter().map(|section| end(section, 0)));
-        self.ends.extend(self.sections.last().map(|section| end(section, 1)));
-        self.radii.extend(self.sections.iter().map(|section| section.radius));
-        algorithm_1::from_segment_radii(&self.ends, &self.radii, &mut self.caps);
-    }
 }
