@@ -56,6 +56,12 @@ pub enum ProximityError {
         /// The largest magnitude accepted.
         limit: Real,
     },
+    /// The pose carries a tube beyond that range.
+    #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
+    TubeOutOfRange {
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
     /// A margin must be a number that is at least 0.
     #[error("the margin is {margin}; it must be at least 0")]
     BadMargin {

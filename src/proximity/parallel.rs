@@ -15,7 +15,7 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync
 /// Answers questions in shares, each share with a memory of its own.
 ///
 /// # Errors
-/// Those of `answer`.
+/// Those of `answer` for the first share, in order, that has one.
 pub(super) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
     questions: &[Q],
     answers: &mut [A],
@@ -28,7 +28,10 @@ pub(super) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
         let share = questions.len().div_ceil(4 * rayon::current_num_threads()).max(1);
         memories.resize_with(questions.len().div_ceil(share), M::default);
         let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
-        shares.zip(memories).try_for_each(|((questions, answers), memory)| answer(memory, questions, answers))
+        let results =
+            shares.zip(memories).map(|((questions, answers), memory)| answer(memory, questions, answers));
+        // Of two errors the left one, which is that of earlier questions.
+        results.reduce(|| Ok(()), Result::and)
     }
     #[cfg(not(feature = "parallel"))]
     {

@@ -42,13 +42,15 @@ fn fine(arcs: &Arcs, model: Model) -> Chain {
     model(&points, &radii).unwrap()
 }
 
+fn sections(arcs: &Arcs) -> Vec<TubeSection> {
+    let section =
+        |&Stretch { length, radius, curvature }: &Stretch| TubeSection { length, radius, curvature };
+    arcs.stretches.iter().map(section).collect()
+}
+
 fn from_function(arcs: &Arc<Arcs>) -> Tube {
-    let sections = arcs.stretches.iter();
-    let sections: Vec<_> = sections
-        .map(|&Stretch { length, radius, curvature }| TubeSection { length, radius, curvature })
-        .collect();
     let curve = Arc::clone(arcs);
-    let tube = Tube::from_function(&sections, move |s| curve.at(s)).unwrap();
+    let tube = Tube::from_function(&sections(arcs), move |s| curve.at(s)).unwrap();
     tube.verify(50).unwrap();
     tube
 }
@@ -216,6 +218,51 @@ fn batches_answer_as_single_queries_do() {
         Err(ProximityError::BadTolerance { tolerance: -1.0 })
     );
     assert!(clearances.is_empty());
+}
+
+/// Whichever share of a batch fails first, the error is that of the first tube that has one.
+#[test]
+fn the_first_bad_tube_of_a_batch_is_reported() {
+    let mut search = BvhSearch::new(&anatomy()).unwrap();
+    let good = Tube::from_samples(&[Vector::ZERO, Vector::Z, Vector::Z * 2.0], &[0.1; 2], None).unwrap();
+    let mut empty = good.clone();
+    assert!(empty.set_samples(&[Vector::ZERO; 2], &[0.1], None).is_err());
+    let base = ventricle::entry();
+    let far = Pose::from_translation(Vector::X * 1e151);
+    let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
+    for round in 0..200 {
+        let mut robots: Vec<_> = (0..64).map(|_| (&good, base)).collect();
+        robots[20 + round % 30] = (&good, far);
+        robots[50..].fill((&empty, base));
+        let refused = search.clearance_batch(&robots, 0.01, &mut clearances);
+        assert!(matches!(refused, Err(ProximityError::TubeOutOfRange { .. })), "{refused:?}");
+        let refused = search.tube_clears_batch(&robots, 0.1, 0.01, &mut decisions);
+        assert!(matches!(refused, Err(ProximityError::TubeOutOfRange { .. })), "{refused:?}");
+        assert!(clearances.is_empty() && decisions.is_empty());
+    }
+}
+
+/// The directions that a function gives may have any length.
+#[test]
+fn directions_of_any_length_will_do() {
+    let (mut search, base, robot) =
+        (BvhSearch::new(&anatomy()).unwrap(), ventricle::entry(), ctr::three_tubes());
+    let mut random = Random::new(6);
+    for _ in 0..50 {
+        let arcs = Arc::new(concentric(&robot, &mut random));
+        let exact = search.clearance(&from_function(&arcs), &base, 1e-4).unwrap();
+        for length in [1e-3, 30.0] {
+            let curve = Arc::clone(&arcs);
+            let scaled = move |s| {
+                let (point, direction) = curve.at(s);
+                (point, direction * length)
+            };
+            let tube = Tube::from_function(&sections(&arcs), scaled).unwrap();
+            search.forget();
+            let found = search.clearance(&tube, &base, 1e-4).unwrap();
+            assert!(found.lower <= exact.upper && exact.lower <= found.upper, "{found:?} {exact:?}");
+        }
+    }
 }
 
 /// A stated error of the centreline widens the bounds by so much at least, and no answer is finer.

@@ -33,7 +33,7 @@ impl<'a> PlacedTube<'a> {
         // A rotation keeps lengths, and a length is at most twice the largest coordinate.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
         if reach > COORDINATE_LIMIT {
-            return Err(ProximityError::OutOfRange { link: 0, limit: COORDINATE_LIMIT });
+            return Err(ProximityError::TubeOutOfRange { limit: COORDINATE_LIMIT });
         }
         if tube.sections().is_empty() {
             return Err(ProximityError::EmptyTube);

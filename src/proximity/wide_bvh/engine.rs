@@ -45,11 +45,11 @@ use std::sync::Arc;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct BvhSearch {
-    pub(super) level: Level,
-    pub(super) hierarchy: Arc<Hierarchy>,
-    pub(super) memory: Memory,
+    level: Level,
+    hierarchy: Arc<Hierarchy>,
+    memory: Memory,
     /// One for each share of a batch.
-    pub(super) batch: Vec<Memory>,
+    batch: Vec<Memory>,
 }
 
 /// What one query leaves for the next.
@@ -112,58 +112,67 @@ impl BvhSearch {
     }
 
     /// The answers about many robots, on all cores.
-    fn batch<T: Send>(
+    ///
+    /// # Errors
+    /// Those of the first robot that has one; `out` is then empty.
+    pub(super) fn batch<R: Sync, T: Send>(
         &mut self,
-        robots: &[(&Chain, Pose)],
+        robots: &[R],
         out: &mut Vec<T>,
         unanswered: impl Fn() -> T,
-        answer: impl Fn(&mut Query, &mut T) + Sync,
+        answer: impl Fn(Context, &R, &mut T) -> Result<(), ProximityError> + Sync + Send,
     ) -> Result<(), ProximityError> {
-        // All are checked before the first is answered.
-        if let Some(error) = robots.iter().find_map(|(robot, pose)| PlacedRobot::new(robot, pose).err()) {
-            out.clear();
-            return Err(error);
-        }
         out.resize_with(robots.len(), unanswered);
         let (level, hierarchy) = (self.level, &*self.hierarchy);
-        in_shares(robots, out, &mut self.batch, |memory, robots, out| {
+        let result = in_shares(robots, out, &mut self.batch, |memory, robots, out| {
             memory.forget();
-            for ((robot, pose), out) in robots.iter().zip(out) {
-                let robot = PlacedRobot::new(robot, pose)?;
-                answer(&mut Query { level, hierarchy, memory, robot }, out);
-            }
-            Ok(())
-        })
+            let mut pairs = robots.iter().zip(out);
+            pairs.try_for_each(|(robot, out)| answer(Context { level, hierarchy, memory }, robot, out))
+        });
+        result.inspect_err(|_| out.clear())
+    }
+
+    pub(super) fn context(&mut self) -> Context<'_> {
+        Context { level: self.level, hierarchy: &self.hierarchy, memory: &mut self.memory }
     }
 
     fn query<'a>(&'a mut self, robot: &'a Chain, pose: &'a Pose) -> Result<Query<'a>, ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
-        Ok(Query { level: self.level, hierarchy: &self.hierarchy, memory: &mut self.memory, robot })
+        Query::new(self.context(), robot, pose)
     }
 }
 
-/// One robot asked about, with what the last one left.
+/// What a query asks through: the mesh, and what the last one left.
+pub(super) struct Context<'a> {
+    pub level: Level,
+    pub hierarchy: &'a Hierarchy,
+    pub memory: &'a mut Memory,
+}
+
+/// One robot asked about.
 struct Query<'a> {
-    level: Level,
-    hierarchy: &'a Hierarchy,
-    memory: &'a mut Memory,
+    context: Context<'a>,
     robot: PlacedRobot<'a>,
 }
 
-impl Query<'_> {
+impl<'a> Query<'a> {
+    fn new(context: Context<'a>, robot: &'a Chain, pose: &'a Pose) -> Result<Self, ProximityError> {
+        Ok(Self { context, robot: PlacedRobot::new(robot, pose)? })
+    }
+
     fn per_link(&mut self, out: &mut Vec<LinkProximity>) {
         out.clear();
-        let Memory { scratch, last, .. } = &mut *self.memory;
-        let Self { level, hierarchy, robot, .. } = *self;
-        RobotSearch { search: MeshSearch { level, hierarchy, scratch }, robot }.per_link(last, out);
+        let Context { level, hierarchy, ref mut memory } = self.context;
+        let Memory { scratch, last, .. } = &mut **memory;
+        let search = MeshSearch { level, hierarchy, scratch };
+        RobotSearch { search, robot: self.robot }.per_link(last, out);
         last.clear();
         last.extend(out.iter().map(|answer| answer.triangle));
     }
 
     fn minimum(&mut self) -> LinkProximity {
-        let last = self.memory.last_minimum;
+        let last = self.context.memory.last_minimum;
         let (link, nearest) = self.search().minimum(last);
-        self.memory.last_minimum = Some((link, nearest.triangle));
+        self.context.memory.last_minimum = Some((link, nearest.triangle));
         nearest.report(link)
     }
 
@@ -172,8 +181,11 @@ impl Query<'_> {
     }
 
     fn search(&mut self) -> RobotSearch<'_> {
-        let Self { level, hierarchy, robot, .. } = *self;
-        RobotSearch { search: MeshSearch { level, hierarchy, scratch: &mut self.memory.scratch }, robot }
+        let Context { level, hierarchy, ref mut memory } = self.context;
+        RobotSearch {
+            search: MeshSearch { level, hierarchy, scratch: &mut memory.scratch },
+            robot: self.robot,
+        }
     }
 }
 
@@ -203,7 +215,10 @@ impl Proximity for BvhSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
     ) -> Result<(), ProximityError> {
-        self.batch(robots, out, Vec::new, |query, out| query.per_link(out))
+        self.batch(robots, out, Vec::new, |context, (robot, pose), out| {
+            Query::new(context, robot, pose)?.per_link(out);
+            Ok(())
+        })
     }
 
     fn minimum_batch(
@@ -211,7 +226,10 @@ impl Proximity for BvhSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        self.batch(robots, out, LinkProximity::unanswered, |query, out| *out = query.minimum())
+        self.batch(robots, out, LinkProximity::unanswered, |context, (robot, pose), out| {
+            *out = Query::new(context, robot, pose)?.minimum();
+            Ok(())
+        })
     }
 
     fn clears_batch(
@@ -222,7 +240,15 @@ impl Proximity for BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        self.batch(robots, out, || false, |query, out| *out = query.clears(margin))
+        self.batch(
+            robots,
+            out,
+            || false,
+            |context, (robot, pose), out| {
+                *out = Query::new(context, robot, pose)?.clears(margin);
+                Ok(())
+            },
+        )
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {

@@ -1,6 +1,7 @@
 //! Queries about motions, as [`BvhSearch`] answers them.
 
 use super::BvhSearch;
+use super::engine::{Context, Memory};
 use super::hierarchy::MeshSearch;
 use super::motion_queries::MotionSearch;
 use crate::proximity::checks::{check_margin, check_tolerance};
@@ -92,9 +93,9 @@ impl BvhSearch {
     ) -> Result<MotionSearch<'a, M>, ProximityError> {
         check_margin(margin)?;
         check_tolerance(resolution)?;
-        let Self { level, hierarchy, memory, .. } = self;
-        let search = MeshSearch { level: *level, hierarchy, scratch: &mut memory.scratch };
-        let memory = &mut memory.motion;
+        let Context { level, hierarchy, memory } = self.context();
+        let Memory { scratch, motion: memory, .. } = memory;
+        let search = MeshSearch { level, hierarchy, scratch };
         Ok(MotionSearch { search, memory, motion, margin, resolution, shapes: 0, last: None })
     }
 }

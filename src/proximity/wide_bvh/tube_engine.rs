@@ -1,12 +1,11 @@
 //! Queries about tubes, as [`BvhSearch`] answers them.
 
 use super::BvhSearch;
-use super::engine::Memory;
+use super::engine::{Context, Memory};
 use super::hierarchy::MeshSearch;
-use super::tube_queries::{TubeMemory, TubeSearch};
+use super::tube_queries::{Place, TubeMemory, TubeSearch};
 use crate::Tube;
 use crate::proximity::checks::{check_margin, check_tolerance};
-use crate::proximity::parallel::in_shares;
 use crate::proximity::tube::PlacedTube;
 use crate::proximity::{Clearance, Decision, ProximityError};
 use parry3d_f64::math::{Pose, Real};
@@ -30,14 +29,7 @@ impl BvhSearch {
         tolerance: Real,
     ) -> Result<Clearance, ProximityError> {
         check_tolerance(tolerance)?;
-        let Self { level, hierarchy, memory, .. } = self;
-        clearance(
-            MeshSearch { level: *level, hierarchy, scratch: &mut memory.scratch },
-            &mut memory.tube,
-            tube,
-            pose,
-            tolerance,
-        )
+        self.context().clearance(tube, pose, tolerance)
     }
 
     /// Whether a tube keeps more than `margin` away from the mesh.
@@ -69,9 +61,7 @@ impl BvhSearch {
     ) -> Result<Decision, ProximityError> {
         check_margin(margin)?;
         check_tolerance(resolution)?;
-        let Self { level, hierarchy, memory, .. } = self;
-        let search = MeshSearch { level: *level, hierarchy, scratch: &mut memory.scratch };
-        clears(search, &mut memory.tube, tube, pose, margin, resolution)
+        self.context().tube_clears(tube, pose, margin, resolution)
     }
 
     /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets one entry per tube.
@@ -86,8 +76,9 @@ impl BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_tolerance(tolerance)?;
-        self.tube_batch(tubes, out, Clearance::unanswered, |search, memory, tube, pose| {
-            clearance(search, memory, tube, pose, tolerance)
+        self.batch(tubes, out, Clearance::unanswered, |context, (tube, pose), out| {
+            *out = context.clearance(tube, pose, tolerance)?;
+            Ok(())
         })
     }
 
@@ -105,63 +96,48 @@ impl BvhSearch {
         out.clear();
         check_margin(margin)?;
         check_tolerance(resolution)?;
-        self.tube_batch(
+        self.batch(
             tubes,
             out,
             || Decision::Undecided,
-            |search, memory, tube, pose| clears(search, memory, tube, pose, margin, resolution),
+            |context, (tube, pose), out| {
+                *out = context.tube_clears(tube, pose, margin, resolution)?;
+                Ok(())
+            },
         )
     }
+}
 
-    fn tube_batch<T: Send>(
-        &mut self,
-        tubes: &[(&Tube, Pose)],
-        out: &mut Vec<T>,
-        unanswered: impl Fn() -> T,
-        answer: impl Fn(MeshSearch, &mut TubeMemory, &Tube, &Pose) -> Result<T, ProximityError> + Sync,
-    ) -> Result<(), ProximityError> {
-        out.resize_with(tubes.len(), unanswered);
-        let (level, hierarchy) = (self.level, &*self.hierarchy);
-        let result = in_shares(tubes, out, &mut self.batch, |memory: &mut Memory, tubes, out| {
-            memory.forget();
-            for ((tube, pose), out) in tubes.iter().zip(out) {
-                let search = MeshSearch { level, hierarchy, scratch: &mut memory.scratch };
-                *out = answer(search, &mut memory.tube, tube, pose)?;
-            }
-            Ok(())
-        });
-        if result.is_err() {
-            out.clear();
-        }
-        result
+impl<'a> Context<'a> {
+    fn clearance(self, tube: &'a Tube, pose: &'a Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let (answer, place) = search.clearance(tolerance, *last)?;
+        *last = Some(place);
+        Ok(answer)
     }
-}
 
-fn clearance(
-    search: MeshSearch,
-    memory: &mut TubeMemory,
-    tube: &Tube,
-    pose: &Pose,
-    tolerance: Real,
-) -> Result<Clearance, ProximityError> {
-    let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
-    let (answer, place) =
-        TubeSearch { search, tube, pieces: &mut memory.pieces }.clearance(tolerance, memory.last)?;
-    memory.last = Some(place);
-    Ok(answer)
-}
+    fn tube_clears(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let (decision, place) = search.clears(margin, resolution, *last)?;
+        *last = place.or(*last);
+        Ok(decision)
+    }
 
-fn clears(
-    search: MeshSearch,
-    memory: &mut TubeMemory,
-    tube: &Tube,
-    pose: &Pose,
-    margin: Real,
-    resolution: Real,
-) -> Result<Decision, ProximityError> {
-    let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
-    let (decision, place) =
-        TubeSearch { search, tube, pieces: &mut memory.pieces }.clears(margin, resolution, memory.last)?;
-    memory.last = place.or(memory.last);
-    Ok(decision)
+    /// A search for the tube, and where the last one ended.
+    fn tube_search(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+    ) -> Result<(TubeSearch<'a>, &'a mut Option<Place>), ProximityError> {
+        let Self { level, hierarchy, memory } = self;
+        let Memory { scratch, tube: TubeMemory { pieces, last }, .. } = memory;
+        let tube = PlacedTube::new(tube, pose, hierarchy.reach)?;
+        Ok((TubeSearch { search: MeshSearch { level, hierarchy, scratch }, tube, pieces }, last))
+    }
 }
