@@ -242,7 +242,7 @@ fn the_first_bad_tube_of_a_batch_is_reported() {
     }
 }
 
-/// The directions that a function gives may have any length.
+/// The directions that a function gives may have any length: the answer is the same to the last bit.
 #[test]
 fn directions_of_any_length_will_do() {
     let (mut search, base, robot) =
@@ -250,8 +250,7 @@ fn directions_of_any_length_will_do() {
     let mut random = Random::new(6);
     for _ in 0..50 {
         let arcs = Arc::new(concentric(&robot, &mut random));
-        let exact = search.clearance(&from_function(&arcs), &base, 1e-4).unwrap();
-        for length in [1e-3, 30.0] {
+        let mut ask = |length: f64| {
             let curve = Arc::clone(&arcs);
             let scaled = move |s| {
                 let (point, direction) = curve.at(s);
@@ -259,8 +258,11 @@ fn directions_of_any_length_will_do() {
             };
             let tube = Tube::from_function(&sections(&arcs), scaled).unwrap();
             search.forget();
-            let found = search.clearance(&tube, &base, 1e-4).unwrap();
-            assert!(found.lower <= exact.upper && exact.lower <= found.upper, "{found:?} {exact:?}");
+            search.clearance(&tube, &base, 1e-4).unwrap()
+        };
+        let unit = ask(1.0);
+        for length in [1.0 / 1024.0, 32.0] {
+            assert_eq!(ask(length), unit);
         }
     }
 }
@@ -294,11 +296,11 @@ fn a_stated_error_outlives_new_samples() {
     let points: Vec<_> = (0..50).map(|k| Vector::new(0.0, 0.0, f64::from(k) * 0.1)).collect();
     let mut tube = Tube::from_samples(&points, &[0.1; 49], None).unwrap().with_error(0.5).unwrap();
     let far = Pose::from_translation(Vector::X * 1000.0);
-    let before = search.clearance(&tube, &far, 2.0).unwrap();
-    assert!(before.upper - before.lower >= 0.5, "{before:?}");
+    // Without the error any tolerance will do for what is straight.
+    let is_refused = |found: Result<Clearance, ProximityError>| matches!(found, Err(ProximityError::ToleranceTooFine { possible, .. }) if possible >= 0.5);
+    assert!(is_refused(search.clearance(&tube, &far, 0.4)));
     tube.set_samples(&points, &[0.1; 49], None).unwrap();
-    let after = search.clearance(&tube, &far, 2.0).unwrap();
-    assert!(after.upper - after.lower >= 0.5, "{after:?}");
+    assert!(is_refused(search.clearance(&tube, &far, 0.4)));
 }
 
 #[test]
