@@ -106,9 +106,3 @@ impl<L: Pack> LinkLanes<L> {
         }
     }
 }
-
-/// The magnitudes of the coordinates.
-#[inline(always)]
-pub(super) fn magnitudes<L: Pack>(vector: Vec3<L>) -> Vec3<L> {
-    Vec3::new(vector.x.abs(), vector.y.abs(), vector.z.abs())
-}

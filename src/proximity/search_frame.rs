@@ -134,6 +134,13 @@ impl<E: Lane> SearchLink<E> {
         })
     }
 
+    /// What the bound of a node must be below for the node to hold a triangle whose axis distance is below `limit`: the
+    /// bound may be too large by three times `error`.
+    #[inline(always)]
+    pub(super) fn limit_of_bounds(&self, limit: E) -> E {
+        limit + self.error + self.error + self.error
+    }
+
     /// What every triangle at most `limit` from the axis is nearer than: the converse of [`SearchLink::axis_limit`].
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =

@@ -1,7 +1,7 @@
 //! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision of the search.
 //!
-//! A pack bounds all children of a node at once, and all triangles of a leaf at once. Children stand behind their
-//! parents in memory, so that walking the nodes backwards refits them.
+//! A pack bounds all children of a node at once, and all triangles of a leaf at once. The leaves below a node stand one
+//! behind the other in memory.
 
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
@@ -60,6 +60,7 @@ impl<E: Lane> WideBvh<E> {
             let (low, high) = halve(part, unit);
             parts.extend([low, high]);
         }
+        let first = self.leaves.len();
         for part in parts {
             let lowest = part.iter().map(|&(triangle, _)| triangle).min().unwrap_or(u32::MAX);
             let child = if part.len() <= BLOCK {
@@ -75,6 +76,7 @@ impl<E: Lane> WideBvh<E> {
             };
             self.nodes[node].push(child, lowest);
         }
+        self.nodes[node].leaves = [first, self.leaves.len()];
     }
 
     /// Takes over the positions of the vertices; the division stays.
@@ -84,33 +86,32 @@ impl<E: Lane> WideBvh<E> {
         each(&mut self.leaves.chunks_mut(SHARE).collect::<Vec<_>>(), |_, leaves| {
             leaves.iter_mut().for_each(|leaf| leaf.fill(frame, mesh));
         });
-        // Nearly all bounds are those of leaves, and these do not wait for one another.
+        // No bound waits for another.
         let leaves = &self.leaves;
+        let below: Vec<_> = self.nodes.iter().map(|node| node.leaves).collect();
         each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
-            dispatch!(level, simd => bound_leaves::<E::Pack<_>>(simd, leaves, nodes));
+            dispatch!(level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
-        for node in (0..self.nodes.len()).rev() {
-            for (child, below) in self.nodes[node].children().enumerate() {
-                if let Child::Node(below) = below {
-                    let bound = NodeBound::of_children(self.nodes[below as usize].bounds_in_use());
-                    self.nodes[node].set_bound(child, &bound);
-                }
-            }
-        }
     }
 }
 
-/// Bounds those children that are leaves.
+/// Bounds the children of nodes. `below` tells which leaves are below a node.
 #[inline(always)]
-fn bound_leaves<L: Pack>(token: L::Token, leaves: &[Leaf<L::Element>], nodes: &mut [Node<L::Element>])
-where
+fn bound_children<L: Pack>(
+    token: L::Token,
+    leaves: &[Leaf<L::Element>],
+    below: &[[usize; 2]],
+    nodes: &mut [Node<L::Element>],
+) where
     L::Element: Lane,
 {
     for node in nodes {
-        for (child, below) in node.children().enumerate() {
-            if let Child::Leaf(leaf) = below {
-                node.set_bound(child, &NodeBound::of_leaf::<L>(token, &leaves[leaf as usize].rows));
-            }
+        for (child, of) in node.children().enumerate() {
+            let [first, end] = match of {
+                Child::Leaf(leaf) => [leaf as usize, leaf as usize + 1],
+                Child::Node(node) => below[node as usize],
+            };
+            node.set_bound(child, &NodeBound::around::<L>(token, &leaves[first..end]));
         }
     }
 }

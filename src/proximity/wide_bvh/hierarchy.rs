@@ -1,10 +1,9 @@
 //! A mesh's hierarchies and the search through them for one convex piece, in the precision that resolves it.
 
 use super::build::WideBvh;
-use super::joint::{JointSearch, Pairs, Verdict};
+use super::joint::{JointSearch, Pairs};
 use super::traverse::{Stack, Traversal};
 use crate::proximity::Work;
-use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
@@ -67,14 +66,16 @@ enum Searched {
 pub(super) struct Scratch {
     single: Stack<f32>,
     double: Stack<f64>,
-    pairs: Pairs,
+    single_pairs: Pairs<f32>,
+    double_pairs: Pairs<f64>,
     pub work: Work,
 }
 
 impl Scratch {
     /// Forgets what bounds the next query.
     pub(super) fn forget(&mut self) {
-        self.pairs.forget();
+        self.single_pairs.forget();
+        self.double_pairs.forget();
     }
 }
 
@@ -125,25 +126,23 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// Whether every link of a robot keeps more than `margin` away; nothing where single precision does not resolve it.
-    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> Option<bool> {
-        let Hierarchy { mesh, single, .. } = self.hierarchy;
-        let Scratch { pairs, work, .. } = &mut *self.scratch;
-        match (JointSearch { level: self.level, tree: single, robot, margin, pairs, work }).verdict() {
-            Verdict::Unresolved => None,
-            Verdict::Near => Some(false),
-            Verdict::Doubtful => {
-                let is_within = |pairs: &[(u32, u32)]| {
-                    let (mut together, link) = ([0; TOGETHER], robot.link(pairs[0].0 as usize));
-                    together.iter_mut().zip(pairs).for_each(|(triangle, pair)| *triangle = pair.1);
-                    work.measured += pairs.len() as u64;
-                    let together = &together[..pairs.len()];
-                    Best::within(margin).measure_together(self.level, &link, mesh, together)
-                };
-                let of_one_link = pairs.doubtful().chunk_by(|one, other| one.0 == other.0);
-                Some(!of_one_link.flat_map(|pairs| pairs.chunks(TOGETHER)).any(is_within))
-            }
+    /// Whether every link of a robot keeps more than `margin` away.
+    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
+        let Hierarchy { single, .. } = self.hierarchy;
+        let Scratch { single_pairs, work, .. } = &mut *self.scratch;
+        let search =
+            JointSearch { level: self.level, tree: single, robot, margin, pairs: single_pairs, work };
+        if let Some(keeps_away) = search.keeps_away(&self.hierarchy.mesh) {
+            return keeps_away;
         }
+        let tree = self.hierarchy.double(self.level);
+        let Scratch { double_pairs, work, .. } = &mut *self.scratch;
+        let search = JointSearch { level: self.level, tree, robot, margin, pairs: double_pairs, work };
+        if let Some(keeps_away) = search.keeps_away(&self.hierarchy.mesh) {
+            return keeps_away;
+        }
+        let mut links = robot.placed_links();
+        links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none())
     }
 
     /// Some triangle, for a link whose nearest no search tells.

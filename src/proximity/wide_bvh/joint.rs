@@ -3,8 +3,8 @@
 //! A pair is a run of links, or one link, and a part of the mesh. A pair whose capsule and bound keep apart is done with.
 //! Of any other the larger is parted, and each half meets the other. So what a run of links is far from is never looked
 //! at again for one of its links. The first link and triangle that are near enough for certain end the search: those
-//! whose distance in single precision is below the margin by more than rounding can do. Those of which it cannot tell
-//! are left to double precision.
+//! whose distance in the precision of the search is below the margin by more than rounding can do. Those of which it
+//! cannot tell are measured in double precision.
 
 use super::build::WideBvh;
 use super::node::{Child, WIDTH};
@@ -12,7 +12,9 @@ use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::Work;
 use crate::proximity::link_lanes::LinkLanes;
-use crate::proximity::placed::PlacedRobot;
+use crate::proximity::measure_lanes::TOGETHER;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::placed::{Best, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
 use crate::robot::LinkNode;
@@ -21,60 +23,56 @@ use parry3d_f64::math::Real;
 
 /// A run is parted before it meets a node this many times smaller, or a leaf. Measured: a run that is parted late meets
 /// more of the mesh, one that is parted early meets it more often.
-const NODE_SHARE: f32 = 1.4;
-const LEAF_SHARE: f32 = 3.0;
+const NODE_SHARE: f64 = 1.0;
+const LEAF_SHARE: f64 = 3.0;
 
 /// Memory that is used again.
 #[derive(Clone, Default)]
-pub(super) struct Pairs {
+pub(super) struct Pairs<E> {
     /// The nodes of the link tree in the frame of the search, those that this query has placed.
-    runs: Vec<Run>,
+    runs: Vec<Run<E>>,
     query: u64,
-    waiting: Vec<Pair>,
+    waiting: Vec<Pair<E>>,
+    /// The links and triangles of which the precision of the search cannot tell.
     doubtful: Vec<(u32, u32)>,
     /// The link and the leaf of the last triangle that was near enough.
     last: Option<(u32, u32)>,
 }
 
-impl Pairs {
+impl<E> Pairs<E> {
     pub(super) fn forget(&mut self) {
         self.last = None;
-    }
-
-    /// The links and triangles of which single precision cannot tell.
-    pub(super) fn doubtful(&self) -> &[(u32, u32)] {
-        &self.doubtful
     }
 }
 
 /// A node of the link tree in the frame of the search.
 #[derive(Clone, Default)]
-struct Run {
+struct Run<E> {
     /// The query that placed it.
     query: u64,
-    searched: SearchLink<f32>,
+    searched: SearchLink<E>,
     /// How long it is, tips included.
-    size: f32,
+    size: E,
     /// What an axis distance must be below to be possibly within the margin.
-    limit: f32,
+    limit: E,
     /// What it must be below to be so for certain.
-    certain: f32,
+    certain: E,
 }
 
 /// A run of links and a part of the mesh that may be near each other.
 #[derive(Clone, Copy)]
-struct Pair {
+struct Pair<E> {
     /// The run's place in the link tree.
     run: u32,
     child: u32,
     /// How large the part of the mesh is.
-    size: f32,
+    size: E,
     /// How far its centre is from the run's axis, squared.
-    apart: f32,
+    apart: E,
 }
 
-/// What single precision tells.
-pub(super) enum Verdict {
+/// What the precision of the search tells.
+enum Verdict {
     /// Nothing is within the margin, unless it is doubtful.
     Doubtful,
     /// Some triangle is within the margin.
@@ -84,19 +82,40 @@ pub(super) enum Verdict {
 }
 
 /// A search for anything at most `margin` from a robot.
-pub(super) struct JointSearch<'a> {
+pub(super) struct JointSearch<'a, E> {
     pub level: Level,
-    pub tree: &'a WideBvh<f32>,
+    pub tree: &'a WideBvh<E>,
     pub robot: PlacedRobot<'a>,
     pub margin: Real,
-    pub pairs: &'a mut Pairs,
+    pub pairs: &'a mut Pairs<E>,
     pub work: &'a mut Work,
 }
 
-impl JointSearch<'_> {
-    pub(super) fn verdict(&mut self) -> Verdict {
+impl<E: Lane> JointSearch<'_, E> {
+    /// Whether every link keeps more than the margin away; None where the precision of the search does not resolve the
+    /// robot.
+    pub(super) fn keeps_away(mut self, mesh: &Mesh) -> Option<bool> {
+        match self.verdict() {
+            Verdict::Unresolved => None,
+            Verdict::Near => Some(false),
+            Verdict::Doubtful => {
+                let Self { level, robot, margin, pairs, work, .. } = self;
+                let is_within = |pairs: &[(u32, u32)]| {
+                    let (mut together, link) = ([0; TOGETHER], robot.link(pairs[0].0 as usize));
+                    together.iter_mut().zip(pairs).for_each(|(triangle, pair)| *triangle = pair.1);
+                    work.measured += pairs.len() as u64;
+                    Best::within(margin).measure_together(level, &link, mesh, &together[..pairs.len()])
+                };
+                let of_one_link = pairs.doubtful.chunk_by(|one, other| one.0 == other.0);
+                Some(!of_one_link.flat_map(|pairs| pairs.chunks(TOGETHER)).any(is_within))
+            }
+        }
+    }
+
+    fn verdict(&mut self) -> Verdict {
         let Pairs { runs, query, waiting, doubtful, last } = &mut *self.pairs;
         let links = self.robot.link_tree();
+        let zero = E::default();
         *query += 1;
         if runs.len() < links.len() {
             runs.resize_with(links.len(), Run::default);
@@ -104,17 +123,17 @@ impl JointSearch<'_> {
         doubtful.clear();
         waiting.clear();
         // The mesh is between one and two long.
-        waiting.push(Pair { run: 0, child: Child::Node(0).pack(), size: 1.0, apart: 0.0 });
+        waiting.push(Pair { run: 0, child: Child::Node(0).pack(), size: zero.one(), apart: zero });
         if let Some((run, leaf)) = *last
             && let Some(LinkNode::Leaf(_)) = links.get(run as usize)
         {
-            waiting.push(Pair { run, child: Child::Leaf(leaf).pack(), size: 0.0, apart: 0.0 });
+            waiting.push(Pair { run, child: Child::Leaf(leaf).pack(), size: zero, apart: zero });
         }
-        dispatch!(self.level, simd => self.descend::<<f32 as Lane>::Pack<_>>(simd))
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
 
     #[inline(always)]
-    fn descend<L: Pack<Element = f32>>(&mut self, token: L::Token) -> Verdict {
+    fn descend<L: Pack<Element = E>>(&mut self, token: L::Token) -> Verdict {
         while let Some(pair) = self.pairs.waiting.pop() {
             if self.pairs.runs[pair.run as usize].query != self.pairs.query && self.place(pair.run).is_none()
             {
@@ -123,12 +142,12 @@ impl JointSearch<'_> {
             let size = self.pairs.runs[pair.run as usize].size;
             match Child::unpack(pair.child) {
                 Child::Node(node) => {
-                    if !(NODE_SHARE * pair.size < size && self.part(pair)) {
+                    if !(pair.size.lit(NODE_SHARE) * pair.size < size && self.part(pair)) {
                         self.visit_node::<L>(token, node, pair.run);
                     }
                 }
                 Child::Leaf(leaf) => {
-                    if !(LEAF_SHARE * pair.size < size && self.part(pair))
+                    if !(pair.size.lit(LEAF_SHARE) * pair.size < size && self.part(pair))
                         && self.visit_leaf::<L>(token, leaf, pair)
                     {
                         self.pairs.last = Some((pair.run, leaf));
@@ -140,7 +159,7 @@ impl JointSearch<'_> {
         Verdict::Doubtful
     }
 
-    /// Brings a node of the link tree into the frame of the search. None where single precision does not resolve it.
+    /// Brings a node of the link tree into the frame of the search. None where the precision does not resolve it.
     #[inline(never)] // not compiled anew for each instruction set
     fn place(&mut self, place: u32) -> Option<()> {
         let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[place as usize]);
@@ -148,7 +167,7 @@ impl JointSearch<'_> {
         let searched = SearchLink::between(ends, radius, flat, frame).filter(|link| frame.resolves(link))?;
         self.pairs.runs[place as usize] = Run {
             query: self.pairs.query,
-            size: searched.length + 2.0 * searched.radius,
+            size: searched.length + searched.radius + searched.radius,
             limit: searched.axis_limit(self.margin),
             certain: searched.certain_limit(self.margin),
             searched,
@@ -158,7 +177,7 @@ impl JointSearch<'_> {
 
     /// Puts both halves of a pair's run in its place; false if it is one link.
     #[inline(always)]
-    fn part(&mut self, pair: Pair) -> bool {
+    fn part(&mut self, pair: Pair<E>) -> bool {
         let tree = self.robot.link_tree();
         if let LinkNode::Leaf(_) = tree[pair.run as usize] {
             return false;
@@ -172,14 +191,14 @@ impl JointSearch<'_> {
 
     /// Pairs a run with those children of a node that it may be near, the one with the nearest centre on top.
     #[inline(always)]
-    fn visit_node<L: Pack<Element = f32>>(&mut self, token: L::Token, node: u32, run: u32) {
+    fn visit_node<L: Pack<Element = E>>(&mut self, token: L::Token, node: u32, run: u32) {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
         let Pairs { runs, waiting, .. } = &mut *self.pairs;
         let placed = &runs[run as usize];
         let lanes = LinkLanes::<L>::new(token, &placed.searched);
-        let limit = L::splat(token, placed.limit);
-        let mut apart = [0.0; WIDTH];
+        let limit = L::splat(token, placed.searched.limit_of_bounds(placed.limit));
+        let mut apart = [E::default(); WIDTH];
         let mut near = 0;
         for lane in (0..WIDTH).step_by(L::LANES) {
             let (may_meet, squared) = node.bounds::<L>(token, lane).may_meet(&lanes, limit);
@@ -205,7 +224,7 @@ impl JointSearch<'_> {
     /// Whether a triangle of a leaf is within the margin of a link for certain. A run is parted, unless it is too far
     /// from all of them.
     #[inline(always)]
-    fn visit_leaf<L: Pack<Element = f32>>(&mut self, token: L::Token, leaf: u32, pair: Pair) -> bool {
+    fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, pair: Pair<E>) -> bool {
         self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
         let placed = &self.pairs.runs[pair.run as usize];

@@ -3,6 +3,7 @@
 mod bound;
 mod build;
 mod engine;
+mod fit;
 mod hierarchy;
 mod joint;
 mod moment;

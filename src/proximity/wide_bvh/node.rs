@@ -1,6 +1,7 @@
 //! A node of the hierarchy with its up to 16 children, and a leaf with its up to 16 triangles.
 
 use super::bound::{BOUND_ROWS, NodeBound, NodeBounds};
+#[cfg(test)]
 use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::mesh::Mesh;
@@ -35,11 +36,15 @@ impl Child {
 /// Up to 16 children and what bounds them.
 #[derive(Clone)]
 pub(super) struct Node<E> {
-    /// Rows of centre, half extents and normal (x, y, z each), thickness and radius; see [`NodeBounds`].
+    /// Rows of centre, half extents, normal and tangent, three numbers each; see [`NodeBounds`].
     rows: [E; BOUND_ROWS * WIDTH],
     pub children: [u32; WIDTH],
     /// The lowest number of a triangle below each child.
     pub lowest: [u32; WIDTH],
+    /// The size of the largest child.
+    pub largest: E,
+    /// The first of the leaves below, and the first behind them.
+    pub leaves: [usize; 2],
     count: usize,
 }
 
@@ -54,11 +59,21 @@ pub(super) struct Leaf<E> {
 impl<E: Lane> Node<E> {
     /// Bounds far beyond anything, so that unused children are never near.
     pub(super) fn empty() -> Self {
-        let rows =
-            std::array::from_fn(
-                |slot| if slot < 3 * WIDTH { E::round(1.0e9 * E::FARTHEST) } else { E::default() },
-            );
-        Self { rows, children: [0; WIDTH], lowest: [u32::MAX; WIDTH], count: 0 }
+        let far = E::round(1.0e9 * E::FARTHEST);
+        let (zero, one) = (E::default(), E::default().one());
+        let row = |row| match row {
+            0..3 => far,
+            6 | 10 => one,
+            _ => zero,
+        };
+        Self {
+            rows: std::array::from_fn(|slot| row(slot / WIDTH)),
+            children: [0; WIDTH],
+            lowest: [u32::MAX; WIDTH],
+            largest: zero,
+            leaves: [0; 2],
+            count: 0,
+        }
     }
 
     pub(super) fn push(&mut self, child: Child, lowest: u32) {
@@ -68,20 +83,22 @@ impl<E: Lane> Node<E> {
     }
 
     pub(super) fn set_bound(&mut self, child: usize, bound: &NodeBound<E>) {
-        let rows = [bound.centre, bound.half, bound.normal].map(<[E; 3]>::from);
-        let rows = rows.into_iter().flatten().chain([bound.thickness, bound.radius]);
-        for (row, value) in rows.enumerate() {
+        let rows = [bound.centre, bound.half, bound.normal, bound.tangent].map(<[E; 3]>::from);
+        for (row, value) in rows.into_iter().flatten().enumerate() {
             self.rows[row * WIDTH + child] = value;
         }
+        let children = (0..self.count).map(|child| self.size(child));
+        self.largest = children.fold(E::default(), E::max);
     }
 
+    #[cfg(test)]
     fn bound(&self, child: usize) -> NodeBound<E> {
         let at = |row: usize| self.rows[row * WIDTH + child];
         let point = |row: usize| Vec3::new(at(row), at(row + 1), at(row + 2));
-        NodeBound { centre: point(0), half: point(3), normal: point(6), thickness: at(9), radius: at(10) }
+        NodeBound { centre: point(0), half: point(3), normal: point(6), tangent: point(9) }
     }
 
-    /// The largest side of the box around a child.
+    /// The largest side of a child's box.
     #[inline(always)]
     pub(super) fn size(&self, child: usize) -> E {
         let half = |axis: usize| self.rows[(3 + axis) * WIDTH + child];
@@ -96,6 +113,7 @@ impl<E: Lane> Node<E> {
     }
 
     /// The bounds of the children in use, one by one.
+    #[cfg(test)]
     pub(super) fn bounds_in_use(&self) -> impl Iterator<Item = NodeBound<E>> + Clone + '_ {
         (0..self.count).map(|child| self.bound(child))
     }
@@ -107,8 +125,7 @@ impl<E: Lane> Node<E> {
             centre: load(token, &self.rows, 0, lane),
             half: load(token, &self.rows, 3, lane),
             normal: load(token, &self.rows, 6, lane),
-            thickness: L::load(token, &self.rows[9 * WIDTH + lane..]),
-            radius: L::load(token, &self.rows[10 * WIDTH + lane..]),
+            tangent: load(token, &self.rows, 9, lane),
         }
     }
 }

@@ -65,28 +65,7 @@ impl RobotSearch<'_> {
 
     /// Whether every link keeps more than `margin` away from the mesh.
     pub(super) fn clears(&mut self, margin: Real) -> bool {
-        if let Some(keeps_away) = self.search.keeps_away(self.robot, margin) {
-            return keeps_away;
-        }
-        let tree = self.robot.link_tree();
-        let mut place = 0;
-        while let Some(node) = tree.get(place) {
-            match node {
-                LinkNode::Inner { bound, below } => {
-                    if !self.search.may_meet(&self.robot.bound(bound), margin) {
-                        place += below;
-                    }
-                }
-                LinkNode::Leaf(link) => {
-                    let link = self.robot.link(*link);
-                    if self.search.nearest(&link, Best::within(margin), [None, None]).nearest().is_some() {
-                        return false;
-                    }
-                }
-            }
-            place += 1;
-        }
-        true
+        self.search.keeps_away(self.robot, margin)
     }
 
     /// About the triangle nearest to the capsule around the robot, and the link nearest to that triangle.

@@ -61,6 +61,13 @@ enum Aim<'a> {
 }
 
 impl<E: Lane> Target<'_, E> {
+    /// What the squared bound of a child must be below for it to hold a triangle within the limit.
+    #[inline(always)]
+    fn squared_limit_of_bounds(&self) -> E {
+        let limit = self.searched.limit_of_bounds(self.limit);
+        limit * limit
+    }
+
     /// Whether nothing can change the answer any more.
     fn is_settled(&self) -> bool {
         match &self.aim {
@@ -133,7 +140,7 @@ impl<E: Lane> Traversal<'_, E> {
             if target.is_settled() {
                 break;
             }
-            if squared >= target.limit * target.limit {
+            if squared >= target.squared_limit_of_bounds() {
                 continue;
             }
             match Child::unpack(child) {
@@ -159,11 +166,13 @@ impl<E: Lane> Traversal<'_, E> {
     ) {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
-        let limit = L::splat(token, target.limit * target.limit);
+        let limit = L::splat(token, target.squared_limit_of_bounds());
+        // A link that is shorter than the children does not pass beside them slantwise.
+        let plane_tells = node.largest < target.searched.length;
         let mut bounds = [E::default(); WIDTH];
         let mut near = 0;
         for lane in (0..WIDTH).step_by(L::LANES) {
-            let squared = node.bounds::<L>(token, lane).squared_distances(lanes);
+            let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
             squared.store(&mut bounds[lane..]);
             near |= L::bits(squared.lt(limit)) << lane;
         }
