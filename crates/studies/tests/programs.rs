@@ -80,10 +80,10 @@ fn speed_is_measured_drawn_and_quoted() {
         "`cargo run --release -p continuum-studies --bin speed -- --largest 1 --enough 0 --out speed/docs`"
     ));
 
-    for head in ["| scene | triangles | parry, 30 links |", "| scene | triangles | nodes, cold |"] {
+    for head in ["| wall | triangles | all links: parry |", "| wall | triangles | nodes, first time |"] {
         let rows = table(&page, head);
         let of: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[1])).collect();
-        assert_eq!(of, [("wall", "5120"), ("middle", "5120")], "{head}");
+        assert_eq!(of, [("near", "5120"), ("far", "5120")], "{head}");
     }
     let planner = table(&page, "| scene | triangles | shapes | how many |");
     let of: Vec<_> = planner.iter().map(|row| (&*row[0], &*row[2])).collect();
@@ -117,7 +117,12 @@ fn speed_is_measured_drawn_and_quoted() {
     assert!(sizes.len() == 2 && sizes[1] == 4 * sizes[0], "{head}");
     assert_eq!(table(&page, "| triangles | refit and search |").len(), 1);
     assert_eq!(table(&page, "| engine | bytes |").len(), 3);
-    assert!(table(&page, "| job | goal | measured | met |").len() > 5);
+    let goals = read("speed/docs/internals/speed_goals.md");
+    assert_finite(&goals);
+    assert!(table(&goals, "| job | goal | measured | met |").len() > 5);
+    let quoted = read("speed/README.md");
+    assert_eq!(table(&quoted, "| wall | triangles | all links: parry |").len(), 2);
+    assert_eq!(table(&quoted, "| wall | triangles | touching: parry |").len(), 3);
 
     // A line and a legend for each model and engine.
     let plot = read("speed/docs/speed.svg");

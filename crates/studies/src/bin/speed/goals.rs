@@ -22,10 +22,10 @@ impl Goals {
         }
     }
 
-    /// The chapter of the page.
-    pub fn chapter(&self) -> String {
-        let mut page = String::from(
-            "## Goals\n\nA goal is a ratio that this project set itself before anything was measured.\n\n\
+    /// The page.
+    pub fn page(&self, written: &str) -> String {
+        let mut page = format!(
+            "# Goals of speed\n\n{written}. A goal is a ratio that this project set itself before anything was measured.\n\n\
              | job | goal | measured | met |\n|---|---|---|---|\n",
         );
         for (job, goal, measured) in &self.0 {

@@ -62,8 +62,8 @@ fn scenes(effort: Effort) -> Result<Vec<(&'static str, TriMesh, Pose)>, String> 
     Ok(scenes)
 }
 
-/// The chapter of the page.
-pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
+/// The chapter of the page, and its table for the README.
+pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), String> {
     let mut page = String::from(
         "## Planner\n\n\
          Random shapes of three tubes, 30 links each, from a fixed entry: does the shape touch the wall? `clears` with \
@@ -71,6 +71,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
          `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. Microseconds a shape.\n\n\
          | scene | triangles | shapes | how many | parry | clears | times faster | minimum |\n\
          |---|---|---|---|---|---|---|---|\n",
+    );
+    let mut quote = String::from(
+        "| wall | triangles | touching: parry | this crate | free: parry | this crate |\n|---|---|---|---|---|---|\n",
     );
     let mut batches = format!(
         "\nShapes a second by `clears_batch` of {BATCH} such shapes, margin 0:\n\n\
@@ -81,6 +84,7 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
         let mut search = BvhSearch::new(&mesh).map_err(|error| error.to_string())?;
         let clear = |shape: &Shape| search.clears(&shape.chain, &base, 0.0).map_err(text);
         let clear: Vec<_> = shapes.iter().map(clear).collect::<Result<_, _>>()?;
+        let _ = write!(quote, "| {scene} | {} |", mesh.num_triangles());
         for (kind, is_clear) in [("colliding", false), ("free", true)] {
             let group: Vec<_> = shapes
                 .iter()
@@ -97,9 +101,11 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
                 group.len(),
                 parry / clears,
             );
+            let _ = write!(quote, " {parry:.1} | {clears:.1} ({:.1} x) |", parry / clears);
             let goal = if is_clear { 20.0 } else { 10.0 };
             goals.note(&format!("clears, random shapes, {kind}"), Goal::AtLeast(goal), parry / clears);
         }
+        quote.push('\n');
         let _ = write!(batches, "| {scene} | {} |", mesh.num_triangles());
         let robots: Vec<_> = shapes.iter().cycle().take(BATCH).map(|shape| (&shape.chain, base)).collect();
         for threads in [1, 2] {
@@ -108,7 +114,7 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
         }
         batches.push('\n');
     }
-    Ok(page + &batches)
+    Ok((page + &batches, quote))
 }
 
 fn text(error: ProximityError) -> String {
