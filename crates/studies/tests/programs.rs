@@ -33,10 +33,10 @@ fn the_trade_is_measured_drawn_and_quoted() {
     let page = read("trade/docs/TRADEOFF.md");
     let trade = page.split("## The trade").nth(1).unwrap().split("![").next().unwrap();
     for model in [
-        "K, capsules",
-        "Z, cylinders",
-        "Z*, modified",
-        "Z*, faces fixed",
+        "capsules",
+        "cylinders",
+        "fitted caps",
+        "fitted caps, faces fixed",
         "parry's Capsule",
         "parry's Cylinder",
         "7 spheres a link",
@@ -54,7 +54,8 @@ fn the_trade_is_measured_drawn_and_quoted() {
     assert_finite(&page);
     // Discs and rings for the search of four models at seven tolerances, and in the legend.
     assert_eq!(read("trade/docs/tradeoff.svg").matches("<circle").count(), 2 * 4 * 7 + 2);
-    assert_quoted("trade", "tradeoff", "Measured by");
+    assert_quoted("trade", "tradeoff", "**Take a `Tube`");
+    assert_eq!(table(&read("trade/README.md"), "| error | free shape: `Tube` |").len(), 4);
 
     let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
     let arguments =

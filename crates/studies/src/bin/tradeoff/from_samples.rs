@@ -65,29 +65,38 @@ impl Shape {
     }
 }
 
+/// Times from samples to a clearance within a tolerance, by a tube and by stations, in seconds.
+#[derive(Default)]
+pub struct FromSamples {
+    pub triangles: usize,
+    pub tolerance: Real,
+    pub free_and_touching: [[f64; 2]; 2],
+}
+
 /// A way from a shape to an answer.
 type Way<'a> = Box<dyn FnMut(&Shape) -> Result<(), String> + 'a>;
 
-/// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in four twice.
+/// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in four twice. And what it
+/// says of the mesh as it is.
 pub fn chapter(
     robot: &Robot,
     [free, touching]: [&[Joints]; 2],
     mesh: &TriMesh,
     base: &Pose,
     spacing: Real,
-) -> Result<String, String> {
+) -> Result<(String, Vec<FromSamples>), String> {
     let mut page = format!(
         "## From samples to the answer\n\n\
          A planner or a controller has a new shape at each query. Here the time counts from its samples, one every {spacing} \
          mm with the directions at both ends, to the clearance: medians over {SHAPES} shapes that are free and {SHAPES} that \
-         touch the wall, on one thread, without the last answers unless it says *warm* (after the same shape).\n\n\
+         touch the wall, on one thread, the first time unless it says *again* (after the same shape).\n\n\
          - *Tube*: `Tube::set_samples` and `clearance`, whose bounds are at most the tolerance apart and count everything.\n\
          - *Tube, function*: `Tube::from_function`, whose curve is computed where the query needs it.\n\
          - *Stations*, *simplify*: the links by either, `Chain::set_centreline` and `minimum`. Flat faces are off by more \
          than the tolerance after `simplify`.\n\
          - *Fixed*: links of the length sqrt(8 tolerance / curvature), taken from the curve and not from samples. Nothing \
          checks their error, and the faces are off as well.\n\n\
-         | triangles | shapes | tolerance | tube | tube, warm | tube, function | stations | simplify | fixed | fixed, warm |\n\
+         | triangles | shapes | tolerance | tube | tube, again | tube, function | stations | simplify | fixed | fixed, again |\n\
          |---|---|---|---|---|---|---|---|---|---|\n"
     );
     let mut clears = format!(
@@ -97,12 +106,18 @@ pub fn chapter(
     );
     let fine = in_four(in_four((mesh.vertices().to_vec(), mesh.indices().to_vec())));
     let fine = TriMesh::new(fine.0, fine.1).map_err(text)?;
-    for mesh in [mesh, &fine] {
-        for (name, joints) in [("free", free), ("touching", touching)] {
+    let row =
+        |&tolerance| FromSamples { triangles: mesh.num_triangles(), tolerance, ..FromSamples::default() };
+    let mut rows: Vec<_> = TOLERANCES.iter().map(row).collect();
+    for (is_coarse, mesh) in [(true, mesh), (false, &fine)] {
+        for (kind, (name, joints)) in [("free", free), ("touching", touching)].into_iter().enumerate() {
             let shapes: Vec<_> =
                 joints.iter().take(SHAPES).map(|joints| Shape::new(robot, joints, spacing)).collect();
             for (index, &tolerance) in TOLERANCES.iter().enumerate() {
                 let times = times(&shapes, clearances(mesh, base, tolerance, index)?)?;
+                if is_coarse {
+                    rows[index].free_and_touching[kind] = [times[0], times[3]];
+                }
                 let cells: Vec<_> = times.iter().map(|time| format!("{:.1} us", time * 1e6)).collect();
                 // Writing to a string cannot fail.
                 let _ = writeln!(
@@ -117,7 +132,7 @@ pub fn chapter(
             let _ = writeln!(clears, "| {} | {name} | {} |", mesh.num_triangles(), cells.join(" | "));
         }
     }
-    Ok(page + &clears)
+    Ok((page + &clears, rows))
 }
 
 /// The median time of each way, seconds; they take turns with every shape.

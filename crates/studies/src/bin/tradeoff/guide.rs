@@ -1,6 +1,7 @@
-//! For this error, choose this: the guide of the README.
+//! For this error, choose this: the guide of the README, and the table of links for an error.
 
 use crate::clock::Times;
+use crate::from_samples::FromSamples;
 use crate::front::Combination;
 use crate::statistics::{Share, length};
 use crate::subject::Model;
@@ -15,6 +16,7 @@ pub struct Facts<'a> {
     pub command: &'a str,
     pub all: &'a [Combination],
     pub times: &'a Times,
+    pub from_samples: &'a [FromSamples],
     /// Free shapes that capsules forbid.
     pub forbidden: Share,
     /// By how much the clearance is off without torsion: in the median and at worst, mm.
@@ -23,43 +25,66 @@ pub struct Facts<'a> {
 
 /// The guide.
 pub fn text(facts: &Facts) -> String {
-    let Facts { command, all, times, forbidden, torsion: [median, worst] } = facts;
+    let Facts { command, all, times, from_samples, forbidden, torsion: [median, worst] } = facts;
     let time = |model: Model, way: &str| {
         let same = |one: &&Combination| one.model == model && one.way == way && one.tolerance == 0.1;
         all.iter().find(same).map_or(f64::NAN, |one| one.time)
     };
-    let warm = time(Model::Modified, "search, warm");
+    let again = time(Model::Modified, "search, again");
     let simplifying = times.building.iter().map(|one| one.simplify * 1e6);
     let (quick, slow) =
         simplifying.fold((f64::INFINITY, 0.0_f64), |(low, high), us| (low.min(us), high.max(us)));
     let most = 100.0 * forbidden.count as f64 / forbidden.of.max(1) as f64;
     format!(
-        "Measured by `{command}` on {}: a concentric tube robot of radius 1.25 to 0.5 mm in a ventricle, times of \
-         `minimum` on one thread. [docs/TRADEOFF.md](docs/TRADEOFF.md) has the rest.\n\n\
+        "**Take a `Tube`, and ask `clearance` or `tube_clears` for the error that you can bear.** The bounds hold for your \
+         curve, and the larger the error, the less the query does.\n\n\
+         Measured by `{command}` on {}: a concentric tube robot of radius 1.25 to 0.5 mm in a ventricle of {} triangles. Times \
+         from about 270 samples of a new shape to its clearance, on one thread:\n\n\
          {}\n\
-         - The links decide the error, the engine only the time: all engines agree. Within 0.1 mm, `Exhaustive::<f32>` \
-         takes {:.0} times as long as the warm search, and parry's cylinders {:.0} times.\n\
-         - A flat face is perpendicular to its link, not to the curve. In a fine chain that is the largest error. *Faces \
-         fixed* cures it: let links end 0.3 and 0.01 mm before each face.\n\
+         Links instead of a curve suit parry, rapier and robots that are made of rigid parts:\n\n\
+         - The links decide the error, the engine only the time. [docs/TRADEOFF.md](docs/TRADEOFF.md) has a table of links for an \
+         error. Within 0.1 mm a query takes {:.1} us in a control loop. `Exhaustive::<f32>` takes {:.0} times as long, and \
+         parry's cylinders {:.0} times.\n\
+         - The flat face of a chain is perpendicular to its last link, not to the curve. In a fine chain that is the largest \
+         error. Let links end 0.3 and 0.01 mm before each face, or take `stations`, which does that.\n\
          - To be on the safe side, ask `clears` with the worst error added to the margin.\n\
-         - Capsules cover the tube, but forbade {most:.1} % of the free shapes. Cylinders have gaps at the bends and take {:.1} \
-         times as long as modified cylinders.\n\
-         - `simplify` took {quick:.0} to {slow:.0} us a shape. In a control loop choose the stations once.\n\
+         - Capsules cover the tube, but forbade {most:.1} % of the free shapes. Cylinders leave gaps at the bends.\n\
+         - `simplify` took {quick:.0} to {slow:.0} us for a free shape. In a control loop choose the links once.\n\
          - Leaving out that tubes twist changed the clearance by {} mm in the median, at worst {} mm.\n",
         machine::description(),
-        table(all),
-        time(Model::Modified, "exhaustive, f32") / warm,
-        time(Model::ParryCylinder, "parry's search") / warm,
-        time(Model::Cylinder, "search, warm") / warm,
+        from_samples.first().map_or(0, |row| row.triangles),
+        samples_table(from_samples),
+        again * 1e6,
+        time(Model::Modified, "exhaustive, f32") / again,
+        time(Model::ParryCylinder, "parry's search") / again,
         length(*median),
         length(*worst)
     )
 }
 
-/// The table: for each error the fastest of this crate's combinations that stays within it.
-fn table(all: &[Combination]) -> String {
+/// From samples to a clearance: a tube beside links chosen for the same error.
+fn samples_table(rows: &[FromSamples]) -> String {
     let mut table = String::from(
-        "| worst error allowed | model | `simplify` within | links | search, cold | search, warm | worst error measured |\n\
+        "| error | free shape: `Tube` | `stations` and a chain | touching shape: `Tube` | `stations` and a chain |\n\
+         |---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let [[free_tube, free_links], [tube, links]] =
+            row.free_and_touching.map(|times| times.map(|time| time * 1e6));
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            table,
+            "| {} mm | {free_tube:.1} us | {free_links:.1} us | {tube:.1} us | {links:.1} us |",
+            row.tolerance
+        );
+    }
+    table
+}
+
+/// The table: for each error the fastest of this crate's combinations that stays within it.
+pub fn table(all: &[Combination]) -> String {
+    let mut table = String::from(
+        "| worst error allowed | model | `simplify` within | links | search, first time | search, again | worst error measured |\n\
          |---|---|---|---|---|---|---|\n",
     );
     for error in ERRORS {
@@ -81,8 +106,8 @@ fn table(all: &[Combination]) -> String {
             best.model.name(),
             best.tolerance,
             best.links,
-            time("search, cold"),
-            time("search, warm"),
+            time("search, first time"),
+            time("search, again"),
             length(best.error)
         );
     }

@@ -113,7 +113,7 @@ fn measure(options: &Options) -> Result<(), String> {
     let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
 
     stage("from samples");
-    let from_samples =
+    let (from_samples, rows) =
         from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING)?;
 
     stage("writing");
@@ -142,6 +142,7 @@ fn measure(options: &Options) -> Result<(), String> {
         command: &command,
         all: &all,
         times: &times,
+        from_samples: &rows,
         forbidden: shares::forbidden(&outcomes, subject::Model::Capsule),
         torsion: [torsion_median, torsion_worst],
     });

@@ -2,6 +2,7 @@
 
 use crate::clock::Times;
 use crate::front::{Combination, front};
+use crate::guide;
 use crate::outcome::{INPUT_SPACING, Outcome, REFERENCE_SPACING, TOLERANCES};
 use crate::reference::Checked;
 use crate::statistics::{Errors, length, quantile};
@@ -34,24 +35,24 @@ pub fn page(facts: &Facts) -> String {
     format!(
         "# What accuracy costs\n\n\
          Written by `{command}` on {}{}.\n\n\
-         A concentric tube robot in a mesh of {triangles} triangles. Its shapes are drawn from a seed: a reach of 15, 30 \
-         or 60 %, each as likely, then each section's extension uniform up to that share of its length, and every \
-         tube's angle uniform. {}.\n\n\
-         The *true* clearance is that of the swept tube with flat faces: a chain of flat links along the true curve, at \
-         most {REFERENCE_SPACING} mm long and a hundredth of that at the faces, in f64. Stations twice as close change it \
-         by at most {} mm, four times as close by {} mm. Chains by Algorithm 1 at the same stations differ from it by up \
-         to {} mm; a round cap that has just been admitted behind a face can stick out of it, by r - sqrt(r^2 - (r^2 kappa / \
-         2)^2) or {} mm at most.\n\n\
+         A concentric tube robot comes out into a mesh of {triangles} triangles, in random shapes. Some may use 15 %, some \
+         30 % and some 60 % of its length. {}.\n\n\
+         Errors are counted from the *true* clearance: that of the curved tube with flat faces. It comes from a very fine \
+         chain, with links of at most {REFERENCE_SPACING} mm, and of a hundredth of that at the faces. Twice as many links \
+         change it by at most {} mm, four times as many by {} mm. {}. A round cap behind a face can stick out of the face by at \
+         most {} mm.\n\n\
          ## The trade\n\n\
          The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
-         thread. Times are medians over the shapes, the chain already built. *Cold*: without the last answers. *Warm*: after \
-         a query for the shape a small step earlier (0.1 mm of each extension, 0.01 rad of each angle). The search works \
+         thread. Times are medians over the shapes, the chain already built. *First time*: the engine has no answers \
+         to start from. *Again*: it has those of a shape a small step earlier (0.1 mm of each extension, 0.01 rad of each \
+         angle). The search works \
          in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
          that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
          sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
          less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
+         For an error that you can bear, the fastest of these links that stays within it:\n\n{}\n\
          ### What geometry predicts\n\n\
          `simplify` promises that the links' axis and the curve are within the tolerance of each other, and an error on \
          the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
@@ -68,12 +69,13 @@ pub fn page(facts: &Facts) -> String {
         clearances(outcomes),
         length(checked.halved),
         length(checked.quartered),
-        length(checked.algorithm_1),
+        by_algorithm_1(checked.algorithm_1),
         length(widest - (widest * widest - (0.5 * widest * widest * CURVATURE).powi(2)).sqrt()),
         agreement(times.apart),
         table(times, errors),
         base_cap(outcomes),
         front_table(all),
+        guide::table(all),
         predictions(outcomes, errors, widest),
         building(times)
     )
@@ -132,7 +134,7 @@ fn front_table(all: &[Combination]) -> String {
 /// What geometry predicts, beside what was measured.
 fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], widest: f64) -> String {
     let mut page = String::from(
-        "| within | face out of place: predicted | found | Z*: worst over | worst under | Z*, faces fixed: over | under | K: over | under |\n\
+        "| within | face out of place: predicted | found | fitted caps: worst over | worst under | faces fixed: over | under | capsules: over | under |\n\
          |---|---|---|---|---|---|---|---|---|\n",
     );
     for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
@@ -154,6 +156,15 @@ fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], wide
     page
 }
 
+/// How the chains that users build compare with the reference.
+fn by_algorithm_1(apart: f64) -> String {
+    if apart == 0.0 {
+        "`Chain::from_centreline` with the same links gives the same clearances".into()
+    } else {
+        format!("`Chain::from_centreline` with the same links differs by at most {} mm", length(apart))
+    }
+}
+
 fn agreement(apart: f64) -> String {
     if apart == 0.0 {
         "all engines agree to the last bit".into()
@@ -169,8 +180,8 @@ fn base_cap(outcomes: &[Outcome]) -> String {
     let k = Model::Capsule.index();
     let errors = Errors::of(others.iter().map(|shape| shape.each[0].clearances[k] - shape.truth));
     format!(
-        "In {} of the {} free shapes it is the round cap at the robot's base that is nearest in the model K, where it \
-         reaches back towards the wall around the entry. In the other {} the error of K within {} mm is {} mm in the \
+        "In {} of the {} free shapes it is the round cap at the robot's base that is nearest if links are capsules: it \
+         reaches back towards the wall around the entry. In the other {} the error of capsules within {} mm is {} mm in the \
          median and at worst {} mm.",
         free.len() - others.len(),
         free.len(),
@@ -183,7 +194,7 @@ fn base_cap(outcomes: &[Outcome]) -> String {
 
 /// What comes before a query.
 fn building(times: &Times) -> String {
-    let mut page = String::from("| within | links | `simplify` | the chain Z* |\n|---|---|---|---|\n");
+    let mut page = String::from("| within | links | `simplify` | the chain |\n|---|---|---|---|\n");
     for (building, tolerance) in times.building.iter().zip(TOLERANCES) {
         let _ = writeln!(
             page,

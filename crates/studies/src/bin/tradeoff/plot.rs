@@ -129,8 +129,8 @@ enum Shape {
 
 fn shape(way: &str) -> Shape {
     match way {
-        "search, warm" => Shape::Disc,
-        "search, cold" => Shape::Ring,
+        "search, again" => Shape::Disc,
+        "search, first time" => Shape::Ring,
         "exhaustive, f32" => Shape::Triangle,
         "exhaustive, f64" => Shape::Cross,
         "parry's search" => Shape::Square,

@@ -29,7 +29,7 @@ pub fn chapter(outcomes: &[Outcome]) -> String {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            // parry's answers are those of K and Z but for what GJK does, which has its own table.
+            // parry's answers are those of capsules and cylinders but for what GJK does, which has its own table.
             for tolerance in if Model::OURS.contains(&model) { &SHOWN[..] } else { &SHOWN[1..2] } {
                 let tolerance = *tolerance;
                 let model_of = |shape: &&Outcome| shape.each[tolerance].clearances[model.index()];
@@ -82,16 +82,20 @@ fn alone(outcomes: &[Outcome]) -> String {
         }
     };
     for tolerance in SHOWN {
-        row("gaps: Z beside Z*", tolerance, &pair(Model::Cylinder, Model::Modified, tolerance));
+        row(
+            "gaps: cylinders beside fitted caps",
+            tolerance,
+            &pair(Model::Cylinder, Model::Modified, tolerance),
+        );
     }
     for tolerance in SHOWN {
         row(
-            "GJK: parry's Capsule beside K",
+            "GJK: parry's Capsule beside capsules",
             tolerance,
             &pair(Model::ParryCapsule, Model::Capsule, tolerance),
         );
         row(
-            "GJK: parry's Cylinder beside Z",
+            "GJK: parry's Cylinder beside cylinders",
             tolerance,
             &pair(Model::ParryCylinder, Model::Cylinder, tolerance),
         );

@@ -60,6 +60,9 @@ impl std::fmt::Display for Share {
             return write!(f, "none to count");
         }
         let [low, high] = self.interval().map(percent);
+        if self.count == 0 {
+            return write!(f, "none of {} (below {high} %)", self.of);
+        }
         let share = percent(self.count as f64 / self.of as f64);
         write!(f, "{} of {}: {share} % ({low} to {high})", self.count, self.of)
     }

@@ -40,10 +40,10 @@ impl Model {
 
     pub fn name(self) -> &'static str {
         match self {
-            Self::Capsule => "K, capsules",
-            Self::Cylinder => "Z, cylinders",
-            Self::Modified => "Z*, modified",
-            Self::Faced => "Z*, faces fixed",
+            Self::Capsule => "capsules",
+            Self::Cylinder => "cylinders",
+            Self::Modified => "fitted caps",
+            Self::Faced => "fitted caps, faces fixed",
             Self::ParryCapsule => "parry's Capsule",
             Self::ParryCylinder => "parry's Cylinder",
             Self::Spheres => "7 spheres a link",

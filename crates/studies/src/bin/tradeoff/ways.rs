@@ -38,8 +38,8 @@ pub fn all<'a>(mesh: &'a TriMesh, devices: &[Device]) -> Result<Vec<Way<'a>>, St
     for model in Model::OURS {
         let search = || BvhSearch::new(mesh).map_err(text);
         let engines: [(_, Box<dyn Clearance>); 4] = [
-            ("search, cold", Box::new(Cold { engine: search()?, model })),
-            ("search, warm", Box::new(Engine { engine: search()?, model })),
+            ("search, first time", Box::new(Cold { engine: search()?, model })),
+            ("search, again", Box::new(Engine { engine: search()?, model })),
             (
                 "exhaustive, f32",
                 Box::new(Engine { engine: Exhaustive::<f32>::new(mesh).map_err(text)?, model }),
