@@ -5,7 +5,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `engine` | what every engine answers: the trait [`Proximity`] |
-//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `traverse` finds the nearest triangle of a link, `joint` whether any link is near any triangle, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `joint` parts robot and mesh together, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `engine`, `tube_engine` and `motion_engine` are [`BvhSearch`] |
+//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `traverse` finds the nearest triangle of a link, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `joint` parts robot and mesh together, `last_clear` knows what still holds after a small motion, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `engine`, `tube_engine` and `motion_engine` are [`BvhSearch`] |
 //! | `tube/` | a tube in the mesh's frame: its pieces, convex bodies around them, points that are in it |
 //! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `pass` goes through a query's links, `engine` is [`Exhaustive`] |
 //! | `link_lanes` | a link against a pack of triangles, in the precision of the search |

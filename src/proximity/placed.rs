@@ -67,6 +67,11 @@ impl<'a> PlacedRobot<'a> {
         }
     }
 
+    /// A point of the robot in the mesh's frame.
+    pub(super) fn placed(&self, point: Vector) -> Vector {
+        self.pose * point
+    }
+
     pub(super) fn in_robot_frame(&self, point: Vector) -> Vector {
         self.pose.inverse_transform_point(point)
     }

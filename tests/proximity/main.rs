@@ -4,6 +4,7 @@ mod agreement;
 mod allocations;
 mod certify;
 mod chain_cases;
+mod coherence;
 mod far_parts;
 mod fuzz;
 mod large;

@@ -1,6 +1,7 @@
 //! Proximity by a bounding volume hierarchy.
 
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
+use super::last_clear::LastClear;
 use super::motion_queries::MotionMemory;
 use super::queries::RobotSearch;
 use super::tube_queries::TubeMemory;
@@ -62,10 +63,13 @@ pub(super) struct Memory {
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
     last_minimum: Option<(usize, u32)>,
+    /// What the last robot that kept away has proven.
+    last_clear: LastClear,
 }
 
 impl Memory {
     pub(super) fn forget(&mut self) {
+        self.last_clear.forget();
         self.tube.forget();
         self.scratch.forget();
         self.last.clear();
@@ -177,6 +181,17 @@ impl<'a> Query<'a> {
     }
 
     fn clears(&mut self, margin: Real) -> bool {
+        let (robot, reach) = (self.robot, self.context.hierarchy.reach);
+        if self.context.memory.last_clear.still_keeps(robot, margin, reach) {
+            return true;
+        }
+        if let Some(wider) = self.context.memory.last_clear.wider(robot, margin, reach) {
+            if self.search().clears(wider) {
+                self.context.memory.last_clear.keep(robot, wider);
+                return true;
+            }
+            self.context.memory.last_clear.miss();
+        }
         self.search().clears(margin)
     }
 
@@ -256,6 +271,8 @@ impl Proximity for BvhSearch {
         let hierarchy = Arc::make_mut(&mut self.hierarchy);
         hierarchy.mesh.set_vertices(vertices);
         hierarchy.refit(self.level);
+        // It spoke of the mesh as it was.
+        self.memory.last_clear.forget();
         Ok(())
     }
 }

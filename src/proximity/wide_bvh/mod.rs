@@ -6,6 +6,7 @@ mod engine;
 mod fit;
 mod hierarchy;
 mod joint;
+mod last_clear;
 mod moment;
 mod motion_engine;
 mod motion_queries;
