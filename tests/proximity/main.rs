@@ -15,3 +15,4 @@ mod scenes;
 mod thin_links;
 mod ties;
 mod tube;
+mod visits;
