@@ -6,6 +6,9 @@ pub mod shape {}
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 
+#[doc = include_str!("../docs/book/inside.md")]
+pub mod inside {}
+
 #[doc = include_str!("../docs/book/tube.md")]
 pub mod tube {}
 

@@ -31,7 +31,7 @@ pub use motion::{
     verify_motion,
 };
 pub(crate) use motion::{Sampled, Sections};
-pub(crate) use scale::length;
+pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
 pub(crate) use tube::{Face, Lasting, Section};
