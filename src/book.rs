@@ -3,6 +3,9 @@
 #[doc = include_str!("../docs/book/shape.md")]
 pub mod shape {}
 
+#[doc = include_str!("../docs/book/kinematics.md")]
+pub mod kinematics {}
+
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 

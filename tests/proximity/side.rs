@@ -146,7 +146,7 @@ impl Wall for TriMesh {
 
 #[test]
 fn a_closed_mesh_is_never_mistaken() {
-    never_wrong(2000);
+    never_wrong(1000);
 }
 
 /// A million points: `cargo test --release --test proximity -- side::a_million --ignored`
@@ -193,7 +193,7 @@ fn an_opening_leaves_doubt_where_it_fills_the_view() {
     let mut random = Random::new(53);
     let bounds = open.local_aabb();
     let mut seen = [0; 3];
-    for _ in 0..20_000 {
+    for _ in 0..6_000 {
         let point = if random.below(2) == 0 {
             bounds.center() + random.point() * bounds.half_extents() * 1.3
         } else {
@@ -207,7 +207,7 @@ fn an_opening_leaves_doubt_where_it_fills_the_view() {
         }
         seen[found as usize] += 1;
     }
-    assert!(seen.iter().all(|&count| count > 1000), "{seen:?}");
+    assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
 }
 
 /// Triangles that are missing or there twice cast doubt on their surroundings, and mislead nowhere.

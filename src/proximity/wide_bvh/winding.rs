@@ -11,7 +11,7 @@ use crate::proximity::winding::{FarField, SolidAngle, solid_angle};
 use parry3d_f64::math::{Real, Vector};
 
 /// How much each node may be off, in steradians, at one attempt after the other.
-const ATTEMPTS: [Real; 3] = [0.05, 0.002, 0.00005];
+const ATTEMPTS: [Real; 4] = [0.1, 0.02, 0.004, 0.0005];
 
 /// What all nodes and leaves of a hierarchy are from far away.
 #[derive(Clone)]
