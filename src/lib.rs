@@ -33,6 +33,7 @@
 //! - **The curve.** A [`Tube`] is the robot without links: samples or a function, and the error that a query may make.
 //!   [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds its clearance from both sides.
 //! - **The kinematics.** [`ConstantCurvature`] leads from curvatures to points; [`book::kinematics`] from other models.
+//! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side), by the mesh's winding number, proven.
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
 //!   `gpu` adds `gpu::GpuExhaustive`.

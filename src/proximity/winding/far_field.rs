@@ -24,8 +24,8 @@
 //! long, and off by u of their length. A cross product is off by 4 u sqrt(3) of its edges' product: half of it by 14 r^2.
 //! A centroid is off by 5 u r, so a term of C by (14 + 1.3 (5 + 1)) r^3 < 24 r^3; a triangle in the ball has
 //! at most the area 1.3 r^2. Summing adds m u times what is summed. C counts 4.74 times (sqrt(3) for its
-//! trace and 3), over R > r. That makes m (14 + 114) r^2 + m (1 + 4.74) A. The evaluation itself takes at most 15 u
-//! of the first term and 33 u of the second: 15 A + 4.74 x 33 A. All this is less than [`ROUNDING`] m (A + r^2). The sums
+//! trace and 3), over R > r. That makes m (14 + 114) r^2 + m (1 + 4.74) A. The evaluation itself takes at most 22 u
+//! of the first term and 38 u of the second: 22 A + 4.74 x 38 A. All this is less than [`ROUNDING`] m (A + r^2). The sums
 //! that are all positive, areas and squares, err by less than that share of A + r^2, and of r^2 times it.
 //!
 //! All lengths are scaled by the power of two that brings the mesh to size one, so that their powers neither overflow nor

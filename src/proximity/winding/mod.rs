@@ -35,7 +35,7 @@ impl SolidAngle {
 
 impl std::ops::AddAssign for SolidAngle {
     /// The sum, whose rounding counts as an error. The errors are themselves summed with rounding, which 2^32 times
-    /// adds less than 2^-20 of them: [`Side::of`] allows for that.
+    /// adds less than 2^-20 of them: [`Side::of`] allows for that, and with it for the few roundings of each error.
     fn add_assign(&mut self, other: Self) {
         self.value += other.value;
         self.error += other.error + f64::UNIT_ROUNDOFF * self.value.abs();
