@@ -69,7 +69,9 @@ where
         balance_parlett_reinsch(&mut companion);
     }
     let schur = Schur::try_new(companion, f64::EPSILON, PATIENCE);
-    schur.map_or_else(Vec::new, |schur| schur.complex_eigenvalues().iter().map(|root| [root.re, root.im]).collect())
+    schur.map_or_else(Vec::new, |schur| {
+        schur.complex_eigenvalues().iter().map(|root| [root.re, root.im]).collect()
+    })
 }
 
 /// All routes on polynomials of degree N = M - 1.
@@ -91,8 +93,10 @@ where
     ];
     let part = count.div_ceil(TURNS);
     let piece = |turn: usize| polynomials.chunks(part).nth(turn).unwrap_or_default();
-    let run = |route: usize, turn: usize| piece(turn).iter().for_each(|one| _ = black_box(routes[route](one)));
-    let times = in_turns(TURNS, [&mut |turn| run(0, turn), &mut |turn| run(1, turn), &mut |turn| run(2, turn)]);
+    let run =
+        |route: usize, turn: usize| piece(turn).iter().for_each(|one| _ = black_box(routes[route](one)));
+    let times =
+        in_turns(TURNS, [&mut |turn| run(0, turn), &mut |turn| run(1, turn), &mut |turn| run(2, turn)]);
     std::array::from_fn(|route| {
         let mut outcome = Outcome { time: times[route] * 1e6 / part as f64, ..Outcome::default() };
         for coefficients in &polynomials {
