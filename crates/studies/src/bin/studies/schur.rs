@@ -66,9 +66,9 @@ where
         if column == N - 1 { -coefficients[row] / lead } else { below }
     });
     if is_balanced {
-        balance_parlett_reinsch(&mut companion);
+        balance_parlett_reinsch::<f64, Const<N>>(&mut companion);
     }
-    let schur = Schur::try_new(companion, f64::EPSILON, PATIENCE);
+    let schur = Schur::<f64, Const<N>>::try_new(companion, f64::EPSILON, PATIENCE);
     schur.map_or_else(Vec::new, |schur| {
         schur.complex_eigenvalues().iter().map(|root| [root.re, root.im]).collect()
     })
