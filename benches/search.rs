@@ -1,11 +1,11 @@
-//! Per-link closest pairs by search, against parry on the same mesh and links, in one run.
+//! Per-link closest pairs by search, against parry on the same mesh and links, in one run; and the side of a point.
 
-use continuum_scene::{cavity, timing};
+use continuum_scene::{cavity, steer, timing};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use parry_continuum::parry::math::Pose;
+use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Cylinder, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Proximity};
+use parry_continuum::proximity::{BvhSearch, Proximity, Side};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -65,5 +65,30 @@ fn search(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, search);
+/// Inside or outside, on the wall's both sides, against the sum over all triangles.
+fn side(criterion: &mut Criterion) {
+    for level in [4, 6, 8] {
+        let mesh = cavity::mesh(level);
+        let engine = BvhSearch::new(&mesh).expect("the scene's mesh is valid");
+        let (line, _) = cavity::robot(2.0);
+        let points: Vec<_> =
+            line.iter().flat_map(|&point| [0.5, 0.9, 1.1, 2.0].map(|far| point * far)).collect();
+        let mut group = criterion.benchmark_group("side");
+        group
+            .sample_size(10)
+            .measurement_time(Duration::from_secs(1))
+            .warm_up_time(Duration::from_millis(300));
+        let mut bench = |name: &str, ask: &dyn Fn(Vector) -> bool| {
+            let mut point = points.iter().cycle();
+            group.bench_function(BenchmarkId::new(name, mesh.indices().len()), |bencher| {
+                bencher.iter(|| black_box(ask(*point.next().unwrap_or(&Vector::ZERO))));
+            });
+        };
+        bench("search", &|point| engine.side(point) == Side::Inside);
+        bench("every triangle", &|point| steer::is_inside(&mesh, point));
+        group.finish();
+    }
+}
+
+criterion_group!(benches, search, side);
 criterion_main!(benches);

@@ -3,8 +3,14 @@
 #[doc = include_str!("../docs/book/shape.md")]
 pub mod shape {}
 
+#[doc = include_str!("../docs/book/kinematics.md")]
+pub mod kinematics {}
+
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
+
+#[doc = include_str!("../docs/book/inside.md")]
+pub mod inside {}
 
 #[doc = include_str!("../docs/book/tube.md")]
 pub mod tube {}

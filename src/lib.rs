@@ -32,6 +32,8 @@
 //!   as few in far less time.
 //! - **The curve.** A [`Tube`] is the robot without links: samples or a function, and the error that a query may make.
 //!   [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds its clearance from both sides.
+//! - **The kinematics.** [`ConstantCurvature`] leads from curvatures to points; [`book::kinematics`] from other models.
+//! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side), by the mesh's winding number, proven.
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
 //!   `gpu` adds `gpu::GpuExhaustive`.
@@ -70,7 +72,7 @@ pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
 pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection};
+pub use robot::{Cap, Chain, ConstantCurvature, ModifiedCylinder, RobotError, Tube, TubeSection};
 pub use robot::{bending_speed, simplify, stations, verify_motion};
 
 /// Runs the code in the README.

@@ -5,7 +5,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `engine` | what every engine answers: the trait [`Proximity`] |
-//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `traverse` finds the nearest triangle of a link, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `joint` parts robot and mesh together, `last_clear` knows what still holds after a small motion, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `engine`, `tube_engine` and `motion_engine` are [`BvhSearch`] |
+//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `traverse` finds the nearest triangle of a link, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `joint` parts robot and mesh together, `last_clear` knows what still holds after a small motion, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `winding` sums up how the mesh winds around a point, `engine`, `tube_engine`, `motion_engine` and `side_engine` are [`BvhSearch`] |
 //! | `tube/` | a tube in the mesh's frame: its pieces, convex bodies around them, points that are in it |
 //! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `pass` goes through a query's links, `engine` is [`Exhaustive`] |
 //! | `link_lanes` | a link against a pack of triangles, in the precision of the search |
@@ -14,6 +14,7 @@
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
 //! | `measure_lanes` | the same measurement, several triangles together |
 //! | `mesh` | the mesh as every engine keeps it |
+//! | `winding/` | how the mesh winds around a point, and on which side of it that is; `wide_bvh/winding` sums it up |
 //! | `certificate` | proofs of an answer |
 //! | `motion` | what an answer about a motion is |
 //! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
@@ -36,6 +37,7 @@ mod serialised;
 mod triangle_block;
 mod tube;
 mod wide_bvh;
+mod winding;
 
 #[cfg(feature = "gpu")]
 pub(crate) use checks::check_margin;
@@ -61,3 +63,4 @@ pub use motion::{FirstContact, MotionAnswer};
 pub use report::{LinkProximity, Work};
 pub use tube::{Clearance, Decision};
 pub use wide_bvh::BvhSearch;
+pub use winding::{InsideAnswer, Side};

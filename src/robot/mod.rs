@@ -5,6 +5,7 @@ mod algorithm_1;
 mod cap;
 mod chain;
 mod compare;
+mod constant_curvature;
 mod convert;
 mod error;
 mod link_tree;
@@ -22,6 +23,7 @@ mod tube;
 
 pub use cap::Cap;
 pub use chain::Chain;
+pub use constant_curvature::ConstantCurvature;
 pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
 pub use modified_cylinder::ModifiedCylinder;
@@ -31,7 +33,7 @@ pub use motion::{
     verify_motion,
 };
 pub(crate) use motion::{Sampled, Sections};
-pub(crate) use scale::length;
+pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
 pub(crate) use tube::{Face, Lasting, Section};

@@ -13,7 +13,7 @@ pub(crate) fn length(v: Vector) -> Real {
 }
 
 /// The direction of `v`, or zero for the zero vector.
-pub(super) fn direction(v: Vector) -> Vector {
+pub(crate) fn direction(v: Vector) -> Vector {
     let v = v * v.abs().max_element().power_of_two_to_unity();
     if v == Vector::ZERO { v } else { v / v.length() }
 }

@@ -37,6 +37,7 @@ fn a_control_loop_allocates_nothing() {
         let least = search.minimum(&chain, &pose).unwrap();
         search.per_link(&chain, &pose, &mut answers).unwrap();
         search.clears(&chain, &pose, 0.5).unwrap();
+        search.clears_inside(&chain, &pose, 0.5).unwrap();
         if tick < 50 {
             seen.push(least.distance);
         }

@@ -2,6 +2,8 @@
 
 mod aabb;
 mod algorithm_1;
+mod constant_curvature;
+mod nalgebra_types;
 mod simplify;
 mod stations;
 mod to_trimesh;

@@ -188,12 +188,15 @@ fn the_studies_are_made_and_one_is_made_again() {
     let (chapters, polynomials) = page.split_once("## Table V").unwrap();
     let after = read("studies/STUDIES.md");
     let (chapters_after, polynomials_after) = after.split_once("## Table V").unwrap();
+    let eigenvalues = table(&page, "| coefficients | degree | ours us |");
+    assert_eq!(eigenvalues.len(), 10);
+    assert!(eigenvalues.iter().all(|row| row[3] == "all" || percent(&row[3]) > 80.0), "{eigenvalues:?}");
     assert_eq!(chapters, chapters_after);
     assert!(polynomials.contains("\n200 polynomials") && polynomials_after.contains("\n20 polynomials"));
 
     for (arguments, expected) in [
         (["--problems", "19"], "at least 20"),
-        (["--only", "roots"], "discs, branching, engines, polynomials"),
+        (["--only", "roots"], "discs, branching, engines, polynomials, schur"),
     ] {
         refuse(STUDIES, &arguments, expected);
     }

@@ -79,6 +79,16 @@ impl<E: Lane> WideBvh<E> {
         self.nodes[node].leaves = [first, self.leaves.len()];
     }
 
+    /// Calls `visit` with every triangle below a child.
+    pub(super) fn triangles_below(&self, child: Child, visit: &mut impl FnMut(u32)) {
+        match child {
+            Child::Node(node) => {
+                self.nodes[node as usize].children().for_each(|child| self.triangles_below(child, visit));
+            }
+            Child::Leaf(leaf) => self.leaves[leaf as usize].triangles().for_each(visit),
+        }
+    }
+
     /// Takes over the positions of the vertices; the division stays.
     pub(super) fn refit(&mut self, level: Level, mesh: &Mesh) {
         self.frame = SearchFrame::new(mesh);

@@ -136,6 +136,10 @@ impl BvhSearch {
         result.inspect_err(|_| out.clear())
     }
 
+    pub(super) fn hierarchy(&self) -> &Hierarchy {
+        &self.hierarchy
+    }
+
     pub(super) fn context(&mut self) -> Context<'_> {
         Context { level: self.level, hierarchy: &self.hierarchy, memory: &mut self.memory }
     }

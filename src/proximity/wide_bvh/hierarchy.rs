@@ -3,6 +3,7 @@
 use super::build::WideBvh;
 use super::joint::{JointSearch, Pairs};
 use super::traverse::{Stack, Traversal};
+use super::winding::FarFields;
 use crate::proximity::Work;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
@@ -20,15 +21,29 @@ pub(super) struct Hierarchy {
     single: WideBvh<f32>,
     /// For links that single precision does not resolve, built when the first of them comes.
     double: OnceLock<WideBvh<f64>>,
+    /// For those who ask on which side of the mesh a point is, built at the first question.
+    far_fields: OnceLock<FarFields>,
 }
 
 impl Hierarchy {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
-        Self { single: WideBvh::new(level, &mesh), double: OnceLock::new(), reach: mesh.reach(), mesh }
+        Self {
+            single: WideBvh::new(level, &mesh),
+            double: OnceLock::new(),
+            far_fields: OnceLock::new(),
+            reach: mesh.reach(),
+            mesh,
+        }
     }
 
     fn double(&self, level: Level) -> &WideBvh<f64> {
         self.double.get_or_init(|| WideBvh::new(level, &self.mesh))
+    }
+
+    /// What the side of a point is found by. The division of either hierarchy serves.
+    pub(super) fn around(&self) -> (&Mesh, &WideBvh<f32>, &FarFields) {
+        let fields = self.far_fields.get_or_init(|| FarFields::new(&self.single, &self.mesh));
+        (&self.mesh, &self.single, fields)
     }
 
     /// The link in the precision that resolves it.
@@ -46,6 +61,7 @@ impl Hierarchy {
     /// Takes over that the vertices of the mesh have moved.
     pub(super) fn refit(&mut self, level: Level) {
         self.reach = self.mesh.reach();
+        self.far_fields.take();
         self.single.refit(level, &self.mesh);
         if let Some(double) = self.double.get_mut() {
             double.refit(level, &self.mesh);

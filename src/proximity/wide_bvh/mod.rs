@@ -12,8 +12,10 @@ mod motion_engine;
 mod motion_queries;
 mod node;
 mod queries;
+mod side_engine;
 mod traverse;
 mod tube_engine;
 mod tube_queries;
+mod winding;
 
 pub use engine::BvhSearch;

@@ -137,6 +137,11 @@ impl<E: Lane> Leaf<E> {
         Self { rows: [E::default(); 9 * BLOCK], triangles }
     }
 
+    /// The triangles, each once.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        self.triangles.chunk_by(|one, other| one == other).map(|same| same[0])
+    }
+
     /// Takes over where the triangles are.
     pub(super) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
         for lane in 0..BLOCK {

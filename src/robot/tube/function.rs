@@ -95,7 +95,9 @@ impl Tube {
     }
 }
 
-fn check_sections(sections: &[TubeSection]) -> Result<(), RobotError> {
+/// # Errors
+/// No section; a length that is not positive, a radius or a curvature that is negative, or one that is not finite.
+pub(in crate::robot) fn check_sections(sections: &[TubeSection]) -> Result<(), RobotError> {
     if sections.is_empty() {
         return Err(RobotError::NoSections);
     }

@@ -9,6 +9,7 @@ mod section;
 mod verify;
 
 pub use function::TubeSection;
+pub(super) use function::check_sections;
 pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 

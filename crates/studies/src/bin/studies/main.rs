@@ -13,6 +13,7 @@ mod engines;
 mod pairs;
 mod peak;
 mod polynomials;
+mod schur;
 mod turns;
 
 use clap::{Parser, ValueEnum};
@@ -45,7 +46,7 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = at_least_20)]
     triangles: usize,
 
-    /// Polynomials of each degree for Table V
+    /// Polynomials of each degree for Table V, and ten times as many as for the companion matrix
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = at_least_20)]
     polynomials: usize,
 }
@@ -56,10 +57,11 @@ enum Chapter {
     Branching,
     Engines,
     Polynomials,
+    Schur,
 }
 
 impl Chapter {
-    const ALL: [Self; 4] = [Self::Discs, Self::Branching, Self::Engines, Self::Polynomials];
+    const ALL: [Self; 5] = [Self::Discs, Self::Branching, Self::Engines, Self::Polynomials, Self::Schur];
 
     /// The line that ends the chapter.
     fn mark(self) -> String {
@@ -99,6 +101,7 @@ fn measure(options: &Options) -> Result<(), String> {
                 Chapter::Branching => pairs::chapters(options.queries)?.join("\n"),
                 Chapter::Engines => engines::chapter(options.triangles)?,
                 Chapter::Polynomials => polynomials::chapter(options.polynomials)?,
+                Chapter::Schur => schur::chapter(options.polynomials.div_ceil(10))?,
             });
         } else if let Some((text, _)) = old {
             page.push_str("## ");

@@ -148,7 +148,7 @@ fn write_page(count: usize, measured: &[Measured]) -> Result<String, std::fmt::E
 }
 
 /// All roots, or a percentage that does not hide a missing one.
-fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     if share == 1.0 { "all".into() } else { format!("{:.5} %", 100.0 * share) }
 }
 
