@@ -110,9 +110,7 @@ fn main() -> ExitCode {
     command::run(|options: &Options| {
         let out = command::picture_path(&options.out, "figure7.png")?;
         let panels = panels().map_err(|error| error.to_string())?;
-        draw(&panels)
-            .save(&out)
-            .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+        draw(&panels).save(&out).map_err(|error| command::unwritable(&out, error))?;
         println!("picture: {}", out.display());
         Ok(())
     })

@@ -39,7 +39,7 @@ struct Options {
     engine: Engine,
 
     /// Steps on the way in
-    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = command::whole(1..=100_000))]
     steps: u32,
 
     /// Where to save the picture: a directory, or a file that ends in .png
@@ -99,10 +99,10 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn steer(options: &Options) -> Result<(), String> {
+    let out = command::picture_path(&options.out, "ventricle.png")?;
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let (mut exhaustive, exhaustive_name) = options.engine.build(&mesh)?;
-    let out = command::picture_path(&options.out, "ventricle.png")?;
 
     let robot = three_tubes();
     let base = options.anatomy.pose(&mesh)?;
@@ -166,9 +166,7 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let caption = caption(options, &mesh, chain, &found, times);
     let picture = figure::draw(&mesh, chain, &base, &found, &caption);
-    picture
-        .save(&out)
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+    picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
     Ok(())
 }
