@@ -70,8 +70,8 @@ pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
 pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
-pub use robot::{Cap, Chain, ModifiedCylinder, RobotError, Tube, TubeSection};
-pub use robot::{bending_speed, simplify, stations, verify_motion};
+pub use robot::{Cap, Chain, MatrixError, ModifiedCylinder, RobotError, Tube, TubeSection};
+pub use robot::{bending_speed, pose_from_matrix, simplify, stations, verify_motion};
 
 /// Runs the code in the README.
 #[cfg(doctest)]

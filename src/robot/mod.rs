@@ -10,6 +10,7 @@ mod error;
 mod link_tree;
 mod modified_cylinder;
 mod motion;
+mod registration;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
@@ -31,6 +32,7 @@ pub use motion::{
     verify_motion,
 };
 pub(crate) use motion::{Sampled, Sections};
+pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use scale::length;
 pub use simplify::simplify;
 pub use stations::stations;

@@ -1,5 +1,6 @@
 //! What a user meets first: the programs, and under which terms all of it may be used.
 
 mod licences;
+mod my_robot;
 mod programs;
 mod public_names;
