@@ -52,7 +52,10 @@ fn clearance(options: &Options) -> Result<(), Box<dyn Error>> {
     let robot = Chain::from_centreline(&points, &radii)?;
     search.per_link(&robot, &pose, &mut links)?;
     for link in &links {
-        println!("link {}: {:.6}, from {} to {}", link.link, link.distance, link.on_robot, link.on_mesh);
+        println!(
+            "link {}: {:.6}, from {:.6} to {:.6}",
+            link.link, link.distance, link.on_robot, link.on_mesh
+        );
     }
     if let Some(tolerance) = options.tolerance {
         let curve = search.clearance(&Tube::from_samples(&points, &radii, None)?, &pose, tolerance)?;

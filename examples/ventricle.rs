@@ -220,14 +220,14 @@ fn print_table(chain: &Chain, answers: &[LinkProximity]) {
     }
 }
 
-/// Times each engine and parry in turns, and prints them. Returns search (cold), exhaustive and parry.
+/// Times each engine and parry in turns, and prints them. Returns search (cold and warm), exhaustive and parry.
 fn print_times(
     mesh: &TriMesh,
     chains: &[Chain],
     base: &Pose,
     search: &mut BvhSearch,
     (exhaustive_name, exhaustive): (&str, &mut dyn Proximity),
-) -> Result<[Duration; 3], String> {
+) -> Result<[Duration; 4], String> {
     let chain = &chains[chains.len() - 1];
     let before = &chains[chains.len().saturating_sub(2)];
     let cylinders = timing::cylinders(chain);
@@ -258,7 +258,7 @@ fn print_times(
     row("search, cold", cold);
     row("search, warm from the step before", warm);
     row(exhaustive_name, all);
-    Ok([cold, all, parry])
+    Ok([cold, warm, all, parry])
 }
 
 fn ratio(of: Duration, to: Duration) -> f64 {
@@ -270,7 +270,7 @@ fn caption(
     mesh: &TriMesh,
     chain: &Chain,
     answers: &[LinkProximity],
-    [search, exhaustive, parry]: [Duration; 3],
+    [cold, warm, exhaustive, parry]: [Duration; 4],
 ) -> figure::Caption {
     let (one, many) = match options.model {
         Model::Capsule => ("capsule", "capsules"),
@@ -287,13 +287,14 @@ fn caption(
         ));
     }
     notes.push(format!(
-        "all links: search {}, exhaustive {}, parry {}",
-        clock(search),
+        "all links: search {} cold, {} warm; exhaustive {}, parry {}",
+        clock(cold),
+        clock(warm),
         clock(exhaustive),
         clock(parry)
     ));
     figure::Caption {
-        title: "A concentric tube robot in a brain ventricle".into(),
+        title: format!("A concentric tube robot in {}", options.anatomy.name()),
         subtitle: format!("{links} against {} triangles", mesh.num_triangles()),
         notes,
     }

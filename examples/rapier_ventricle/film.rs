@@ -60,7 +60,7 @@ impl<'a> Studio<'a> {
             }
         }
         let mut picture = Picture::new(Some(self.mesh), solids);
-        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
+        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
         picture.sky = SKY;
         let mut canvas = Canvas::new(PANEL[0], PANEL[1] + CAPTION, |_, _| SKY[0]);
         canvas.paste(&picture.render(&self.camera, PANEL[0], PANEL[1]), [0, 0], 0.0);

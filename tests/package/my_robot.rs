@@ -31,7 +31,10 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     let turned = &file("turned.txt", TURNED);
     let out =
         succeed("my_robot", &["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"]);
-    assert!(out.contains(", from [30, 4, ") && out.contains(" to [30, 0, "), "{out}");
+    assert!(
+        out.contains(", from [30.000000, 4.000000, ") && out.contains(" to [30.000000, 0.000000, "),
+        "{out}"
+    );
     let curve = out.lines().find_map(|line| line.strip_prefix("curve: ")).unwrap_or_else(|| panic!("{out}"));
     let bounds: Vec<f64> = curve.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     assert!(bounds[0] <= 4.0 && 4.0 <= bounds[1] && bounds[1] - bounds[0] <= 0.0100001, "{out}");

@@ -40,7 +40,7 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--triangles", "none"], "write a whole number from 6000 to 20000000"),
         (&["--triangles", "100"], "write a whole number from 6000 to 20000000"),
         (&["--mesh", tiny, "--scale", "big"], "write a number"),
-        (&["--mesh", tiny, "--label", "-1"], "write a whole number of at least 0"),
+        (&["--mesh", tiny, "--label", "all"], "write a whole number of at least 0"),
         (&["--base", "1,2"], "three numbers"),
         (&["--base", "1,2,inf"], "three numbers"),
         (&["--axis", "0,0,0"], "a direction needs a length"),

@@ -73,6 +73,12 @@ impl Anatomy {
         TriMesh::new(points, triangles).map_err(|error| error.to_string())
     }
 
+    /// What the wall is, as a title names it.
+    pub fn name(&self) -> String {
+        let file = self.mesh.as_ref().and_then(|path| path.file_name());
+        file.map_or("a generated brain ventricle".into(), |name| name.to_string_lossy().into_owned())
+    }
+
     /// Whether the robot starts where the generated ventricle has its entry.
     pub fn is_planned(&self) -> bool {
         self.mesh.is_none() && self.base.is_none() && self.axis.is_none()
