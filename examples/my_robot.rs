@@ -11,6 +11,9 @@ struct Options {
     /// The wall: an STL, OBJ or PLY file, or a segmentation in NIfTI or NRRD (which comes in millimetres)
     #[arg(long)]
     mesh: PathBuf,
+    /// The label of the wall in a segmentation [default: all that are not 0]
+    #[arg(long)]
+    label: Option<u32>,
     /// A line for each point of the centreline: x,y,z and optionally the radius of the segment that begins there
     #[arg(long)]
     centreline: PathBuf,
@@ -26,38 +29,31 @@ struct Options {
 }
 
 fn main() {
-    clearance(&Options::parse()).unwrap_or_else(|error| {
-        eprintln!("error: {error}");
-        std::process::exit(1)
-    });
+    let asked = clearance(&Options::parse()).inspect_err(|error| eprintln!("error: {error}"));
+    std::process::exit(asked.is_err().into());
 }
 
-fn clearance(options: &Options) -> Result<(), Box<dyn Error>> {
+fn clearance(my: &Options) -> Result<(), Box<dyn Error>> {
     let (mut points, mut radii, mut links) = (Vec::new(), Vec::new(), Vec::new());
-    for (line, row) in rows(&options.centreline, 3..=4, "x,y,z or x,y,z,radius")? {
+    for (line, row) in rows(&my.centreline, 3..=4, "x,y,z or x,y,z,radius")? {
         points.push(Vector::new(row[0], row[1], row[2]));
-        let radius = row.get(3).copied().or(options.radius);
-        radii.push(radius.ok_or(format!("{line} has no radius; write it or give --radius")));
+        radii.push(row.get(3).copied().or(my.radius).ok_or(format!("{line} has no radius; give --radius")));
     }
-    radii.pop(); // no segment begins at the last point
-    let radii = radii.into_iter().collect::<Result<Vec<f64>, _>>()?;
+    let radii = radii.into_iter().take(points.len().max(1) - 1).collect::<Result<Vec<f64>, _>>()?;
     let mut pose = Pose::IDENTITY;
-    if let Some(path) = &options.pose {
-        let matrix = rows(path, 4..=4, "four numbers, a row of a 4x4 matrix")?;
-        let matrix: Vec<_> = matrix.iter().map(|(_, row)| [row[0], row[1], row[2], row[3]]).collect();
-        pose = pose_from_matrix(matrix.try_into().map_err(|_| "--pose needs four lines of four numbers")?)?;
+    if let Some(path) = &my.pose {
+        let matrix = rows(path, 4..=4, "4 numbers")?.iter().map(|(_, r)| [r[0], r[1], r[2], r[3]]).collect();
+        pose = pose_from_matrix(Vec::try_into(matrix).map_err(|_| "--pose needs 4 lines of 4 numbers")?)?;
     }
-    let (vertices, triangles) = mesh_files::load(&options.mesh)?.into_parts();
+    let reading = mesh_files::Options::default().with_label(my.label);
+    let (vertices, triangles) = mesh_files::load_with(&my.mesh, &reading)?.into_parts();
     let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
     let robot = Chain::from_centreline(&points, &radii)?;
     search.per_link(&robot, &pose, &mut links)?;
-    for link in &links {
-        println!(
-            "link {}: {:.6}, from {:.6} to {:.6}",
-            link.link, link.distance, link.on_robot, link.on_mesh
-        );
+    for l in &links {
+        println!("link {}: {:.6}, from {:.6} to {:.6}", l.link, l.distance, l.on_robot, l.on_mesh);
     }
-    if let Some(tolerance) = options.tolerance {
+    if let Some(tolerance) = my.tolerance {
         let curve = search.clearance(&Tube::from_samples(&points, &radii, None)?, &pose, tolerance)?;
         println!("curve: {:.6} to {:.6}, {:.3} along it", curve.lower, curve.upper, curve.arc_length);
     }

@@ -53,7 +53,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
     };
     refuse_shape("x,y,z\n30,30,20\n30,30,40\n", "line 2 of ");
-    refuse_shape("30,30,20\n30,30,40\n", "no radius; write it or give --radius");
+    refuse_shape("30,30,20\n30,30,40\n", "no radius; give --radius");
     refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
     refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
     refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");
@@ -65,8 +65,8 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         let pose = file("bad.txt", text);
         refuse("my_robot", &["--mesh", room, "--centreline", shape, "--pose", &pose], expected);
     };
-    refuse_pose("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "four lines of four numbers");
-    refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "a row of a 4x4 matrix");
+    refuse_pose("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "--pose needs 4 lines of 4 numbers");
+    refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "write 4 numbers");
     refuse_pose(&TURNED.replace("0 0 0 1", "0 0 0 2"), "not 0 0 0 1");
     refuse_pose(&TURNED.replace("-1", "1"), "mirrors");
     refuse_pose(&TURNED.replace("-1", "-0.9"), "does not rotate");

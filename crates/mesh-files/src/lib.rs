@@ -42,6 +42,11 @@ impl Options {
     pub fn scaled(scale: f64) -> Self {
         Self { scale, ..Self::default() }
     }
+
+    /// The same, but of a label map the surface of this label, or of all that are not 0.
+    pub fn with_label(self, label: Option<u32>) -> Self {
+        Self { label, ..self }
+    }
 }
 
 /// What a file's extension says it holds.

@@ -64,8 +64,7 @@ impl Anatomy {
     pub fn load(&self) -> Result<TriMesh, String> {
         let (points, triangles) = match &self.mesh {
             Some(path) => {
-                let mut options = Options::scaled(self.scale);
-                options.label = self.label;
+                let options = Options::scaled(self.scale).with_label(self.label);
                 mesh_files::load_with(path, &options).map_err(|error| error.to_string())?.into_parts()
             }
             None => ventricle::mesh(self.triangles as usize),

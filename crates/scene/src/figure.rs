@@ -164,7 +164,7 @@ fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
 }
 
 /// A ruler as long as a round number of millimetres at the given depth, with its left end at `at`.
-fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
+pub fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
     let [from, to] = [depth, depth + camera.right].map(|p| camera.place(p, size)[0]);
     let unit = f64::from(to - from);
     let decade = 10f64.powf((150.0 / unit).log10().floor());

@@ -117,9 +117,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn label(name: &str, bytes: &[u8], label: u32) -> Result<Mesh, String> {
-    let mut options = Options::default();
-    options.label = Some(label);
-    from_bytes(name, bytes, &options).map_err(|error| error.to_string())
+    from_bytes(name, bytes, &Options::default().with_label(Some(label))).map_err(|error| error.to_string())
 }
 
 /// Every edge is passed as often in one direction as in the other.
