@@ -286,13 +286,8 @@ fn caption(
             nearest.link, nearest.triangle, nearest.distance
         ));
     }
-    notes.push(format!(
-        "all links: search {} cold, {} warm; exhaustive {}, parry {}",
-        clock(cold),
-        clock(warm),
-        clock(exhaustive),
-        clock(parry)
-    ));
+    notes.push(format!("all links: search {} cold, {} warm", clock(cold), clock(warm)));
+    notes.push(format!("every triangle {}, parry link by link {}", clock(exhaustive), clock(parry)));
     figure::Caption {
         title: format!("A concentric tube robot in {}", options.anatomy.name()),
         subtitle: format!("{links} against {} triangles", mesh.num_triangles()),

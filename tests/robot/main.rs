@@ -2,6 +2,7 @@
 
 mod aabb;
 mod algorithm_1;
+mod registration;
 mod simplify;
 mod stations;
 mod to_trimesh;

@@ -92,9 +92,9 @@ pub fn draw(
     ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, frame[3] - 28.0]);
     let bar = [frame[0], frame[3] + 74.0];
     colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
-    legend(&mut canvas, [bar[0], bar[1] + 114.0], colours.colour(0.5 * colours.end));
+    legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
     for (row, note) in caption.notes.iter().enumerate() {
-        canvas.text(note, [bar[0], bar[1] + 198.0 + 36.0 * row as f32], Align::Left, 18.0, PALE);
+        canvas.text(note, [bar[0], bar[1] + 188.0 + 33.0 * row as f32], Align::Left, 18.0, PALE);
     }
     canvas
 }
@@ -105,7 +105,7 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     canvas.stroke(&[vec![[x, y - 7.0], [x + 44.0, y - 7.0]]], 3.0, INK, 1.0);
     canvas.panel([x + 38.0, y - 13.0, x + 50.0, y - 1.0], 6.0, INK, 1.0);
     canvas.text("closest points of a link and the wall", [x + 66.0, y], Align::Left, 18.0, INK);
-    let y = y + 38.0;
+    let y = y + 36.0;
     // Filled line by line.
     let rows = (0..=22).map(|row| row as f32).map(|row| {
         let half = 0.9 * row;
