@@ -47,11 +47,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         Chain::from_centreline(&[Vector::ZERO, Vector::Z * 3.0, Vector::new(1.0, 0.0, 5.0)], &[0.5; 2])?;
     let pose = Pose::from_parts(Vector::new(0.1, 0.2, 0.3), Rot3::from_rotation_x(0.4));
     let answer = BvhSearch::new(&mesh)?.minimum(&robot, &pose)?;
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/report.json");
-    report(&file, &robot, &pose, &mesh, answer)?;
+    let file = Path::new("target/report.json");
+    std::fs::create_dir_all("target")?;
+    report(file, &robot, &pose, &mesh, answer)?;
 
     // What the receiver does.
-    let read: Report = serde_json::from_reader(std::fs::File::open(&file)?)?;
+    let read: Report = serde_json::from_reader(std::fs::File::open(file)?)?;
     let mesh = TriMesh::new(read.vertices.into_iter().map(Vector::from).collect(), read.triangles)?;
     let again = BvhSearch::new(&mesh)?.minimum(&read.robot, &pose_from_matrix(read.pose)?)?;
     println!("{}: {} in the file, {} again", file.display(), read.answer.distance, again.distance);

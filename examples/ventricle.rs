@@ -13,7 +13,7 @@ use continuum_scene::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -154,17 +154,21 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
-    if let Some(tolerance) = options.tolerance {
-        let curve = robot.shape(&goal).map_err(text)?;
-        let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
-        println!(
-            "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
-            found.lower, found.upper, found.triangle, found.arc_length
-        );
-    }
+    let curve = match options.tolerance {
+        Some(tolerance) => {
+            let curve = robot.shape(&goal).map_err(text)?;
+            let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
+            println!(
+                "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
+                found.lower, found.upper, found.triangle, found.arc_length
+            );
+            Some(found)
+        }
+        None => None,
+    };
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
-    let caption = caption(options, &mesh, chain, &found, times);
+    let caption = caption(options, &mesh, chain, nearest(&found, curve), times);
     let picture = figure::draw(&mesh, chain, &base, &found, &caption);
     picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
@@ -265,11 +269,22 @@ fn ratio(of: Duration, to: Duration) -> f64 {
     of.as_secs_f64() / to.as_secs_f64()
 }
 
+/// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
+fn nearest(links: &[LinkProximity], curve: Option<Clearance>) -> Option<String> {
+    if let Some(curve) = curve {
+        let Clearance { lower, upper, arc_length, .. } = curve;
+        return Some(format!("the curve: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"));
+    }
+    let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    let LinkProximity { link, triangle, distance, .. } = nearest;
+    Some(format!("closest: link {link} and triangle {triangle}, {distance:.3} mm apart"))
+}
+
 fn caption(
     options: &Options,
     mesh: &TriMesh,
     chain: &Chain,
-    answers: &[LinkProximity],
+    nearest: Option<String>,
     [cold, warm, exhaustive, parry]: [Duration; 4],
 ) -> figure::Caption {
     let (one, many) = match options.model {
@@ -279,13 +294,7 @@ fn caption(
     };
     let count = chain.links().len();
     let links = format!("{count} {}", if count == 1 { one } else { many });
-    let mut notes = Vec::new();
-    if let Some(nearest) = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) {
-        notes.push(format!(
-            "closest: link {} and triangle {}, {:.3} mm apart",
-            nearest.link, nearest.triangle, nearest.distance
-        ));
-    }
+    let mut notes = Vec::from_iter(nearest);
     notes.push(format!("all links: search {} cold, {} warm", clock(cold), clock(warm)));
     notes.push(format!("every triangle {}, parry link by link {}", clock(exhaustive), clock(parry)));
     figure::Caption {

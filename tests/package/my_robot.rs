@@ -77,3 +77,12 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     #[cfg(unix)]
     refuse("my_robot", &["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
 }
+
+#[test]
+fn a_report_holds_all_digits_of_its_query() {
+    let out = succeed("report", &[]);
+    let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));
+    let distances: Vec<_> = distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
+    assert!(distances.len() == 2 && distances[0] == distances[1], "{out}");
+    assert!((2.0..10.0).contains(&distances[0].parse().unwrap()), "{out}");
+}
