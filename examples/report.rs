@@ -3,10 +3,10 @@
 //!
 //! `cargo run --example report` writes `target/report.json`, reads it back, and asks again.
 
+use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
-use parry_continuum::{Chain, pose_from_matrix};
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::path::Path;
@@ -15,8 +15,9 @@ use std::path::Path;
 #[derive(Deserialize, Serialize)]
 struct Report {
     robot: Chain,
-    /// The robot's pose in the mesh's frame: three rows of rotation and shift, and 0 0 0 1.
-    pose: [[f64; 4]; 4],
+    /// The robot's pose in the mesh's frame: its origin, and its rotation as a quaternion x, y, z, w.
+    origin: [f64; 3],
+    rotation: [f64; 4],
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
     answer: LinkProximity,
@@ -32,7 +33,8 @@ fn report(
 ) -> Result<(), Box<dyn Error>> {
     let report = Report {
         robot: robot.clone(),
-        pose: pose.to_mat4().transpose().to_cols_array_2d(),
+        origin: pose.translation.to_array(),
+        rotation: pose.rotation.to_array(),
         vertices: mesh.vertices().iter().map(|vertex| vertex.to_array()).collect(),
         triangles: mesh.indices().to_vec(),
         answer,
@@ -54,7 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     // What the receiver does.
     let read: Report = serde_json::from_reader(std::fs::File::open(file)?)?;
     let mesh = TriMesh::new(read.vertices.into_iter().map(Vector::from).collect(), read.triangles)?;
-    let again = BvhSearch::new(&mesh)?.minimum(&read.robot, &pose_from_matrix(read.pose)?)?;
+    let pose = Pose::from_parts(Vector::from(read.origin), Rot3::from_array(read.rotation));
+    let again = BvhSearch::new(&mesh)?.minimum(&read.robot, &pose)?;
     println!("{}: {} in the file, {} again", file.display(), read.answer.distance, again.distance);
     Ok(())
 }

@@ -90,7 +90,8 @@ pub fn pose_from_matrix(rows: [[Real; 4]; 4]) -> Result<Pose, MatrixError> {
     let off = (squares - Vector::ONE).abs().max_element();
     if off.max(skew) > ROUNDED {
         let mean = squares.element_sum() / 3.0;
-        let is_even = (squares - Vector::splat(mean)).abs().max_element().max(skew) <= ROUNDED * mean;
+        let is_even =
+            mean > 0.0 && (squares - Vector::splat(mean)).abs().max_element().max(skew) <= ROUNDED * mean;
         return Err(if is_even && mean.is_finite() {
             MatrixError::Scales { factor: mean.sqrt() }
         } else {
