@@ -56,7 +56,7 @@ pub enum MatrixError {
 
 /// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0 1.
 ///
-/// Numbers rounded to six digits after the point will do; the nearest rotation is taken.
+/// Numbers rounded to six digits after the point will do; a rotation as near to them is taken.
 ///
 /// # Errors
 /// The matrix is not finite, its last row is not 0 0 0 1, or its rotation scales, shears or mirrors.
@@ -101,17 +101,5 @@ pub fn pose_from_matrix(rows: [[Real; 4]; 4]) -> Result<Pose, MatrixError> {
     if x.cross(y).dot(z) < 0.0 {
         return Err(MatrixError::Mirrors);
     }
-    Ok(Pose::from_parts(axis(3), nearest_rotation([x, y, z])))
-}
-
-/// The rotation nearest to axes that are all but perpendicular unit vectors: one step of Newton's iteration for the polar
-/// decomposition, (M + M^-T) / 2 (Higham 1986), leaves the square of the deviation, 1e-10; the second leaves rounding.
-fn nearest_rotation(mut axes: [Vector; 3]) -> Rot3 {
-    for _ in 0..2 {
-        let [x, y, z] = axes;
-        let volume = x.cross(y).dot(z);
-        axes = [x + y.cross(z) / volume, y + z.cross(x) / volume, z + x.cross(y) / volume]
-            .map(|axis| axis * 0.5);
-    }
-    Rot3::from_mat3(&Mat3::from_cols(axes[0], axes[1], axes[2])).normalize()
+    Ok(Pose::from_parts(axis(3), Rot3::from_mat3(&Mat3::from_cols(x, y, z)).normalize()))
 }
