@@ -26,8 +26,9 @@ struct Options {
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x5d6b75);
 const PAPER: Colour = hex(0xf3f5f6);
-const RED: Colour = hex(0xb3123b);
-const GREEN: Colour = hex(0x1f8a5f);
+/// Vermilion and bluish green, which colour-blind readers tell apart (Okabe and Ito).
+const INADEQUATE: Colour = hex(0xd55e00);
+const ADEQUATE: Colour = hex(0x009e73);
 /// Links take turns, so that each can be told from the next.
 const LINKS: [Colour; 2] = [hex(0x3f7fa8), hex(0x9cc4da)];
 
@@ -86,9 +87,9 @@ fn panels() -> Result<Vec<Panel>, RobotError> {
     let panel = |letter, title, remark, adequate, links| Panel { letter, title, remark, adequate, links };
     Ok(vec![
         panel('a', "cylinders", "a gap at every joint", false, long.cylinders()?),
-        panel('b', "capsules", "both ends are round", false, long.capsules()?),
-        panel('c', "flat ends, short links", "inner caps stick out", false, short.naive()?),
-        panel('d', "flat ends, three tubes", "caps stick out at each step", false, tubes.naive()?),
+        panel('b', "capsules", "longer by a radius at both ends", false, long.capsules()?),
+        panel('c', "flat ends, short links", "inner round caps stick out", false, short.naive()?),
+        panel('d', "flat ends, three tubes", "round caps stick out at steps", false, tubes.naive()?),
         panel('e', "flat ends, long links", "closed, and flat where it ends", true, long.naive()?),
         panel(
             'f',
@@ -110,9 +111,7 @@ fn main() -> ExitCode {
     command::run(|options: &Options| {
         let out = command::picture_path(&options.out, "figure7.png")?;
         let panels = panels().map_err(|error| error.to_string())?;
-        draw(&panels)
-            .save(&out)
-            .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+        draw(&panels).save(&out).map_err(|error| command::unwritable(&out, error))?;
         println!("picture: {}", out.display());
         Ok(())
     })
@@ -133,7 +132,7 @@ fn draw(panels: &[Panel]) -> Canvas {
         let card = [x, y, x + CARD[0] as f32, y + CARD[1] as f32];
         canvas.panel(card, 16.0, [1.0; 3], 1.0);
         canvas.paste(picture, [left + 10, top + 12], 0.0);
-        let verdict = if panel.adequate { GREEN } else { RED };
+        let verdict = if panel.adequate { ADEQUATE } else { INADEQUATE };
         canvas.frame(card, 16.0, 3.0, mix(verdict, [1.0; 3], 0.45));
         let foot = y + CARD[1] as f32;
         canvas.panel([x + 24.0, foot - 96.0, x + 74.0, foot - 46.0], 25.0, verdict, 1.0);
@@ -142,12 +141,16 @@ fn draw(panels: &[Panel]) -> Canvas {
         canvas.text(panel.remark, [x + 92.0, foot - 36.0], Align::Left, 16.5, PALE);
     }
     let [x, y] = [(GAP + 3 * (CARD[0] + GAP) + 30) as f32, (HEAD + CARD[1] + GAP + 150) as f32];
-    for (row, (verdict, text)) in
-        [(RED, "not adequate"), (GREEN, "adequate: Algorithm 1 gives e, f and g")].into_iter().enumerate()
-    {
-        let y = y + 56.0 * row as f32;
+    let legend = [
+        (INADEQUATE, ["not the robot's shape,", "for the reason that is named"]),
+        (ADEQUATE, ["the robot's shape,", "as Algorithm 1 makes it"]),
+    ];
+    for (row, (verdict, lines)) in legend.into_iter().enumerate() {
+        let y = y - 60.0 + 92.0 * row as f32;
         canvas.panel([x, y, x + 22.0, y + 22.0], 11.0, verdict, 1.0);
-        canvas.text(text, [x + 38.0, y + 18.0], Align::Left, 17.0, PALE);
+        for (line, text) in lines.into_iter().enumerate() {
+            canvas.text(text, [x + 38.0, y + 18.0 + 32.0 * line as f32], Align::Left, 17.0, INK);
+        }
     }
     canvas.text("the radius is 1, or 1.5, 1 and 0.5", [x, y + 150.0], Align::Left, 16.5, PALE);
     canvas.text("long links 1.5, short links 0.4, tubes 1", [x, y + 186.0], Align::Left, 16.5, PALE);

@@ -13,7 +13,7 @@ use continuum_scene::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -39,7 +39,7 @@ struct Options {
     engine: Engine,
 
     /// Steps on the way in
-    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = command::whole(1..=100_000))]
     steps: u32,
 
     /// Where to save the picture: a directory, or a file that ends in .png
@@ -99,10 +99,10 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn steer(options: &Options) -> Result<(), String> {
+    let out = command::picture_path(&options.out, "ventricle.png")?;
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let (mut exhaustive, exhaustive_name) = options.engine.build(&mesh)?;
-    let out = command::picture_path(&options.out, "ventricle.png")?;
 
     let robot = three_tubes();
     let base = options.anatomy.pose(&mesh)?;
@@ -154,21 +154,23 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
-    if let Some(tolerance) = options.tolerance {
-        let curve = robot.shape(&goal).map_err(text)?;
-        let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
-        println!(
-            "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
-            found.lower, found.upper, found.triangle, found.arc_length
-        );
-    }
+    let curve = match options.tolerance {
+        Some(tolerance) => {
+            let curve = robot.shape(&goal).map_err(text)?;
+            let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
+            println!(
+                "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
+                found.lower, found.upper, found.triangle, found.arc_length
+            );
+            Some(found)
+        }
+        None => None,
+    };
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
-    let caption = caption(options, &mesh, chain, &found, times);
+    let caption = caption(options, &mesh, chain, nearest(&found, curve), times);
     let picture = figure::draw(&mesh, chain, &base, &found, &caption);
-    picture
-        .save(&out)
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+    picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
     Ok(())
 }
@@ -222,14 +224,14 @@ fn print_table(chain: &Chain, answers: &[LinkProximity]) {
     }
 }
 
-/// Times each engine and parry in turns, and prints them. Returns search (cold), exhaustive and parry.
+/// Times each engine and parry in turns, and prints them. Returns search (cold and warm), exhaustive and parry.
 fn print_times(
     mesh: &TriMesh,
     chains: &[Chain],
     base: &Pose,
     search: &mut BvhSearch,
     (exhaustive_name, exhaustive): (&str, &mut dyn Proximity),
-) -> Result<[Duration; 3], String> {
+) -> Result<[Duration; 4], String> {
     let chain = &chains[chains.len() - 1];
     let before = &chains[chains.len().saturating_sub(2)];
     let cylinders = timing::cylinders(chain);
@@ -260,19 +262,30 @@ fn print_times(
     row("search, cold", cold);
     row("search, warm from the step before", warm);
     row(exhaustive_name, all);
-    Ok([cold, all, parry])
+    Ok([cold, warm, all, parry])
 }
 
 fn ratio(of: Duration, to: Duration) -> f64 {
     of.as_secs_f64() / to.as_secs_f64()
 }
 
+/// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
+fn nearest(links: &[LinkProximity], curve: Option<Clearance>) -> Option<String> {
+    if let Some(curve) = curve {
+        let Clearance { lower, upper, arc_length, .. } = curve;
+        return Some(format!("the curve: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"));
+    }
+    let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    let LinkProximity { link, triangle, distance, .. } = nearest;
+    Some(format!("closest: link {link} and triangle {triangle}, {distance:.3} mm apart"))
+}
+
 fn caption(
     options: &Options,
     mesh: &TriMesh,
     chain: &Chain,
-    answers: &[LinkProximity],
-    [search, exhaustive, parry]: [Duration; 3],
+    nearest: Option<String>,
+    [cold, warm, exhaustive, parry]: [Duration; 4],
 ) -> figure::Caption {
     let (one, many) = match options.model {
         Model::Capsule => ("capsule", "capsules"),
@@ -281,21 +294,11 @@ fn caption(
     };
     let count = chain.links().len();
     let links = format!("{count} {}", if count == 1 { one } else { many });
-    let mut notes = Vec::new();
-    if let Some(nearest) = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) {
-        notes.push(format!(
-            "closest: link {} and triangle {}, {:.3} mm apart",
-            nearest.link, nearest.triangle, nearest.distance
-        ));
-    }
-    notes.push(format!(
-        "all links: search {}, exhaustive {}, parry {}",
-        clock(search),
-        clock(exhaustive),
-        clock(parry)
-    ));
+    let mut notes = Vec::from_iter(nearest);
+    notes.push(format!("all links: search {} cold, {} warm", clock(cold), clock(warm)));
+    notes.push(format!("every triangle {}, parry link by link {}", clock(exhaustive), clock(parry)));
     figure::Caption {
-        title: "A concentric tube robot in a brain ventricle".into(),
+        title: format!("A concentric tube robot in {}", options.anatomy.name()),
         subtitle: format!("{links} against {} triangles", mesh.num_triangles()),
         notes,
     }

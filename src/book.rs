@@ -23,3 +23,9 @@ pub mod certificates {}
 
 #[doc = include_str!("../docs/book/limits.md")]
 pub mod limits {}
+
+#[doc = include_str!("../docs/book/from_ct.md")]
+pub mod from_ct {}
+
+#[doc = include_str!("../docs/book/coming_from.md")]
+pub mod coming_from {}

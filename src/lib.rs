@@ -42,7 +42,10 @@
 //!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
 //!
-//! - **The book.** [`book`] explains the shape, the queries, the trade of accuracy for time, certificates and limits.
+//! - **The registration.** [`pose_from_matrix`] takes the 4x4 matrix that brings the robot into the mesh's frame.
+//! - **The book.** [`book`] explains the shape, the queries, the trade of accuracy for time, certificates and limits, how to
+//!   get [from CT to clearance](book::from_ct), and what changes for those who [come from](book::coming_from) capsules,
+//!   FCL or parry.
 //!
 //! # What an answer means
 //! Distances are to the mesh's surface and unsigned: 0 where a link touches or crosses it. A robot that starts inside a
@@ -72,8 +75,10 @@ pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
 pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
-pub use robot::{Cap, Chain, ConstantCurvature, ModifiedCylinder, RobotError, Tube, TubeSection};
-pub use robot::{bending_speed, simplify, stations, verify_motion};
+pub use robot::{
+    Cap, Chain, ConstantCurvature, MatrixError, ModifiedCylinder, RobotError, Tube, TubeSection,
+};
+pub use robot::{bending_speed, pose_from_matrix, simplify, stations, verify_motion};
 
 /// Runs the code in the README.
 #[cfg(doctest)]

@@ -1,9 +1,10 @@
 //! Pictures of the simulation: the robot in the colours of its clearances, the kinematic shape as a dark wire. The
-//! wire shows where the wall has bent the robot away from it.
+//! wire shows where the wall has bent the robot away from it, and dots where the wall holds it.
 
 use super::record::Moment;
 use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
 use continuum_scene::colour_map::ColourMap;
+use continuum_scene::figure;
 use continuum_scene::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -12,6 +13,7 @@ use parry_continuum::parry::shape::{SharedShape, TriMesh};
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x66757f);
 const WIRE: Colour = hex(0x10161c);
+const CONTACT: Colour = hex(0xd55e00);
 const PANEL: [usize; 2] = [456, 342];
 /// The height of the two lines below it.
 const CAPTION: usize = 56;
@@ -25,6 +27,8 @@ pub struct Studio<'a> {
     camera: Camera,
     colours: ColourMap,
     wire: Real,
+    /// A point at the depth of the robot, for the ruler.
+    middle: Vector,
 }
 
 impl<'a> Studio<'a> {
@@ -40,7 +44,7 @@ impl<'a> Studio<'a> {
         let mut camera = Camera::framing(places, broadside + towards * 0.5, Vector::Z, aspect, 0.14);
         let depths = places.iter().map(|&p| (p - camera.eye).dot(camera.forward) - 2.5 * radius);
         camera.cut = depths.fold(Real::INFINITY, Real::min).max(0.0);
-        Self { mesh, camera, colours: ColourMap::up_to(3.0), wire: 0.16 * radius }
+        Self { mesh, camera, colours: ColourMap::up_to(3.0), wire: 0.16 * radius, middle }
     }
 
     /// A picture of one moment with a line of text.
@@ -59,11 +63,16 @@ impl<'a> Studio<'a> {
                 solids.push(Solid::new(SharedShape::new(wire), Pose::IDENTITY, WIRE, false));
             }
         }
+        for (found, _) in moment.found.iter().zip(&moment.forces).filter(|(_, force)| **force > 0.0) {
+            let dot = SharedShape::ball(4.0 * self.wire);
+            solids.push(Solid::new(dot, Pose::from_translation(found.on_mesh), CONTACT, false));
+        }
         let mut picture = Picture::new(Some(self.mesh), solids);
-        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
+        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
         picture.sky = SKY;
         let mut canvas = Canvas::new(PANEL[0], PANEL[1] + CAPTION, |_, _| SKY[0]);
         canvas.paste(&picture.render(&self.camera, PANEL[0], PANEL[1]), [0, 0], 0.0);
+        figure::ruler(&mut canvas, &self.camera, self.middle, PANEL, [16.0, PANEL[1] as f32 - 18.0]);
         let (clearance, _) = moment.closest();
         let held =
             if moment.force() > 0.0 { format!("{:.0} mN", moment.force()) } else { "no contact".into() };
@@ -96,8 +105,16 @@ impl<'a> Studio<'a> {
         let bar = [GAP as f32, (height - FOOT + 32) as f32];
         let size = [0.45 * width as f32, 16.0];
         self.colours.draw(&mut sheet, bar, size, "distance from link to wall (mm)", INK);
-        let note = "dark wire: the kinematic shape, where the robot is bent away from it";
-        sheet.text(note, [width as f32 - GAP as f32, bar[1] + 14.0], Align::Right, 14.0, PALE);
+        for (row, note) in [
+            "dark wire: the kinematic shape, where the robot is bent away from it",
+            "orange dots: contacts; mN: the sum of the magnitudes of their forces",
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let at = [width as f32 - GAP as f32, bar[1] + 4.0 + 28.0 * row as f32];
+            sheet.text(note, at, Align::Right, 14.0, INK);
+        }
         sheet
     }
 }

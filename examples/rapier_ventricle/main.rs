@@ -38,11 +38,11 @@ struct Options {
     push: Real,
 
     /// Links, about
-    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = clap::value_parser!(u32).range(3..=60))]
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = command::whole(3..=60))]
     links: u32,
 
     /// Pictures of the film, about; 0 for none
-    #[arg(long, value_name = "COUNT", default_value_t = 40)]
+    #[arg(long, value_name = "COUNT", default_value_t = 40, value_parser = command::whole(0..=10_000))]
     frames: u32,
 
     /// The directory for everything that is written
@@ -66,13 +66,11 @@ fn text(error: impl std::fmt::Display) -> String {
 }
 
 fn simulate(options: &Options) -> Result<(), String> {
+    let cannot = |error| command::unwritable(&options.out, error);
+    let mut recorder = Recorder::new(command::directory(&options.out)?).map_err(cannot)?;
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
     let plan = plan(options, &mesh, &mut search)?;
-    let cannot =
-        |error| format!("cannot write into {} ({error}); choose another --out", options.out.display());
-    std::fs::create_dir_all(&options.out).map_err(cannot)?;
-    let mut recorder = Recorder::new(&options.out).map_err(cannot)?;
 
     let thick = plan.robot.sections.iter().map(|section| section.radius).fold(0.0, Real::max);
     let end = plan.at(plan.duration());

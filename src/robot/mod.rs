@@ -11,6 +11,7 @@ mod error;
 mod link_tree;
 mod modified_cylinder;
 mod motion;
+mod registration;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
@@ -33,6 +34,7 @@ pub use motion::{
     verify_motion,
 };
 pub(crate) use motion::{Sampled, Sections};
+pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;

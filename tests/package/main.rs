@@ -1,5 +1,7 @@
 //! What a user meets first: the programs, and under which terms all of it may be used.
 
 mod licences;
+mod links;
+mod my_robot;
 mod programs;
 mod public_names;

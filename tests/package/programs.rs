@@ -8,13 +8,18 @@ fn example(name: &str) -> PathBuf {
 }
 
 /// The output of an example that succeeds.
-fn succeed(name: &str, arguments: &[&str]) -> String {
+pub fn succeed(name: &str, arguments: &[&str]) -> String {
     programs::succeed(example(name), arguments)
 }
 
 /// An example must refuse these arguments with one line that says this.
-fn refuse(name: &str, arguments: &[&str], expected: &str) {
+pub fn refuse(name: &str, arguments: &[&str], expected: &str) {
     programs::refuse(example(name), arguments, expected);
+}
+
+/// A place for a picture in a directory that is a file.
+fn beside(file: &str) -> String {
+    format!("{file}/picture.png")
 }
 
 #[test]
@@ -31,15 +36,20 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--mesh", tiny], "no room"),
         (&["--mesh", sheet], "name one with --base"),
         (&["--mesh", empty, "--scale", "-1"], "positive number"),
-        (&["--triangle", "1"], "--triangle"),
-        (&["--triangles", "none"], "'none'"),
-        (&["--triangles", "100"], "6000..=20000000"),
+        (&["--triangle", "1"], "a similar argument exists: '--triangles'"),
+        (&["--triangles", "none"], "write a whole number from 6000 to 20000000"),
+        (&["--triangles", "100"], "write a whole number from 6000 to 20000000"),
+        (&["--mesh", tiny, "--scale", "big"], "write a number"),
+        (&["--mesh", tiny, "--label", "all"], "write a whole number of at least 0"),
         (&["--base", "1,2"], "three numbers"),
         (&["--base", "1,2,inf"], "three numbers"),
         (&["--axis", "0,0,0"], "a direction needs a length"),
         (&["--model", "cone"], "capsule, cylinder, modified"),
         (&["--tolerance", "-0.1"], "at least 0"),
-        (&["--steps", "0"], "1..=100000"),
+        (&["--steps", "0"], "write a whole number from 1 to 100000"),
+        // An output that cannot be written is found before a mesh that cannot be read.
+        (&["--out", "bar.jpg", "--mesh", "nowhere.stl"], "ends in .jpg"),
+        (&["--out", &beside(empty), "--mesh", "nowhere.stl"], "choose another --out"),
         (&["--scale", "2"], "--mesh"),
     ] {
         refuse("ventricle", arguments, expected);
@@ -50,10 +60,12 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--mesh", "nowhere.stl"][..], "check the path"),
         (&["--mesh", sheet], "name one with --base"),
         (&["--push", "101"], "from 0 to 100"),
-        (&["--links", "2"], "3..=60"),
+        (&["--links", "2"], "write a whole number from 3 to 60"),
+        (&["--out", "film.png", "--mesh", "nowhere.stl"], "ends in .png"),
     ] {
         refuse("rapier_ventricle", arguments, expected);
     }
+    assert!(!place("bar.jpg").exists() && !place("film.png").exists());
     for name in ["ventricle", "rapier_ventricle"] {
         assert!(succeed(name, &["--help"]).contains("--mesh"));
     }

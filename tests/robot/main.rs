@@ -4,6 +4,7 @@ mod aabb;
 mod algorithm_1;
 mod constant_curvature;
 mod nalgebra_types;
+mod registration;
 mod simplify;
 mod stations;
 mod to_trimesh;

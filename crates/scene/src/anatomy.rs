@@ -1,14 +1,16 @@
 //! Which anatomy a program asks, and where the robot stands in it: the options of the example programs.
 
-use crate::{mesh_file, steer, ventricle};
+use crate::command::whole;
+use crate::{steer, ventricle};
 use clap::Args;
+use mesh_files::Options;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Anatomy {
-    /// Real anatomy: an STL, OBJ or PLY file, in millimetres [default: a generated ventricle]
+    /// Real anatomy: an STL, OBJ or PLY file in millimetres, or a NIfTI or NRRD label map [default: a generated ventricle]
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
 
@@ -18,13 +20,18 @@ pub struct Anatomy {
         value_name = "FACTOR",
         default_value_t = 1.0,
         requires = "mesh",
+        value_parser = factor,
         allow_negative_numbers = true
     )]
     scale: Real,
 
+    /// The label whose surface is taken from a label map [default: all that are not 0]
+    #[arg(long, value_name = "NUMBER", requires = "mesh", value_parser = whole(0..=u32::MAX))]
+    label: Option<u32>,
+
     /// Triangles of the generated ventricle, about
     #[arg(long, value_name = "COUNT", default_value_t = ventricle::DEFAULT_TRIANGLES as u32, conflicts_with = "mesh",
-          value_parser = clap::value_parser!(u32).range(ventricle::DEFAULT_TRIANGLES as i64..=20_000_000))]
+          value_parser = whole(ventricle::DEFAULT_TRIANGLES as u32..=20_000_000))]
     triangles: u32,
 
     /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
@@ -44,6 +51,10 @@ fn vector(text: &str) -> Result<Vector, String> {
     }
 }
 
+fn factor(text: &str) -> Result<Real, String> {
+    text.parse().map_err(|_| "write a number, for example 1000 for metres to millimetres".into())
+}
+
 fn direction(text: &str) -> Result<Vector, String> {
     vector(text)?.try_normalize().ok_or("a direction needs a length; write for example 0,0,-1".into())
 }
@@ -52,10 +63,19 @@ impl Anatomy {
     /// The wall.
     pub fn load(&self) -> Result<TriMesh, String> {
         let (points, triangles) = match &self.mesh {
-            Some(path) => mesh_file::load(path, self.scale)?,
+            Some(path) => {
+                let options = Options::scaled(self.scale).with_label(self.label);
+                mesh_files::load_with(path, &options).map_err(|error| error.to_string())?.into_parts()
+            }
             None => ventricle::mesh(self.triangles as usize),
         };
         TriMesh::new(points, triangles).map_err(|error| error.to_string())
+    }
+
+    /// What the wall is, as a title names it.
+    pub fn name(&self) -> String {
+        let file = self.mesh.as_ref().and_then(|path| path.file_name());
+        file.map_or("a generated brain ventricle".into(), |name| name.to_string_lossy().into_owned())
     }
 
     /// Whether the robot starts where the generated ventricle has its entry.

@@ -1,9 +1,20 @@
-//! Distance as colour: red where the robot all but touches, over yellow, to blue where there is room.
+//! Distance as colour: dark where the robot all but touches, bright where there is room. The map is matplotlib's viridis
+//! (S. van der Walt and N. Smith, CC0), whose lightness grows evenly, also for readers who are colour-blind.
 
 use crate::canvas::{Align, Canvas, Colour, hex, mix};
 
-const STOPS: [Colour; 6] =
-    [hex(0xb3123b), hex(0xe8502f), hex(0xf7b13c), hex(0x9fc85a), hex(0x2fa58e), hex(0x24618f)];
+/// Every eighth of the map.
+const STOPS: [Colour; 9] = [
+    hex(0x440154),
+    hex(0x472d7b),
+    hex(0x3b528b),
+    hex(0x2c728e),
+    hex(0x21918c),
+    hex(0x28ae80),
+    hex(0x5ec962),
+    hex(0xaddc30),
+    hex(0xfde725),
+];
 
 /// Distances from 0 to `end`, in colours.
 #[derive(Clone, Copy)]

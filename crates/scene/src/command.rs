@@ -1,6 +1,8 @@
-//! What the example programs share as commands: errors of one line, and where pictures go.
+//! What the example programs share as commands: errors of one line, numbers, and where pictures go.
 
 use clap::Parser;
+use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -14,10 +16,7 @@ pub fn run<Options: Parser>(program: impl Fn(&Options) -> Result<(), String>) ->
             return ExitCode::SUCCESS;
         }
         Err(error) => {
-            // The first paragraph names the option and what is wrong with it.
-            let text = error.to_string();
-            let lines: Vec<_> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
-            eprintln!("{} (--help lists the options)", lines.join(" "));
+            eprintln!("{} (--help lists the options)", in_one_line(&error.to_string()));
             return ExitCode::from(2);
         }
     };
@@ -27,6 +26,26 @@ pub fn run<Options: Parser>(program: impl Fn(&Options) -> Result<(), String>) ->
             eprintln!("error: {message}");
             ExitCode::FAILURE
         }
+    }
+}
+
+/// An error of clap: its first paragraph names the option and what is wrong with it, and a tip may name the option that
+/// was meant.
+fn in_one_line(text: &str) -> String {
+    let mut lines = text.lines().map(str::trim);
+    let paragraph: Vec<_> = lines.by_ref().take_while(|line| !line.is_empty()).collect();
+    let tip = lines.find_map(|line| line.strip_prefix("tip: ")).map(|tip| format!("; {tip}"));
+    paragraph.join(" ") + &tip.unwrap_or_default()
+}
+
+/// Reads a whole number in a range.
+pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| match (range.start(), *range.end()) {
+            (start, u32::MAX) => format!("write a whole number of at least {start}"),
+            (start, end) => format!("write a whole number from {start} to {end}"),
+        })
     }
 }
 
@@ -40,17 +59,52 @@ pub fn line(program: &str) -> String {
     line
 }
 
-/// The file that `--out` means: itself if it ends in .png, otherwise `name` in that directory, which is made.
+/// The file that `--out` means: itself if it ends in .png, otherwise `name` in that directory, which is made. Call it
+/// before the work: it tries whether the file can be written.
 ///
 /// # Errors
-/// The directory cannot be made.
+/// The path ends in another extension and is no directory, or nothing can be written there.
 pub fn picture_path(out: &Path, name: &str) -> Result<PathBuf, String> {
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    let path = if is_file { out.to_path_buf() } else { out.join(name) };
-    if let Some(directory) = path.parent() {
-        std::fs::create_dir_all(directory).map_err(|error| {
-            format!("cannot make {} ({error}); choose another --out", directory.display())
-        })?;
+    let path = match (is_file, out.parent()) {
+        (true, Some(parent)) => {
+            make(parent)?;
+            out.to_path_buf()
+        }
+        _ => directory(out)?.join(name),
+    };
+    let existed = path.exists();
+    let tried = fs::OpenOptions::new().append(true).create(true).open(&path);
+    tried.map_err(|error| unwritable(&path, error))?;
+    if !existed {
+        fs::remove_file(&path).map_err(|error| unwritable(&path, error))?;
     }
     Ok(path)
+}
+
+/// The directory that `--out` means, made where it is missing.
+///
+/// # Errors
+/// It has a file's name and is not there, or it cannot be made.
+pub fn directory(out: &Path) -> Result<&Path, String> {
+    if let Some(extension) = out.extension().filter(|_| !out.is_dir()) {
+        return Err(format!(
+            "{} would be a directory, though it ends in .{}; pictures are saved as .png, tables beside them: choose \
+             another --out",
+            out.display(),
+            extension.display()
+        ));
+    }
+    make(out)?;
+    Ok(out)
+}
+
+fn make(directory: &Path) -> Result<(), String> {
+    fs::create_dir_all(directory)
+        .map_err(|error| format!("cannot make {} ({error}); choose another --out", directory.display()))
+}
+
+/// What to say when a file of `--out` cannot be written.
+pub fn unwritable(path: &Path, error: impl std::fmt::Display) -> String {
+    format!("cannot write {} ({error}); choose another --out", path.display())
 }

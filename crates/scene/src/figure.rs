@@ -55,6 +55,8 @@ pub fn draw(
     let size = [LEFT, SIZE[1] - TOP];
     let whole = Camera::framing(mesh.vertices(), towards, Vector::Z, size[0] as Real / size[1] as Real, 0.04);
     picture.sky = [sky(TOP), sky(SIZE[1])];
+    // The robot shows through the folds in front of it.
+    picture.skin.veil = 0.25;
     canvas.paste(&picture.render(&whole, size[0], size[1]), [0, TOP], 0.0);
 
     // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front of them.
@@ -75,7 +77,7 @@ pub fn draw(
     let robot_depths = inner.into_iter().map(|p| depth(p) - 1.05 * thick);
     near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
     picture.sky = [sky(top), sky(top + height)];
-    picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3] };
+    picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
     let inset = picture.render(&near, width, height);
     let frame = [left as f32, top as f32, (left + width) as f32, (top + height) as f32];
     let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
@@ -90,10 +92,27 @@ pub fn draw(
     ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, frame[3] - 28.0]);
     let bar = [frame[0], frame[3] + 74.0];
     colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
+    legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
     for (row, note) in caption.notes.iter().enumerate() {
-        canvas.text(note, [bar[0], bar[1] + 124.0 + 38.0 * row as f32], Align::Left, 19.0, PALE);
+        canvas.text(note, [bar[0], bar[1] + 188.0 + 33.0 * row as f32], Align::Left, 18.0, PALE);
     }
     canvas
+}
+
+/// What the lines and the tinted triangles mean; `at` is the left end of the base line.
+fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
+    let [x, y] = at;
+    canvas.stroke(&[vec![[x, y - 7.0], [x + 44.0, y - 7.0]]], 3.0, INK, 1.0);
+    canvas.panel([x + 38.0, y - 13.0, x + 50.0, y - 1.0], 6.0, INK, 1.0);
+    canvas.text("closest points of a link and the wall", [x + 66.0, y], Align::Left, 18.0, INK);
+    let y = y + 36.0;
+    // Filled line by line.
+    let rows = (0..=22).map(|row| row as f32).map(|row| {
+        let half = 0.9 * row;
+        vec![[x + 25.0 - half, y - 20.0 + row], [x + 25.0 + half, y - 20.0 + row]]
+    });
+    canvas.stroke(&rows.collect::<Vec<_>>(), 1.4, tint, 1.0);
+    canvas.text("nearest triangle of a link, in the link's colour", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
 /// Links, and the lines between closest points.
@@ -145,7 +164,7 @@ fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
 }
 
 /// A ruler as long as a round number of millimetres at the given depth, with its left end at `at`.
-fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
+pub fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
     let [from, to] = [depth, depth + camera.right].map(|p| camera.place(p, size)[0]);
     let unit = f64::from(to - from);
     let decade = 10f64.powf((150.0 / unit).log10().floor());

@@ -6,7 +6,6 @@
 //! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
 //! | the robot | [`ctr`]; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
-//! | files | `mesh_file` (feature `files`) |
 //! | pictures | `picture`, `figure`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
 //! | programs | `command`, `anatomy` (feature `command`); [`timing`], [`levels`] |
 
@@ -27,8 +26,6 @@ pub mod figure;
 pub mod lettering;
 pub mod levels;
 pub mod lumen;
-#[cfg(feature = "files")]
-pub mod mesh_file;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod remesh;

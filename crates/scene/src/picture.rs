@@ -111,6 +111,8 @@ pub struct Skin {
     pub far: f32,
     /// Of the triangles' edges, on the near and the far side.
     pub edges: [f32; 2],
+    /// What is in front of a solid is this share as opaque.
+    pub veil: f32,
 }
 
 const GLASS: Colour = hex(0xdbe7ee);
@@ -135,7 +137,7 @@ impl<'a> Picture<'a> {
             solids,
             aabb,
             reach,
-            skin: Skin { near: 0.05, rim: 0.8, glint: 0.5, far: 0.72, edges: [0.16, 0.2] },
+            skin: Skin { near: 0.05, rim: 0.8, glint: 0.5, far: 0.72, edges: [0.16, 0.2], veil: 1.0 },
             sky: SKY,
         }
     }
@@ -194,7 +196,10 @@ impl<'a> Picture<'a> {
                     break;
                 };
                 let t = start + hit.time_of_impact;
-                let (colour, opacity) = self.skin(wall, ray, t, hit.subshape, camera, pixel);
+                let (colour, mut opacity) = self.skin(wall, ray, t, hit.subshape, camera, pixel);
+                if solid.is_some() {
+                    opacity *= self.skin.veil;
+                }
                 seen = std::array::from_fn(|i| seen[i] + clear * opacity * colour[i]);
                 clear *= 1.0 - opacity;
                 start = t + step;

@@ -1,5 +1,4 @@
-//! The scene is what it says: the wall, the robot, the files and the pictures.
+//! The scene is what it says: the wall, the robot and the pictures.
 
 mod concentric_tube;
-mod mesh_files;
 mod ventricle;

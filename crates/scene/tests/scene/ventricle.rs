@@ -220,7 +220,7 @@ fn pictures_show_caps_as_they_are_queried() {
 
 #[test]
 fn every_letter_can_be_drawn_and_every_scale_has_numbers() {
-    for letter in ('a'..='z').chain('A'..='Z').chain('0'..='9').chain(".,:-+=<>/()%*".chars()) {
+    for letter in ('a'..='z').chain('A'..='Z').chain('0'..='9').chain(".,:;'_-+=<>/()%*".chars()) {
         let (strokes, width) = lettering::strokes(&letter.to_string(), 7.0);
         assert!(!strokes.is_empty() && strokes.iter().all(|s| s.len() > 1) && width < 8.0, "{letter}");
     }

@@ -4,7 +4,8 @@
 //! smaller, from the bottom up the triangle tilts away from the tube's axis. Every cell is one query.
 
 use crate::peers::parry_distance;
-use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_scene::canvas::{Align, Canvas, Colour, hex};
+use continuum_scene::colour_map::ColourMap;
 use continuum_testing::precision::Precision;
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::distance::triangle_modified_cylinder;
@@ -20,21 +21,32 @@ const CELL: usize = 3;
 /// The gap from 1e-7 m to 1e-2 m, the tilt from 1e-8 to 1.
 const GAP: [f64; 2] = [-7.0, -2.0];
 const TILT: [f64; 2] = [-8.0, 0.0];
-/// Errors from 1e-17 up have colours.
-const DECADES: usize = 17;
+/// The power of ten from which errors have colours.
+const LEAST: i32 = -17;
 
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x66757f);
 const PAPER: Colour = hex(0xfafafa);
-const STOPS: [Colour; 6] =
-    [hex(0x173f5f), hex(0x2a7f9e), hex(0x8cc6b0), hex(0xf6e6a1), hex(0xee8f3c), hex(0xb3123b)];
 
-/// The colour of an error relative to the distance, in steps of half a power of ten.
-fn shade(error: f64) -> Colour {
-    let decades = (error.log10() + DECADES as f64).clamp(0.0, DECADES as f64 - 1e-9);
-    let place = (decades * 2.0).floor() / (2 * DECADES - 1) as f64 * (STOPS.len() - 1) as f64;
-    let stop = (place as usize).min(STOPS.len() - 2);
-    mix(STOPS[stop], STOPS[stop + 1], (place - stop as f64) as f32)
+/// The colours of errors relative to the distance, in steps of half a power of ten.
+struct Scale {
+    /// How many powers of ten there are above the least.
+    decades: u32,
+    colours: ColourMap,
+}
+
+impl Scale {
+    /// Up to the power of ten above the largest error.
+    fn new(errors: impl Iterator<Item = f64>) -> Self {
+        let largest = errors.fold(0.0, f64::max).log10().ceil();
+        Self { decades: (largest - f64::from(LEAST)).max(1.0) as u32, colours: ColourMap::up_to(1.0) }
+    }
+
+    fn shade(&self, error: f64) -> Colour {
+        let most = f64::from(self.decades);
+        let decades = (error.log10() - f64::from(LEAST)).clamp(0.0, most - 1e-9);
+        self.colours.colour((decades * 2.0).floor() / (2.0 * most - 1.0))
+    }
 }
 
 /// The errors of parry and of this crate, relative to the distance, in one cell.
@@ -68,26 +80,31 @@ pub fn draw() -> Canvas {
     let cells: Vec<_> =
         (0..CELLS * CELLS).into_par_iter().map(|cell| errors(cell % CELLS, cell / CELLS)).collect();
     let panel = CELLS * CELL;
-    let (left, top, between) = (150, 150, 60);
-    let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 290, |_, _| PAPER);
+    let (left, top, between) = (150, 150, 150);
+    let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 330, |_, _| PAPER);
     let title =
         "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
     canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
+    let scale = Scale::new(cells.iter().flatten().copied());
     for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);
-        let picture = Canvas::new(panel, panel, |x, y| shade(cells[x / CELL + y / CELL * CELLS][which]));
+        let picture =
+            Canvas::new(panel, panel, |x, y| scale.shade(cells[x / CELL + y / CELL * CELLS][which]));
         canvas.paste(&picture, [x, top], 0.0);
         let frame = [x as f32, top as f32, (x + panel) as f32, (top + panel) as f32];
         canvas.frame(frame, 0.0, 2.0, INK);
         canvas.text(name, [frame[0], frame[1] - 20.0], Align::Left, 22.0, INK);
-        ticks(&mut canvas, frame, which == 0);
+        ticks(&mut canvas, frame);
     }
-    legend(&mut canvas, [left as f32, (top + panel + 150) as f32], (2 * panel + between) as f32);
+    let foot = (top + panel + 150) as f32;
+    legend(&mut canvas, &scale, [left as f32, foot], (2 * panel + between) as f32);
+    let note = "towards small gaps the rounding of the coordinates becomes a larger share of the clearance";
+    canvas.text(note, [left as f32, foot + 118.0], Align::Left, 19.0, PALE);
     canvas
 }
 
 /// Powers of ten along the lower and the left side.
-fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4], names_tilt: bool) {
+fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4]) {
     let mark = |canvas: &mut Canvas, from: [f32; 2], to: [f32; 2]| {
         canvas.stroke(&[vec![from, to]], 2.0, INK, 1.0);
     };
@@ -100,29 +117,26 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4], names_tilt: bool) {
         canvas.text(&format!("1e{power}"), [x, y1 + 34.0], Align::Centre, 17.0, INK);
     }
     canvas.text("gap before the tilt, m", [0.5 * (x0 + x1), y1 + 72.0], Align::Centre, 19.0, PALE);
-    if names_tilt {
-        for (power, at) in decades(TILT).step_by(2) {
-            let y = y1 - (y1 - y0) * at as f32;
-            mark(canvas, [x0, y], [x0 - 8.0, y]);
-            canvas.text(&format!("1e{power}"), [x0 - 16.0, y + 8.0], Align::Right, 17.0, INK);
-        }
-        canvas.text("tilt", [x0 - 16.0, y0 - 20.0], Align::Right, 19.0, PALE);
+    for (power, at) in decades(TILT).step_by(2) {
+        let y = y1 - (y1 - y0) * at as f32;
+        mark(canvas, [x0, y], [x0 - 8.0, y]);
+        canvas.text(&format!("1e{power}"), [x0 - 16.0, y + 8.0], Align::Right, 17.0, INK);
     }
+    canvas.text("tilt", [x0 - 16.0, 0.5 * (y0 + y1) + 8.0 - (y1 - y0) / 8.0], Align::Right, 19.0, PALE);
 }
 
 /// The colours of the errors.
-fn legend(canvas: &mut Canvas, [x, y]: [f32; 2], width: f32) {
+fn legend(canvas: &mut Canvas, scale: &Scale, [x, y]: [f32; 2], width: f32) {
     canvas.text("error relative to the true clearance", [x, y - 18.0], Align::Left, 19.0, INK);
-    let step = width / (2 * DECADES) as f32;
-    for half in 0..2 * DECADES {
-        let error = 10.0_f64.powf(half as f64 * 0.5 + 0.25 - DECADES as f64);
+    let step = width / (2 * scale.decades) as f32;
+    for half in 0..2 * scale.decades {
+        let error = 10.0_f64.powf(f64::from(half) * 0.5 + 0.25 + f64::from(LEAST));
         let from = x + step * half as f32;
-        canvas.panel([from, y, from + step, y + 34.0], 0.0, shade(error), 1.0);
+        canvas.panel([from, y, from + step, y + 34.0], 0.0, scale.shade(error), 1.0);
     }
     canvas.frame([x, y, x + width, y + 34.0], 0.0, 2.0, INK);
-    for power in (0..=DECADES).step_by(2) {
-        let at = x + width * (DECADES - power) as f32 / DECADES as f32;
-        let name = if power == 0 { "1".to_owned() } else { format!("1e-{power}") };
-        canvas.text(&name, [at, y + 64.0], Align::Centre, 17.0, INK);
+    for decade in (0..=scale.decades).step_by(2) {
+        let at = x + width * decade as f32 / scale.decades as f32;
+        canvas.text(&format!("1e{}", LEAST + decade as i32), [at, y + 64.0], Align::Centre, 17.0, INK);
     }
 }

@@ -28,7 +28,7 @@ struct Options {
     out: PathBuf,
 
     /// Triangles of the largest mesh
-    #[arg(long, value_name = "COUNT", default_value_t = 10_000_000, value_parser = clap::value_parser!(u32).range(1000..=20_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 10_000_000, value_parser = command::whole(1000..=20_000_000))]
     largest: u32,
 
     /// Triangles of the largest mesh whose every pair is computed in full
@@ -36,7 +36,7 @@ struct Options {
     every_pair: u32,
 
     /// Polynomials of each degree, and problems of Tables II and III
-    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = command::whole(1..=10_000_000))]
     problems: u32,
 
     /// Seconds for each group of jobs that take turns
@@ -68,6 +68,7 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options) -> Result<(), String> {
+    command::directory(&options.out)?;
     let begin = Instant::now();
     let mut opened = Vec::new();
     let mut missing = None;

@@ -3,11 +3,12 @@
 use crate::Effort;
 use crate::exhaustive::{models, on_one_thread};
 use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::timing::medians;
+use continuum_scene::timing::{cylinders, medians, parry};
 use continuum_scene::ventricle;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
@@ -16,9 +17,23 @@ use std::time::Duration;
 /// Triangles of the mesh that is divided.
 const SMALLEST: usize = 10_000;
 
+/// Each with a dash of its own: the length of a stroke and of a gap. One stroke is longer than the picture.
+const ENGINES: [(&str, [i32; 2]); 4] = [
+    ("exhaustive f32", [9, 4]),
+    ("exhaustive f64", [2, 4]),
+    ("search, warm", [10_000, 1]),
+    ("parry, link by link", [16, 6]),
+];
+
+/// Each model with a colour of its own, which colour-blind readers tell apart (Okabe and Ito).
+const COLOURS: [RGBColor; 3] = [RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(0, 114, 178)];
+
 /// A line of the plot.
 struct Series {
     name: String,
+    /// By the order of the models and of [`ENGINES`].
+    model: usize,
+    engine: usize,
     /// Triangles and seconds a query.
     points: Vec<(f64, f64)>,
 }
@@ -32,22 +47,26 @@ pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
     for step in 0..=effort.largest {
         let (vertices, indices) = shuffled(mesh.clone(), 1);
         let tri_mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
-        for (model, robot) in &models {
-            let job = || -> Result<[f64; 3], String> {
-                Ok([
+        for (model, (short, robot)) in models.iter().enumerate() {
+            let job = || -> Result<Vec<f64>, String> {
+                let mut times = vec![
                     time(&mut exhaustive::<f32>(&tri_mesh)?, robot, enough)?,
                     time(&mut exhaustive::<f64>(&tri_mesh)?, robot, enough)?,
                     time(&mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?, robot, enough)?,
-                ])
+                ];
+                if *short == "Z" {
+                    times.push(time_parry(&tri_mesh, robot, enough)?);
+                }
+                Ok(times)
             };
-            let times = on_one_thread(job)??;
-            for (engine, time) in ["exhaustive f32", "exhaustive f64", "search, warm"].into_iter().zip(times)
-            {
-                let name = format!("{model}, {engine}");
+            for (engine, time) in on_one_thread(job)??.into_iter().enumerate() {
                 let point = (tri_mesh.num_triangles() as f64, time);
-                match all.iter_mut().find(|series| series.name == name) {
+                match all.iter_mut().find(|series| (series.model, series.engine) == (model, engine)) {
                     Some(series) => series.points.push(point),
-                    None => all.push(Series { name, points: vec![point] }),
+                    None => {
+                        let name = format!("{short}, {}", ENGINES[engine].0);
+                        all.push(Series { name, model, engine, points: vec![point] });
+                    }
                 }
             }
         }
@@ -69,6 +88,14 @@ fn time(engine: &mut dyn Proximity, robot: &Chain, enough: Duration) -> Result<f
     let mut out = Vec::new();
     let base = ventricle::entry();
     let mut query = || engine.per_link(robot, &base, &mut out).map_err(|error| error.to_string());
+    query()?;
+    Ok(medians::<String>(&mut [&mut query], enough)?[0].as_secs_f64())
+}
+
+/// The peer: parry's `distance(Cylinder, TriMesh)` for each link.
+fn time_parry(mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<f64, String> {
+    let (links, base) = (cylinders(robot), ventricle::entry());
+    let mut query = || parry(mesh, &links, &base).map(drop).map_err(|error| error.to_string());
     query()?;
     Ok(medians::<String>(&mut [&mut query], enough)?[0].as_secs_f64())
 }
@@ -128,7 +155,9 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     if let Some(directory) = path.parent() {
         std::fs::create_dir_all(directory)?;
     }
-    let points = || all.iter().flat_map(|series| &series.points);
+    // In microseconds.
+    let scaled = |series: &Series| -> Vec<_> { series.points.iter().map(|p| (p.0, p.1 * 1e6)).collect() };
+    let points = || all.iter().flat_map(scaled);
     let (low, high) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.1), high.max(p.1)));
     let (few, many) = points().fold((f64::INFINITY, 0.0_f64), |(few, many), p| (few.min(p.0), many.max(p.0)));
     let area = SVGBackend::new(path, (900, 560)).into_drawing_area();
@@ -141,22 +170,23 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     chart
         .configure_mesh()
         .x_desc("triangles")
-        .y_desc("seconds a query of 30 links")
+        .y_desc("microseconds a query of 30 links")
         .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .y_label_formatter(&|y| format!("{y:.0}"))
         .draw()?;
-    for (index, series) in all.iter().enumerate() {
-        let colour = Palette99::pick(index).to_rgba();
+    for series in all {
+        let (colour, [stroke, gap]) = (COLOURS[series.model], ENGINES[series.engine].1);
+        let style = colour.stroke_width(2);
         chart
-            .draw_series(
-                LineSeries::new(series.points.iter().copied(), colour.stroke_width(2)).point_size(3),
-            )?
+            .draw_series(DashedLineSeries::new(scaled(series), stroke, gap, style))?
             .label(&series.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+            .legend(move |(x, y)| DashedPathElement::new([(x, y), (x + 40, y)], stroke, gap, style));
+        chart.draw_series(scaled(series).into_iter().map(|at| Circle::new(at, 3, colour.filled())))?;
     }
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperLeft)
+        .legend_area_size(48)
         .background_style(WHITE.mix(0.8))
         .draw()?;
     area.present()?;

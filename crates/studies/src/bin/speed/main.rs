@@ -31,7 +31,7 @@ struct Options {
     out: PathBuf,
 
     /// How often the ventricle of 10,000 triangles is divided in four for the largest mesh; no other is larger
-    #[arg(long, value_name = "TIMES", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=6))]
+    #[arg(long, value_name = "TIMES", default_value_t = 5, value_parser = command::whole(1..=6))]
     largest: u32,
 
     /// Seconds for each group of jobs that take turns; groups of a few jobs take less
@@ -59,6 +59,7 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options) -> Result<(), String> {
+    command::directory(&options.out)?;
     let effort = Effort { largest: options.largest, enough: Duration::from_secs_f64(options.enough) };
     let written = format!(
         "Written by `{}` on {}",

@@ -82,6 +82,7 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options) -> Result<(), String> {
+    command::directory(&options.out)?;
     let path = options.out.join("STUDIES.md");
     let before = fs::read_to_string(&path).unwrap_or_default();
     let mut page = format!(

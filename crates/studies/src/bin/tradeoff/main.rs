@@ -43,11 +43,11 @@ struct Options {
     anatomy: Anatomy,
 
     /// Shapes whose clearance is compared
-    #[arg(long, value_name = "COUNT", default_value_t = SHAPES, value_parser = clap::value_parser!(u32).range(10..))]
+    #[arg(long, value_name = "COUNT", default_value_t = SHAPES, value_parser = command::whole(10..=u32::MAX))]
     shapes: u32,
 
     /// Shapes that are timed: the first that are free of the wall
-    #[arg(long, value_name = "COUNT", default_value_t = TIMED, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "COUNT", default_value_t = TIMED, value_parser = command::whole(1..=u32::MAX))]
     timed: u32,
 
     /// Where to write TRADEOFF.md and tradeoff.svg [default: docs, or target/tradeoff with other options]

@@ -68,13 +68,21 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
     for one in all {
         mark(&mut chart, (one.time * 1e6, one.error), one.way, colour(one.model))?;
     }
+    // A label goes down, line by line, until it is on no other.
+    let mut labels: Vec<(i32, i32)> = Vec::new();
     for one in &line {
         let style = ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
         let (name, extra) = one.model.name().split_once(',').unwrap_or_default();
         let name = if one.model == Model::Faced { format!("{name}{extra}") } else { name.into() };
         let label = format!("{name}, {} mm", one.tolerance);
-        let at = EmptyElement::at((one.time * 1e6, one.error));
-        chart.draw_series([at + Text::new(label, (-7, 4), style)])?;
+        let at = (one.time * 1e6, one.error);
+        let (x, y) = chart.backend_coord(&at);
+        let is_taken = |down: &i32| {
+            labels.iter().any(|label| (label.0 - x).abs() < 150 && (label.1 - y - down).abs() < LINE)
+        };
+        let down = (0..).map(|row| 4 + row * LINE).find(|down| !is_taken(down)).unwrap_or(4);
+        labels.push((x, y + down));
+        chart.draw_series([EmptyElement::at(at) + Text::new(label, (-7, down), style)])?;
     }
     legend(all, &mut chart)?;
     chart
@@ -85,6 +93,9 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
         .draw()?;
     Ok(())
 }
+
+/// The height of a label, in pixels.
+const LINE: i32 = 13;
 
 /// Every model by its colour, then every way by its mark.
 fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
@@ -151,6 +162,8 @@ fn colour(model: Model) -> RGBColor {
 }
 
 fn mark(chart: &mut Chart, at: (f64, f64), way: &str, colour: RGBColor) -> Drawn {
+    // What lies below shows through.
+    let colour = colour.mix(0.75);
     match shape(way) {
         Shape::Disc => chart.draw_series([Circle::new(at, 4, colour.filled())])?,
         Shape::Ring => chart.draw_series([Circle::new(at, 4, colour.stroke_width(1))])?,

@@ -1,0 +1,89 @@
+//! What can be wrong with a file, each in one line.
+
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a file gave no mesh. The text names the file and what to change.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum MeshFileError {
+    /// It is not there, may not be read, or is a directory or a device.
+    #[error("cannot read {} ({reason}); check the path", file.display())]
+    #[non_exhaustive]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// Its name does not say what it holds.
+    #[error("the format of {} is unknown; give a file that ends in .stl, .obj or .ply{LABEL_MAPS}", file.display())]
+    #[non_exhaustive]
+    UnknownFormat {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Header and data are in two files.
+    #[error("{} may have its voxels in a second file; save the segmentation as one file, .nii.gz or .nrrd", file.display())]
+    #[non_exhaustive]
+    InTwoFiles {
+        /// The file.
+        file: PathBuf,
+    },
+    /// It does not hold what its format asks for.
+    #[error("{} is not a valid {format} file ({reason}); export it again", file.display())]
+    #[non_exhaustive]
+    Broken {
+        /// The file.
+        file: PathBuf,
+        /// The format that its name promises.
+        format: &'static str,
+        /// What is wrong, with the line where there are lines.
+        reason: String,
+    },
+    /// It holds another format than its name promises.
+    #[error("{} holds {found}, not {format}; give it the extension of what it holds", file.display())]
+    #[non_exhaustive]
+    Misnamed {
+        /// The file.
+        file: PathBuf,
+        /// The format that its name promises.
+        format: &'static str,
+        /// What its first bytes say.
+        found: &'static str,
+    },
+    /// It holds no triangle.
+    #[error("{} holds no triangles; export the surface, not only its points", file.display())]
+    #[non_exhaustive]
+    Empty {
+        /// The file.
+        file: PathBuf,
+    },
+    /// A vertex is not finite, in the file or after it was scaled.
+    #[error("vertex {index} of {} is not finite ({}, {}, {}; scale {scale}); {advice}",
+            file.display(), place[0], place[1], place[2])]
+    #[non_exhaustive]
+    NotFinite {
+        /// The file.
+        file: PathBuf,
+        /// The vertex, counted from 0.
+        index: usize,
+        /// Its place in the file.
+        place: [f64; 3],
+        /// The scale that was asked for.
+        scale: f64,
+        /// What to change.
+        advice: &'static str,
+    },
+    /// The scale is not a positive number.
+    #[error("the scale is {scale}; give a positive number, for example 1000 for metres to millimetres")]
+    #[non_exhaustive]
+    Scale {
+        /// The scale that was asked for.
+        scale: f64,
+    },
+}
+
+/// What else could be read.
+const LABEL_MAPS: &str =
+    if cfg!(feature = "label-maps") { ", or a label map that ends in .nii, .nii.gz or .nrrd" } else { "" };

@@ -1,0 +1,179 @@
+//! Triangle meshes from STL, OBJ and PLY files, and from segmentations in NIfTI and NRRD files.
+//!
+//! [`load`] reads a file by its extension. What comes back is whole: there is at least one triangle, every vertex is
+//! finite, and every triangle names vertices that are there. What is wrong with a file is said in one line.
+//!
+//! STL and OBJ are read here, because their errors must name the line; PLY's grammar and NIfTI's header are left to
+//! the crates that know them.
+#![warn(missing_debug_implementations, missing_docs)]
+
+mod error;
+#[cfg(feature = "label-maps")]
+mod label_map;
+mod mesh;
+mod obj;
+mod ply;
+mod stl;
+mod text;
+
+pub use error::MeshFileError;
+pub use mesh::{Frame, Mesh};
+use std::path::Path;
+
+/// How a file is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Multiplies every coordinate, for example 1000 for metres to millimetres. A label map has a unit and comes in
+    /// millimetres before it is multiplied.
+    pub scale: f64,
+    /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
+    pub label: Option<u32>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { scale: 1.0, label: None }
+    }
+}
+
+impl Options {
+    /// Every coordinate multiplied by `scale`.
+    pub fn scaled(scale: f64) -> Self {
+        Self { scale, ..Self::default() }
+    }
+
+    /// The same, but of a label map the surface of this label, or of all that are not 0.
+    pub fn with_label(self, label: Option<u32>) -> Self {
+        Self { label, ..self }
+    }
+}
+
+/// What a file's extension says it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Format {
+    Stl,
+    Obj,
+    Ply,
+    #[cfg(feature = "label-maps")]
+    Nifti,
+    #[cfg(feature = "label-maps")]
+    Nrrd,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, MeshFileError> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let file = path.to_owned();
+        match name.rsplit_once('.').map_or("", |(_, extension)| extension) {
+            "stl" => Ok(Self::Stl),
+            "obj" => Ok(Self::Obj),
+            "ply" => Ok(Self::Ply),
+            #[cfg(feature = "label-maps")]
+            "nii" => Ok(Self::Nifti),
+            #[cfg(feature = "label-maps")]
+            "gz" if name.ends_with(".nii.gz") => Ok(Self::Nifti),
+            #[cfg(feature = "label-maps")]
+            "nrrd" => Ok(Self::Nrrd),
+            "nhdr" | "img" | "hdr" => Err(MeshFileError::InTwoFiles { file }),
+            _ => Err(MeshFileError::UnknownFormat { file }),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            #[cfg(feature = "label-maps")]
+            Self::Nifti => "NIfTI",
+            #[cfg(feature = "label-maps")]
+            Self::Nrrd => "NRRD",
+        }
+    }
+}
+
+/// The mesh in the file.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
+    load_with(path, &Options::default())
+}
+
+/// The mesh in the file, read as the options say.
+///
+/// # Errors
+/// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not finite; a triangle
+/// names a vertex that is not there; a label map has no voxel of the label; or the scale is not a positive number.
+pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
+    let path = path.as_ref();
+    // The name and the kind of file first: a device may never end.
+    Format::of(path)?;
+    let unreadable = |reason: String| MeshFileError::Unreadable { file: path.to_owned(), reason };
+    let kind = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+    if !kind.is_file() {
+        return Err(unreadable("it is not a file".into()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    from_bytes(path, &bytes, options)
+}
+
+/// As [`load_with`], for a file of this name that holds these bytes.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
+    let path = path.as_ref();
+    let format = Format::of(path)?;
+    let scale = options.scale;
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Err(MeshFileError::Scale { scale });
+    }
+    let file = path.to_owned();
+    let read = match format {
+        Format::Stl => stl::read(bytes),
+        Format::Obj => obj::read(bytes),
+        Format::Ply => ply::read(bytes),
+        #[cfg(feature = "label-maps")]
+        Format::Nifti => label_map::nifti::read(bytes).and_then(|volume| volume.surface(options.label)),
+        #[cfg(feature = "label-maps")]
+        Format::Nrrd => label_map::nrrd::read(bytes).and_then(|volume| volume.surface(options.label)),
+    };
+    let mut mesh = match read {
+        Ok(mesh) => mesh,
+        Err(reason) => {
+            let format = format.name();
+            return Err(match text::looks_like(bytes) {
+                Some(found) if found != format => MeshFileError::Misnamed { file, format, found },
+                _ => MeshFileError::Broken { file, format, reason },
+            });
+        }
+    };
+    if mesh.triangles.is_empty() {
+        return Err(MeshFileError::Empty { file });
+    }
+    let count = mesh.vertices.len();
+    if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count) {
+        let reason = format!("a triangle names vertex {corner}, but there are {count}, counted from 0");
+        return Err(MeshFileError::Broken { file, format: format.name(), reason });
+    }
+    for (index, vertex) in mesh.vertices.iter_mut().enumerate() {
+        let place = *vertex;
+        *vertex = place.map(|x| x * scale);
+        if !vertex.iter().all(|x| x.is_finite()) {
+            let advice = if place.iter().all(|x| x.is_finite()) {
+                "choose a smaller scale"
+            } else {
+                "repair that vertex"
+            };
+            return Err(MeshFileError::NotFinite { file, index, place, scale, advice });
+        }
+    }
+    Ok(mesh)
+}
+
+/// Runs the code in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

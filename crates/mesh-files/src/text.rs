@@ -1,0 +1,66 @@
+//! Text files line by line, and what a file's first bytes say of it.
+
+use crate::Frame;
+use std::borrow::Cow;
+
+/// The bytes without a byte order mark.
+pub fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// The words of the lines with the lines' numbers, counted from 1.
+pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+    // Old programs end lines by carriage returns alone.
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+    let lines = without_mark(bytes).split(move |&byte| byte == end);
+    lines.map(String::from_utf8_lossy).enumerate().map(|(index, line)| (index + 1, line))
+}
+
+/// A coordinate.
+pub fn number(word: Option<&str>, line: usize) -> Result<f64, String> {
+    let word = word.ok_or_else(|| format!("line {line} ends where a number should be"))?;
+    word.parse().map_err(|_| format!("line {line} has '{}' where a number should be", shown(word)))
+}
+
+/// A word as a message can show it: short, and on one line.
+pub fn shown(word: &str) -> String {
+    let printable = |c: char| if c.is_control() { '?' } else { c };
+    let short: String = word.chars().take(20).map(printable).collect();
+    if short.len() < word.len() { short + "..." } else { short }
+}
+
+/// What the file holds, whatever its name says, where its first bytes tell.
+pub fn looks_like(bytes: &[u8]) -> Option<&'static str> {
+    let start = without_mark(bytes);
+    let start = &start[..start.len().min(4096)];
+    if start.starts_with(b"NRRD000") {
+        return Some("NRRD");
+    }
+    if start.starts_with(b"PK\x03\x04") {
+        return Some("a zip archive");
+    }
+    if [&b"ni1\0"[..], b"n+1\0"].iter().any(|magic| bytes.get(344..348) == Some(magic)) {
+        return Some("NIfTI");
+    }
+    let text = std::str::from_utf8(start.strip_suffix(b"\xef").unwrap_or(start)).ok()?;
+    let mut words = text.lines().filter_map(|line| line.split_whitespace().next());
+    let first = words.find(|word| !word.starts_with('#'))?;
+    match first.to_ascii_lowercase().as_str() {
+        "ply" => Some("PLY"),
+        "solid" => Some("STL"),
+        "v" | "vn" | "vt" | "o" | "g" | "mtllib" => Some("OBJ"),
+        word if word.starts_with('<') => Some("XML or HTML"),
+        _ => None,
+    }
+}
+
+/// The frame that 3D Slicer notes at the head of the files of triangles that it writes.
+pub fn noted_frame(bytes: &[u8]) -> Option<Frame> {
+    let head = &bytes[..bytes.len().min(1000)];
+    let note = head.windows(9).find(|window| window.starts_with(b"SPACE="))?;
+    match &note[6..] {
+        b"RAS" => Some(Frame::Ras),
+        b"LPS" => Some(Frame::Lps),
+        _ => None,
+    }
+}

@@ -1,0 +1,313 @@
+//! Segmentations become closed surfaces where the voxels are, in millimetres.
+
+use crate::{Vertex, read, refused};
+use flate2::{Compression, write::GzEncoder};
+use mesh_files::{Frame, Mesh, Options, from_bytes};
+use std::collections::HashMap;
+use std::io::Write;
+
+const SIZES: [usize; 3] = [40, 34, 30];
+
+/// Rows of a matrix from voxels to millimetres.
+type Matrix = [[f64; 4]; 3];
+
+fn apply(matrix: &Matrix, voxel: Vertex) -> Vertex {
+    matrix.map(|row| row[0] * voxel[0] + row[1] * voxel[1] + row[2] * voxel[2] + row[3])
+}
+
+/// Voxels of 1, 1.2 and 0.8 mm, turned about (1, 2, 2) / 3 by 40 degrees (Rodrigues' formula), and moved.
+fn oblique(mirror: f64) -> Matrix {
+    let (axis, angle) = ([1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0], 40_f64.to_radians());
+    let (sin, cos) = angle.sin_cos();
+    let cross = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
+    let spacing = [1.0, 1.2, 0.8 * mirror];
+    let shift = [-20.0, 31.0, 7.0];
+    let entry = |i: usize, j: usize| {
+        let unit = if i == j { cos } else { 0.0 };
+        (unit + sin * cross[i][j] + (1.0 - cos) * axis[i] * axis[j]) * spacing[j]
+    };
+    [0, 1, 2].map(|i| [entry(i, 0), entry(i, 1), entry(i, 2), shift[i]])
+}
+
+/// A ball of label 3 of this radius around a voxel in the matrix's millimetres; a corner of label 7; and its centre.
+fn ball(matrix: &Matrix, radius: f64) -> (Vec<u8>, Vertex) {
+    let centre = apply(matrix, [19.3, 16.6, 14.9]);
+    let mut labels = Vec::new();
+    for z in 0..SIZES[2] {
+        for y in 0..SIZES[1] {
+            for x in 0..SIZES[0] {
+                let off = distance(apply(matrix, [x as f64, y as f64, z as f64]), centre);
+                labels.push(if off < radius { 3 } else { 7 * u8::from(x + y + z < 4) });
+            }
+        }
+    }
+    (labels, centre)
+}
+
+fn distance(p: Vertex, q: Vertex) -> f64 {
+    [0, 1, 2].map(|i| (p[i] - q[i]).powi(2)).iter().sum::<f64>().sqrt()
+}
+
+/// A NIfTI-1 header, by the byte offsets of nifti1.h, and the voxels.
+struct Nifti {
+    head: Vec<u8>,
+    voxels: Vec<u8>,
+}
+
+impl Nifti {
+    fn new(voxels: Vec<u8>) -> Self {
+        let mut file = Self { head: vec![0; 352], voxels };
+        file.put(0, &348_i32.to_le_bytes());
+        let [x, y, z] = SIZES.map(|size| size as i16);
+        file.shorts(40, &[3, x, y, z, 1, 1, 1, 1]).shorts(70, &[2, 8]).floats(108, &[352.0]);
+        file.put(344, b"n+1\0");
+        file
+    }
+
+    fn put(&mut self, at: usize, bytes: &[u8]) -> &mut Self {
+        self.head[at..at + bytes.len()].copy_from_slice(bytes);
+        self
+    }
+
+    fn shorts(&mut self, at: usize, numbers: &[i16]) -> &mut Self {
+        self.put(at, &numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<_>>())
+    }
+
+    fn floats(&mut self, at: usize, numbers: &[f32]) -> &mut Self {
+        self.put(at, &numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<_>>())
+    }
+
+    /// Placed by the rows of a matrix.
+    fn sform(&mut self, matrix: &Matrix) -> &mut Self {
+        let rows: Vec<_> = matrix.iter().flatten().map(|&x| x as f32).collect();
+        self.shorts(254, &[1]).floats(280, &rows)
+    }
+
+    /// Placed as [`oblique`] is: by a quaternion and the spacings.
+    fn qform(&mut self, mirror: f32) -> &mut Self {
+        let half = 20_f32.to_radians().sin() / 3.0;
+        self.shorts(252, &[1]).floats(76, &[mirror, 1.0, 1.2, 0.8]);
+        self.floats(256, &[half, 2.0 * half, 2.0 * half, -20.0, 31.0, 7.0])
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        [&self.head[..], &self.voxels].concat()
+    }
+}
+
+fn nrrd(matrix: &Matrix, kind: &str, encoding: &str, space: &str, voxels: &[u8]) -> Vec<u8> {
+    let column = |j: usize| format!("({},{},{})", matrix[0][j], matrix[1][j], matrix[2][j]);
+    let [x, y, z] = SIZES;
+    let head = format!(
+        "NRRD0004\n# a comment: no field\ntype: {kind}\ndimension: 3\nspace: {space}\nsizes: {x} {y} {z}\n\
+         space directions: {} {} {}\nkinds: domain domain domain\nendian: big\nencoding: {encoding}\n\
+         space origin: {}\nSegment0_Name:=ball\n\n",
+        column(0),
+        column(1),
+        column(2),
+        column(3)
+    );
+    [head.as_bytes(), voxels].concat()
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut archive = GzEncoder::new(Vec::new(), Compression::fast());
+    archive.write_all(bytes).unwrap();
+    archive.finish().unwrap()
+}
+
+fn label(name: &str, bytes: &[u8], label: u32) -> Result<Mesh, String> {
+    from_bytes(name, bytes, &Options::default().with_label(Some(label))).map_err(|error| error.to_string())
+}
+
+/// Every edge is passed as often in one direction as in the other.
+fn assert_closed(mesh: &Mesh) {
+    let mut edges = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *edges.entry((from, to)).or_insert(0) += 1;
+            *edges.entry((to, from)).or_insert(0) -= 1;
+        }
+    }
+    assert!(edges.values().all(|&times| times == 0));
+}
+
+/// The volume inside; positive if the triangles are counter-clockwise seen from outside.
+fn volume(mesh: &Mesh) -> f64 {
+    let corner = |i: u32| mesh.vertices[i as usize];
+    let six = mesh.triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(corner);
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    });
+    six.sum::<f64>() / 6.0
+}
+
+/// A closed surface around the ball: each vertex lies in a cube of voxels that the sphere passes through, so it is off the
+/// sphere by no more than the cube's diagonal.
+fn assert_ball(name: &str, mesh: &Mesh, centre: Vertex, radius: f64, unit: f64) {
+    assert_closed(mesh);
+    assert!(mesh.triangles.len() > 2000, "{name}: {}", mesh.triangles.len());
+    let diagonal = (1.0_f64 + 1.44 + 0.64).sqrt() * unit;
+    for &vertex in &mesh.vertices {
+        let off = distance(vertex, centre) - radius;
+        assert!(off.abs() <= diagonal, "{name}: {vertex:?} is off by {off}");
+    }
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+    assert!((volume(mesh) / exact - 1.0).abs() < 0.03, "{name}: {} for {exact}", volume(mesh));
+}
+
+#[test]
+fn a_segmented_ball_is_where_its_voxels_are() {
+    for mirror in [1.0, -1.0] {
+        let matrix = oblique(mirror);
+        let (voxels, centre) = ball(&matrix, 9.5);
+        let by_rows = Nifti::new(voxels.clone()).sform(&matrix).bytes();
+        let by_turn = Nifti::new(voxels.clone()).qform(mirror as f32).bytes();
+        // The sform wins where both are given.
+        let both = Nifti::new(voxels.clone()).qform(-mirror as f32).sform(&matrix).bytes();
+        for (name, bytes) in [
+            ("rows.nii", by_rows.clone()),
+            ("turn.nii", by_turn),
+            ("both.nii", both),
+            ("rows.nii.gz", gzip(&by_rows)),
+            ("raw.nrrd", nrrd(&matrix, "uchar", "raw", "right-anterior-superior", &voxels)),
+            ("gzip.nrrd", nrrd(&matrix, "uint8", "gzip", "RAS", &gzip(&voxels))),
+        ] {
+            let mesh = label(name, &bytes, 3).unwrap();
+            assert_eq!(mesh.frame, Some(Frame::Ras), "{name}");
+            assert_ball(name, &mesh, centre, 9.5, 1.0);
+        }
+    }
+}
+
+#[test]
+fn every_type_of_number_gives_the_same_surface() {
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let expected = label("a.nrrd", &nrrd(&matrix, "uchar", "raw", "LPS", &voxels), 3).unwrap();
+    assert_eq!(expected.frame, Some(Frame::Lps));
+    let big = |bytes: fn(u8) -> Vec<u8>| voxels.iter().flat_map(|&label| bytes(label)).collect::<Vec<u8>>();
+    let text: String = voxels.iter().map(|label| format!("{label} ")).collect();
+    for (kind, encoding, bytes) in [
+        ("signed char", "raw", voxels.clone()),
+        ("short", "raw", big(|label| i16::from(label).to_be_bytes().into())),
+        ("unsigned short", "raw", big(|label| u16::from(label).to_be_bytes().into())),
+        ("int", "raw", big(|label| i32::from(label).to_be_bytes().into())),
+        ("uint32_t", "raw", big(|label| u32::from(label).to_be_bytes().into())),
+        ("long long", "raw", big(|label| i64::from(label).to_be_bytes().into())),
+        ("uint64", "raw", big(|label| u64::from(label).to_be_bytes().into())),
+        ("float", "raw", big(|label| f32::from(label).to_be_bytes().into())),
+        ("double", "raw", big(|label| f64::from(label).to_be_bytes().into())),
+        ("uint8", "ascii", text.into()),
+    ] {
+        let mesh = label("a.nrrd", &nrrd(&matrix, kind, encoding, "LPS", &bytes), 3).unwrap();
+        assert!(mesh == expected, "{kind} {encoding}");
+    }
+    // What the header asks to do with the numbers is done: 2 x 3 + 1.
+    let scaled = Nifti::new(voxels).sform(&matrix).floats(112, &[2.0, 1.0]).bytes();
+    assert_eq!(label("a.nii", &scaled, 7).unwrap().triangles, expected.triangles);
+}
+
+#[test]
+fn units_and_frames_are_those_of_the_file() {
+    let matrix = oblique(1.0);
+    let (voxels, centre) = ball(&matrix, 9.5);
+    let metres =
+        label("m.nii", &Nifti::new(voxels.clone()).sform(&matrix).put(123, &[1]).bytes(), 3).unwrap();
+    assert_ball("metres", &metres, centre.map(|x| x * 1000.0), 9500.0, 1000.0);
+    let las = label("las.nrrd", &nrrd(&matrix, "uchar", "raw", "LAS", &voxels), 3).unwrap();
+    assert_eq!(las.frame, Some(Frame::Ras));
+    assert_ball("las", &las, [-centre[0], centre[1], centre[2]], 9.5, 1.0);
+    let none = nrrd(&matrix, "uchar", "raw", "3D-right-handed", &voxels);
+    assert_eq!(label("none.nrrd", &none, 3).unwrap().frame, None);
+}
+
+#[test]
+fn labels_at_the_border_are_closed_and_all_of_them_are_one() {
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let bytes = Nifti::new(voxels).sform(&matrix).bytes();
+    let corner = label("a.nii", &bytes, 7).unwrap();
+    assert_closed(&corner);
+    // 20 voxels of 0.96 cubic millimetres, whose corners the surface rounds off.
+    assert!((0.4..1.0).contains(&(volume(&corner) / (20.0 * 0.96))), "{}", volume(&corner));
+    let both = read("a.nii", &bytes).unwrap();
+    assert_closed(&both);
+    assert_eq!(
+        both.triangles.len(),
+        corner.triangles.len() + label("a.nii", &bytes, 3).unwrap().triangles.len()
+    );
+    // Every voxel of the file: the surface goes all around.
+    let full = Nifti::new(vec![1; SIZES.iter().product()]).sform(&matrix).bytes();
+    let full = read("full.nii", full).unwrap();
+    assert_closed(&full);
+    let exact = SIZES.iter().product::<usize>() as f64 * 0.96;
+    assert!((volume(&full) / exact - 1.0).abs() < 0.01, "{} for {exact}", volume(&full));
+}
+
+#[test]
+fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let whole = || Nifti::new(voxels.clone());
+    let good = whole().sform(&matrix).bytes();
+    let mut second = whole();
+    second.sform(&matrix).put(344, b"ni1\0");
+    let mut nifti_2 = whole();
+    nifti_2.put(0, &540_i32.to_le_bytes()).put(4, b"n+2\0");
+    let header = |from: &str, to: &str| {
+        let bytes = nrrd(&matrix, "uchar", "raw", "RAS", &voxels);
+        let end = bytes.windows(2).position(|pair| pair == b"\n\n").unwrap();
+        let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
+        assert!(head.contains(from));
+        [head.replace(from, to).as_bytes(), &bytes[end..]].concat()
+    };
+    for (name, bytes, expected) in [
+        ("cut.nii", good[..20_000].to_vec(), "shorter than its header says"),
+        ("head.nii", good[..200].to_vec(), "header is cut short"),
+        ("damaged.nii.gz", gzip(&good)[..300].to_vec(), "damaged or cut short"),
+        (
+            "bomb.nii.gz",
+            gzip(whole().sform(&matrix).shorts(42, &[2000, 999, 999]).bytes().as_slice()),
+            "shorter",
+        ),
+        (
+            "image.nii",
+            whole().sform(&matrix).floats(112, &[0.1, 0.0]).bytes(),
+            "no label; give the segmentation",
+        ),
+        ("placeless.nii", whole().bytes(), "does not say where its voxels are"),
+        ("plane.nii", whole().sform(&[matrix[0], matrix[1], matrix[1]]).bytes(), "into one plane"),
+        ("series.nii", whole().sform(&matrix).shorts(40, &[4, 10, 10, 10, 5]).bytes(), "a single label map"),
+        ("many.nii", whole().sform(&matrix).shorts(42, &[32000, 32000, 32000]).bytes(), "too many; crop it"),
+        ("flat.nii", whole().sform(&matrix).shorts(42, &[0]).bytes(), "no voxels"),
+        ("colour.nii", whole().sform(&matrix).shorts(70, &[128, 24]).bytes(), "type 128"),
+        ("offset.nii", whole().sform(&matrix).floats(108, &[f32::NAN]).bytes(), "byte NaN"),
+        ("unit.nii", whole().sform(&matrix).put(123, &[7]).bytes(), "unknown code 7"),
+        ("second.nii", second.bytes(), "second file"),
+        ("two.nii", nifti_2.bytes(), "save it as NIfTI-1"),
+        ("zero.nii", Nifti::new(vec![0; voxels.len()]).sform(&matrix).bytes(), "nothing is segmented"),
+        ("nrrd.nii", header("raw", "raw"), "holds NRRD, not NIfTI"),
+        ("nifti.nrrd", good.clone(), "holds NIfTI, not NRRD"),
+        ("cut.nrrd", header("raw", "raw")[..1000].to_vec(), "shorter than its header says"),
+        ("type.nrrd", header("uchar", "block"), "its type 'block' cannot be read"),
+        ("sizes.nrrd", header("sizes: 40 34 30", "sizes: 40 x 30"), "not three numbers"),
+        ("layers.nrrd", header("dimension: 3", "dimension: 4"), "without overlapping segments"),
+        ("packed.nrrd", header("raw", "bzip2"), "its encoding 'bzip2' cannot be read"),
+        ("space.nrrd", header("space: RAS", "space: scanner-xyz"), "its space 'scanner-xyz' cannot be read"),
+        ("second.nrrd", header("endian", "data file: brain.raw\nendian"), "second file"),
+        ("where.nrrd", header("space origin: ", "origin: "), "no field 'space origin'"),
+        ("none.nrrd", header("space directions: ", "space directions: none "), "not 3 x three numbers"),
+        ("unit.nrrd", header("endian", "space units: \"mm\" \"mm\" \"m\"\nendian"), "not all the same"),
+        ("empty-line.nrrd", b"NRRD0004\ntype: uchar\n".to_vec(), "not followed by an empty line"),
+        ("other.nrrd", b"something else\n\n".to_vec(), "does not begin with 'NRRD000'"),
+    ] {
+        refused(name, read(name, bytes), expected);
+    }
+    // One byte has no order, so its header need not name one.
+    assert!(read("plain.nrrd", header("endian: big\n", "")).is_ok());
+    refused("order", read("order.nrrd", header("type: uchar\n", "type: short\n").as_slice()), "shorter");
+    refused("label", label("a.nii", &good, 5), "no voxel has label 5; there are 0, 3, 7");
+    refused("second", read("brain.nhdr", ""), "as one file");
+}

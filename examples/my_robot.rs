@@ -1,0 +1,78 @@
+//! `cargo run --release --example my_robot -- --mesh examples/data/wall.stl --centreline examples/data/shape.csv`
+
+use clap::Parser;
+use parry_continuum::parry::{math::Pose, math::Vector, shape::TriMesh};
+use parry_continuum::{Chain, Tube, pose_from_matrix, proximity::BvhSearch, proximity::Proximity};
+use std::{error::Error, ops::RangeInclusive, path::Path, path::PathBuf};
+
+/// How far is my robot from my wall, link by link? All lengths are in one unit, that of the mesh.
+#[derive(Parser)]
+struct Options {
+    /// The wall: an STL, OBJ or PLY file, or a segmentation in NIfTI or NRRD (which comes in millimetres)
+    #[arg(long)]
+    mesh: PathBuf,
+    /// The label of the wall in a segmentation [default: all that are not 0]
+    #[arg(long)]
+    label: Option<u32>,
+    /// A line for each point of the centreline: x,y,z and optionally the radius of the segment that begins there
+    #[arg(long)]
+    centreline: PathBuf,
+    /// The radius where the centreline's file has none
+    #[arg(long, allow_negative_numbers = true)]
+    radius: Option<f64>,
+    /// A file with a 4x4 matrix, row by row: it brings the robot into the frame of the mesh
+    #[arg(long)]
+    pose: Option<PathBuf>,
+    /// Bound the clearance of the curve through the points too, so closely
+    #[arg(long, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+}
+
+fn main() {
+    let asked = clearance(&Options::parse()).inspect_err(|error| eprintln!("error: {error}"));
+    std::process::exit(asked.is_err().into());
+}
+
+fn clearance(my: &Options) -> Result<(), Box<dyn Error>> {
+    let (mut points, mut radii, mut links) = (Vec::new(), Vec::new(), Vec::new());
+    for (line, row) in rows(&my.centreline, 3..=4, "x,y,z or x,y,z,radius")? {
+        points.push(Vector::new(row[0], row[1], row[2]));
+        radii.push(row.get(3).copied().or(my.radius).ok_or(format!("{line} has no radius; give --radius")));
+    }
+    let radii = radii.into_iter().take(points.len().max(1) - 1).collect::<Result<Vec<f64>, _>>()?;
+    let mut pose = Pose::IDENTITY;
+    if let Some(path) = &my.pose {
+        let matrix = rows(path, 4..=4, "4 numbers")?.iter().map(|(_, r)| [r[0], r[1], r[2], r[3]]).collect();
+        pose = pose_from_matrix(Vec::try_into(matrix).map_err(|_| "--pose needs 4 lines of 4 numbers")?)?;
+    }
+    let reading = mesh_files::Options::default().with_label(my.label);
+    let (vertices, triangles) = mesh_files::load_with(&my.mesh, &reading)?.into_parts();
+    let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    let robot = Chain::from_centreline(&points, &radii)?;
+    search.per_link(&robot, &pose, &mut links)?;
+    for l in &links {
+        println!("link {}: {:.6}, from {:.6} to {:.6}", l.link, l.distance, l.on_robot, l.on_mesh);
+    }
+    if let Some(tolerance) = my.tolerance {
+        let curve = search.clearance(&Tube::from_samples(&points, &radii, None)?, &pose, tolerance)?;
+        println!("curve: {:.6} to {:.6}, {:.3} along it", curve.lower, curve.upper, curve.arc_length);
+    }
+    println!("minimum {:.6}", search.minimum(&robot, &pose)?.distance);
+    Ok(())
+}
+
+/// The numbers of each line, with the line's name. Empty lines and a heading are passed over.
+fn rows(path: &Path, count: RangeInclusive<usize>, what: &str) -> Result<Vec<(String, Vec<f64>)>, String> {
+    let file = path.display();
+    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read {file} ({e}); check it"))?;
+    let mut rows = Vec::new();
+    for (line, number) in text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty()) {
+        let words = line.split([',', ';', ' ', '\t', '\u{feff}']).filter(|word| !word.is_empty());
+        match words.map(str::parse).collect::<Result<Vec<_>, _>>() {
+            Ok(row) if count.contains(&row.len()) => rows.push((format!("line {number} of {file}"), row)),
+            Err(_) if number == 1 && !line.contains(char::is_numeric) => {}
+            _ => return Err(format!("line {number} of {file} is '{line}'; write {what}")),
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,105 @@
+//! From the 4x4 matrix of a registration or of a kinematic model to a pose, checked.
+
+use parry3d_f64::math::{Mat3, Pose, Real, Rot3, Vector};
+use thiserror::Error;
+
+/// The entries of R^T R may be off those of the identity by so much. A matrix whose numbers have six digits after the
+/// point passes; a rotation that is off by this much moves a point at 100 mm by 0.001 mm.
+const ROUNDED: Real = 1e-5;
+
+/// Why a 4x4 matrix is no pose. The text says what to change.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum MatrixError {
+    /// An entry is NaN or infinite.
+    #[error(
+        "row {row}, column {column} of the matrix is {value}; give finite numbers (rows and columns count from 1)"
+    )]
+    NotFinite {
+        /// Row, counted from 1.
+        row: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// The entry.
+        value: Real,
+    },
+    /// The last row is not 0 0 0 1.
+    #[error("the last row of the matrix is {} {} {} {}, not 0 0 0 1; transpose it if the shift is there",
+            row[0], row[1], row[2], row[3])]
+    LastRow {
+        /// The last row.
+        row: [Real; 4],
+    },
+    /// All axes are scaled alike.
+    #[error(
+        "the matrix scales by {factor}; scale the mesh or the robot instead, and give a rotation and a shift alone"
+    )]
+    Scales {
+        /// The factor.
+        factor: Real,
+    },
+    /// The axes are not perpendicular unit vectors.
+    #[error(
+        "the matrix does not rotate: its axes are off unit length and right angles by {deviation:e}; \
+         give a rigid registration, with six digits after the point"
+    )]
+    NoRotation {
+        /// The largest deviation of R^T R from the identity.
+        deviation: Real,
+    },
+    /// The axes are left-handed.
+    #[error(
+        "the matrix mirrors; bring both frames to the same handedness, for example both to RAS or both to LPS"
+    )]
+    Mirrors,
+}
+
+/// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0 1.
+///
+/// Numbers rounded to six digits after the point will do; a rotation as near to them is taken.
+///
+/// # Errors
+/// The matrix is not finite, its last row is not 0 0 0 1, or its rotation scales, shears or mirrors.
+///
+/// ```
+/// use parry_continuum::{parry::math::Vector, pose_from_matrix};
+/// let pose = pose_from_matrix([
+///     [0.0, -1.0, 0.0, 10.0], // a quarter turn about z, and a shift
+///     [1.0, 0.0, 0.0, 20.0],
+///     [0.0, 0.0, 1.0, 30.0],
+///     [0.0, 0.0, 0.0, 1.0],
+/// ])?;
+/// assert!((pose * Vector::X - Vector::new(10.0, 21.0, 30.0)).length() < 1e-14);
+/// # Ok::<(), parry_continuum::MatrixError>(())
+/// ```
+pub fn pose_from_matrix(rows: [[Real; 4]; 4]) -> Result<Pose, MatrixError> {
+    for (row, entries) in rows.iter().enumerate() {
+        for (column, &value) in entries.iter().enumerate() {
+            if !value.is_finite() {
+                return Err(MatrixError::NotFinite { row: row + 1, column: column + 1, value });
+            }
+        }
+    }
+    if rows[3] != [0.0, 0.0, 0.0, 1.0] {
+        return Err(MatrixError::LastRow { row: rows[3] });
+    }
+    let axis = |column: usize| Vector::new(rows[0][column], rows[1][column], rows[2][column]);
+    let [x, y, z] = [axis(0), axis(1), axis(2)];
+    let squares = Vector::new(x.length_squared(), y.length_squared(), z.length_squared());
+    let skew = Vector::new(x.dot(y), y.dot(z), z.dot(x)).abs().max_element();
+    let off = (squares - Vector::ONE).abs().max_element();
+    if off.max(skew) > ROUNDED {
+        let mean = squares.element_sum() / 3.0;
+        let is_even =
+            mean > 0.0 && (squares - Vector::splat(mean)).abs().max_element().max(skew) <= ROUNDED * mean;
+        return Err(if is_even && mean.is_finite() {
+            MatrixError::Scales { factor: mean.sqrt() }
+        } else {
+            MatrixError::NoRotation { deviation: off.max(skew) }
+        });
+    }
+    if x.cross(y).dot(z) < 0.0 {
+        return Err(MatrixError::Mirrors);
+    }
+    Ok(Pose::from_parts(axis(3), Rot3::from_mat3(&Mat3::from_cols(x, y, z)).normalize()))
+}

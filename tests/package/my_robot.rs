@@ -1,0 +1,88 @@
+//! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to change.
+
+use crate::programs::{refuse, succeed};
+use continuum_testing::programs::{file, room};
+
+/// A quarter turn that brings x to y and y to -x, and a shift.
+const TURNED: &str = "0 -1 0 60\n1 0 0 0\n0 0 1 0\n0 0 0 1\n";
+
+/// What the program prints after `minimum`.
+fn minimum(arguments: &[&str]) -> f64 {
+    let out = succeed("my_robot", arguments);
+    let last = out.lines().last().and_then(|line| line.strip_prefix("minimum ")).map(str::to_owned);
+    last.unwrap_or_else(|| panic!("{out}")).parse().unwrap()
+}
+
+#[test]
+fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
+    // A box of 60 in each direction, and a needle along z: 20 from both ends, 28 and then 29 from the sides.
+    let room = &room("box.obj");
+    let shape = &file("shape.csv", "x,y,z,radius\n30,30,20,2\n30,30,30,1\n30,30,40\n");
+    let out = succeed("my_robot", &["--mesh", room, "--centreline", shape]);
+    assert_eq!(out.lines().count(), 3, "{out}");
+    assert_eq!(minimum(&["--mesh", room, "--centreline", shape]), 20.0);
+    // Semicolons, no heading, one radius for all; moved to 7 from a side.
+    let plain = &file("plain.csv", "\u{feff}30; 30; 20\r\n30; 30; 40\r\n\r\n");
+    let moved = &file("moved.txt", "1 0 0 -21\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+    let moved = ["--mesh", room, "--centreline", plain, "--pose", moved, "--radius", "2"];
+    assert_eq!(minimum(&moved), 7.0);
+    // Turned: (5, 30) goes to (30, 5).
+    let side = &file("side.csv", "5,30,20,1\n5,30,40,1\n");
+    let turned = &file("turned.txt", TURNED);
+    let out =
+        succeed("my_robot", &["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"]);
+    assert!(
+        out.contains(", from [30.000000, 4.000000, ") && out.contains(" to [30.000000, 0.000000, "),
+        "{out}"
+    );
+    let curve = out.lines().find_map(|line| line.strip_prefix("curve: ")).unwrap_or_else(|| panic!("{out}"));
+    let bounds: Vec<f64> = curve.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+    assert!(bounds[0] <= 4.0 && 4.0 <= bounds[1] && bounds[1] - bounds[0] <= 0.0100001, "{out}");
+    // The files that come with the example.
+    let data = |name: &str| format!("{}/examples/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let [wall, shape, pose] = ["wall.stl", "shape.csv", "pose.txt"].map(data);
+    let clearance = minimum(&["--mesh", &wall, "--centreline", &shape, "--pose", &pose]);
+    assert!(clearance > 0.5, "{clearance}");
+}
+
+#[test]
+fn what_is_wrong_with_my_files_is_said_in_one_line() {
+    let room = &room("box.obj");
+    let shape = &file("good.csv", "30,30,20,2\n30,30,40\n");
+    let refuse_shape = |text: &str, expected: &str| {
+        refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
+    };
+    refuse_shape("x,y,z\n30,30,20\n30,30,40\n", "line 2 of ");
+    refuse_shape("30,30,20\n30,30,40\n", "no radius; give --radius");
+    refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
+    refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
+    refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");
+    // Decimal commas.
+    refuse_shape("30,5;30,0;20,0;1,0\n30,0;30,0;40,0\n", "write x,y,z or x,y,z,radius");
+    refuse_shape("30,30,20,1\n", "point");
+    refuse_shape("30,30,20,-1\n30,30,40\n", "radius 0 is -1");
+    let refuse_pose = |text: &str, expected: &str| {
+        let pose = file("bad.txt", text);
+        refuse("my_robot", &["--mesh", room, "--centreline", shape, "--pose", &pose], expected);
+    };
+    refuse_pose("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "--pose needs 4 lines of 4 numbers");
+    refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "write 4 numbers");
+    refuse_pose(&TURNED.replace("0 0 0 1", "0 0 0 2"), "not 0 0 0 1");
+    refuse_pose(&TURNED.replace("-1", "1"), "mirrors");
+    refuse_pose(&TURNED.replace("-1", "-0.9"), "does not rotate");
+    refuse_pose("0 -1e3 0 60\n1e3 0 0 0\n0 0 1e3 0\n0 0 0 1\n", "scales by 1000");
+    refuse_pose(&TURNED.replace("60", "nan"), "row 1, column 4");
+    refuse("my_robot", &["--mesh", room, "--centreline", "nowhere.csv"], "cannot read nowhere.csv");
+    refuse("my_robot", &["--mesh", "nowhere.stl", "--centreline", shape], "check the path");
+    #[cfg(unix)]
+    refuse("my_robot", &["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
+}
+
+#[test]
+fn a_report_holds_all_digits_of_its_query() {
+    let out = succeed("report", &[]);
+    let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));
+    let distances: Vec<_> = distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
+    assert!(distances.len() == 2 && distances[0] == distances[1], "{out}");
+    assert!((2.0..10.0).contains(&distances[0].parse().unwrap()), "{out}");
+}
