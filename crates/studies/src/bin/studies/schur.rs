@@ -74,6 +74,9 @@ where
     })
 }
 
+/// From the coefficients of a polynomial to its roots.
+type Route<const M: usize> = fn(&[f64; M]) -> Vec<Root>;
+
 /// All routes on polynomials of degree N = M - 1.
 fn outcomes<const M: usize, const N: usize>(count: usize, kind: usize) -> [Outcome; 3]
 where
@@ -86,7 +89,7 @@ where
         _ => 10.0_f64.powf(random.between(-6.0, 6.0)) * [1.0, -1.0][random.below(2) as usize],
     };
     let polynomials: Vec<[f64; M]> = (0..count).map(|_| std::array::from_fn(|_| coefficient())).collect();
-    let routes: [fn(&[f64; M]) -> Vec<Root>; 3] = [
+    let routes: [Route<M>; 3] = [
         by_ours::<M>,
         |coefficients| by_nalgebra::<M, N>(coefficients, false),
         |coefficients| by_nalgebra::<M, N>(coefficients, true),
