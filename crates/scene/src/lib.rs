@@ -4,7 +4,7 @@
 //! | what | modules |
 //! |---|---|
 //! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
-//! | the robot | [`ctr`]; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
+//! | the robot | [`ctr`]; [`joint_motion`], while its joints move; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
 //! | files | `mesh_file` (feature `files`) |
 //! | pictures | `picture`, `figure`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
@@ -25,6 +25,7 @@ pub mod field;
 pub mod figure;
 #[cfg(feature = "pictures")]
 pub mod lettering;
+pub mod joint_motion;
 pub mod levels;
 pub mod lumen;
 #[cfg(feature = "files")]
