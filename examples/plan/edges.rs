@@ -57,7 +57,11 @@ pub fn along(from: &Place, way: &Place, share: Real) -> Place {
 
 /// How long a way is, mm.
 pub fn length(way: &Place) -> Real {
-    way.iter().enumerate().map(|(k, by)| if k < 3 { by * by } else { (REACH * by).powi(2) }).sum::<Real>().sqrt()
+    way.iter()
+        .enumerate()
+        .map(|(k, by)| if k < 3 { by * by } else { (REACH * by).powi(2) })
+        .sum::<Real>()
+        .sqrt()
 }
 
 /// How edges are checked.
@@ -98,11 +102,13 @@ impl Edges<'_> {
 
     /// Whether the robot keeps the margin on the way, as far as the check tells.
     pub fn is_clear(&mut self, from: &Place, to: &Place) -> Result<bool, String> {
-        let motion = Watched { motion: self.motion(from, to)?, shapes: Cell::default(), time: Cell::default() };
+        let motion =
+            Watched { motion: self.motion(from, to)?, shapes: Cell::default(), time: Cell::default() };
         let begin = Instant::now();
         let is_clear = match self.check {
             Check::Proof => {
-                self.search.clears_motion(&motion, self.margin, RESOLUTION).map_err(text)? == MotionAnswer::Clear
+                self.search.clears_motion(&motion, self.margin, RESOLUTION).map_err(text)?
+                    == MotionAnswer::Clear
             }
             Check::Steps(step) => self.is_clear_in_steps(&motion, step)?,
         };
@@ -139,7 +145,12 @@ impl Edges<'_> {
         let mut decisions = Vec::new();
         self.search.tube_clears_batch(&tubes, self.margin, RESOLUTION, &mut decisions).map_err(text)?;
         let is_clear = decisions.into_iter().map(|decision| decision == Decision::Clear);
-        Ok(places.into_iter().zip(is_clear).filter(|(_, is_clear)| *is_clear).map(|(place, _)| place).collect())
+        Ok(places
+            .into_iter()
+            .zip(is_clear)
+            .filter(|(_, is_clear)| *is_clear)
+            .map(|(place, _)| place)
+            .collect())
     }
 }
 

@@ -59,8 +59,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), String> {
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
-    let picture =
-        options.picture.as_ref().map(|path| command::picture_path(path, "plan.png")).transpose()?;
+    let picture = options.picture.as_ref().map(|path| command::picture_path(path, "plan.png")).transpose()?;
     let robot = three_tubes();
     let base = options.anatomy.pose(&mesh)?;
     let goal = if options.anatomy.is_planned() {
@@ -72,12 +71,15 @@ fn run(options: &Options) -> Result<(), String> {
     let ends = [DRAWN_IN, goal];
     check_ends(options, &robot, &base, &search, &ends)?;
 
-    println!("edges by         drawn   clear    edges  accepted  shapes an edge  kinematics  queries  a plan  touch  failed");
+    println!(
+        "edges by         drawn   clear    edges  accepted  shapes an edge  kinematics  queries  a plan  touch  failed"
+    );
     let mut proven = None;
     for check in [Check::Proof, Check::Steps(0.5), Check::Steps(0.1)] {
         let mut edges = new_edges(options, &robot, &base, &search, check);
         let bar = ProgressBar::new(options.plans.into());
-        let style = ProgressStyle::with_template("{msg:>30} {wide_bar} {pos} of {len} plans").map_err(text)?;
+        let style =
+            ProgressStyle::with_template("{msg:>30} {wide_bar} {pos} of {len} plans").map_err(text)?;
         bar.set_style(style.progress_chars("━╸ "));
         let mut sums = Sums::default();
         for number in 0..u64::from(options.plans) {
@@ -103,7 +105,9 @@ fn run(options: &Options) -> Result<(), String> {
     let costs = std::mem::take(&mut edges.costs);
     for pair in path.windows(2) {
         if !edges.is_clear(&pair[0], &pair[1])? {
-            return Err("a shortened edge is not clear; please report it with the command that you ran".into());
+            return Err(
+                "a shortened edge is not clear; please report it with the command that you ran".into()
+            );
         }
     }
     println!(
@@ -114,9 +118,9 @@ fn run(options: &Options) -> Result<(), String> {
         edges.costs.shapes
     );
     if let Some(file) = picture {
-        draw::draw(&mesh, &edges, &path)?
-            .save(&file)
-            .map_err(|error| format!("cannot write {} ({error}); choose another --picture", file.display()))?;
+        draw::draw(&mesh, &edges, &path)?.save(&file).map_err(|error| {
+            format!("cannot write {} ({error}); choose another --picture", file.display())
+        })?;
         println!("picture: {}", file.display());
     }
     Ok(())

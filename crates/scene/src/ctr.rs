@@ -221,8 +221,14 @@ impl Curve {
         let arcs = parts.map(|(length, bend)| {
             let inward = frame.rotation * bend.cross(Vector::Z);
             let along = frame.rotation * Vector::Z;
-            let part =
-                CurveArc { from, to: from + length, place: frame.translation, along, inward, bend: bend.length() };
+            let part = CurveArc {
+                from,
+                to: from + length,
+                place: frame.translation,
+                along,
+                inward,
+                bend: bend.length(),
+            };
             frame *= arc(bend, length);
             from += length;
             part

@@ -7,7 +7,9 @@
 
 use crate::ctr::{Curve, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::{BendingRates, Motion, RobotError, Speed, Tube, TubeSection, bending_speed};
+use parry_continuum::{
+    BendingRates, BendingSection, Motion, RobotError, Speed, Tube, TubeSection, bending_speed,
+};
 
 /// A tube that turns by less than this over its whole length, in rad, counts as straight. What that moves the tip by is a
 /// millionth of the robot's length at most.
@@ -79,17 +81,18 @@ impl JointMotion {
             growth: to.extensions[k] - from.extensions[k],
             curvature: middle[k].length() + 0.5 * bending[k],
             bending: bending[k],
-            step: middle.get(k + 1).map_or(0.0, |next| {
-                (next - middle[k]).length() + 0.5 * (bending[k] + bending[k + 1])
-            }),
+            step: middle
+                .get(k + 1)
+                .map_or(0.0, |next| (next - middle[k]).length() + 0.5 * (bending[k] + bending[k + 1])),
         });
         rates.collect()
     }
 
     /// The joints at a time from 0 to 1.
     pub fn joints(&self, t: Real) -> Joints {
-        let between =
-            |from: &[Real], to: &[Real]| from.iter().zip(to).map(|(from, to)| from + (to - from) * t).collect();
+        let between = |from: &[Real], to: &[Real]| {
+            from.iter().zip(to).map(|(from, to)| from + (to - from) * t).collect()
+        };
         Joints {
             extensions: between(&self.from.extensions, &self.to.extensions),
             angles: between(&self.from.angles, &self.to.angles),
@@ -111,6 +114,14 @@ impl JointMotion {
             .collect();
         let curve = Curve::joined(lengths.zip(self.bends(&joints)));
         Tube::from_function(&sections, move |s| curve.at(s))
+    }
+
+    /// The sections at a time from 0 to 1.
+    pub fn sections(&self, t: Real) -> Vec<BendingSection> {
+        let joints = self.joints(t);
+        let bends = self.bends(&joints).map(|bend| [bend.y, -bend.x]);
+        let parts = joints.extensions.iter().zip(&self.radii).zip(bends);
+        parts.map(|((&length, &radius), bend)| BendingSection { length, radius, bend }).collect()
     }
 
     /// The point of the tip at a time from 0 to 1, in the mesh's frame.

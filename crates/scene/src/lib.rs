@@ -23,9 +23,9 @@ pub mod ctr;
 pub mod field;
 #[cfg(feature = "pictures")]
 pub mod figure;
+pub mod joint_motion;
 #[cfg(feature = "pictures")]
 pub mod lettering;
-pub mod joint_motion;
 pub mod levels;
 pub mod lumen;
 #[cfg(feature = "files")]
