@@ -10,6 +10,7 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
     BendingRates, BendingSection, Motion, RobotError, Speed, Tube, TubeSection, bending_speed,
 };
+use std::f64::consts::TAU;
 
 /// A tube that turns by less than this over its whole length, in rad, counts as straight. What that moves the tip by is a
 /// millionth of the robot's length at most.
@@ -68,6 +69,44 @@ impl JointMotion {
         };
         motion.rates = motion.rates();
         Some(motion)
+    }
+
+    /// A random motion whose tip ends `distance` away from where it begins, as edges of planners are. `share` gives
+    /// random numbers from 0 to 1; the robot has three sections of a tube each.
+    pub fn random(robot: &Robot, base: Pose, distance: Real, mut share: impl FnMut() -> Real) -> Self {
+        let mut between = |low: Real, high: Real| low + (high - low) * share();
+        let tip = |joints: &Joints| robot.frames(joints, &[robot.length(joints)])[0].translation;
+        // So that the first two sections are no longer than the second can be.
+        let longest = |k: usize| robot.sections[k].length.min(0.5 * robot.sections[1].length);
+        loop {
+            let reach = between(0.02, 0.7);
+            let extension =
+                |k: usize| (robot.sections[k].length * reach * between(0.02, 0.7)).min(longest(k));
+            let from = Joints {
+                extensions: (0..3).map(extension).collect(),
+                angles: (0..3).map(|_| between(0.0, TAU)).collect(),
+            };
+            let way: Vec<_> = [10.0, 10.0, 10.0, 3.0, 3.0, 3.0].map(|most| between(-most, most)).into();
+            let go = |share: Real| Joints {
+                extensions: (0..3)
+                    .map(|k| (from.extensions[k] + share * way[k]).clamp(0.02, longest(k)))
+                    .collect(),
+                angles: (0..3).map(|k| from.angles[k] + share * way[k + 3]).collect(),
+            };
+            let start = tip(&from);
+            let moved = |share: Real| (tip(&go(share)) - start).length();
+            if moved(1.0) < distance {
+                continue;
+            }
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if moved(middle) < distance { low = middle } else { high = middle }
+            }
+            if let Some(motion) = Self::new(robot, [&from, &go(high)], base) {
+                return motion;
+            }
+        }
     }
 
     fn rates(&self) -> Vec<BendingRates> {

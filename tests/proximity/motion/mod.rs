@@ -7,7 +7,7 @@ mod jumps;
 mod refused;
 mod speeds;
 
-use continuum_scene::ctr::{Joints, Robot};
+use continuum_scene::ctr::Robot;
 use continuum_scene::joint_motion::JointMotion;
 use continuum_scene::ventricle;
 use continuum_testing::{Arcs, Random};
@@ -23,37 +23,7 @@ fn anatomy() -> BvhSearch {
 
 /// An edge whose tip ends `distance` from where it begins.
 fn random_edge(robot: &Robot, random: &mut Random, distance: Real) -> JointMotion {
-    let tip = |joints: &Joints| robot.frames(joints, &[robot.length(joints)])[0].translation;
-    loop {
-        let reach = random.between(0.02, 0.7);
-        let from = Joints {
-            extensions: robot
-                .sections
-                .iter()
-                .map(|section| (section.length * reach * random.between(0.02, 0.7)).min(33.0))
-                .collect(),
-            angles: (0..3).map(|_| random.between(0.0, 6.3)).collect(),
-        };
-        let way: Vec<_> = (0..6).map(|_| random.between(-0.5, 0.5)).collect();
-        // The straight tube is no longer out than it can be, and no curved one is straight where it is out.
-        let longest = [33.3, 33.3, 12.6];
-        let go = |share: Real| Joints {
-            extensions: (0..3)
-                .map(|k| (from.extensions[k] + share * way[k] * 20.0).clamp(0.02, longest[k]))
-                .collect(),
-            angles: (0..3).map(|k| from.angles[k] + share * way[k + 3] * 6.0).collect(),
-        };
-        let moved = |share: Real| (tip(&go(share)) - tip(&from)).length();
-        if moved(1.0) < distance {
-            continue;
-        }
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if moved(middle) < distance { low = middle } else { high = middle }
-        }
-        return JointMotion::new(robot, [&from, &go(high)], ventricle::entry()).unwrap();
-    }
+    JointMotion::random(robot, ventricle::entry(), distance, || random.unit())
 }
 
 /// The centreline at a time.
