@@ -3,6 +3,7 @@
 use super::elements::{self, FieldPair};
 use super::link_cast;
 use super::link_triangle::LinkTriangle;
+use super::link_triangle_cast;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
@@ -29,7 +30,7 @@ use parry3d_f64::shape::Shape;
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
 /// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
-/// | `cast_shapes` | parry's: within 1e-5 | exact | parry's: within 1e-5 | parry's: within 1e-5 |
+/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | parry's: within 1e-5 | parry's: within 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
 ///
@@ -231,13 +232,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 Ok(hit.map(ShapeCastHit::swapped))
             }
             Parts::None => match LinkTriangle::of(g1, g2)? {
-                Some(pair) => {
-                    self.inner(pos12, g1, g2)?;
-                    let (s1, s2) = pair.support_maps();
-                    let hit =
-                        details::cast_shapes_support_map_support_map(pos12, local_vel12, s1, s2, options);
-                    Ok(hit)
-                }
+                Some(pair) => link_triangle_cast::cast(&pair, pos12, local_vel12, options),
                 None => {
                     let inner = self.inner(pos12, g1, g2)?;
                     let hit = inner.cast_shapes(pos12, local_vel12, g1, g2, options)?;

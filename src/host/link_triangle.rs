@@ -25,7 +25,7 @@ use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::Unsupported;
-use parry3d_f64::shape::{Shape, SupportMap, Triangle};
+use parry3d_f64::shape::{Shape, Triangle};
 
 /// What rounding can do to a distance or a gap where numbers are near one.
 const ROUNDING: Real = 8.0 * Real::EPSILON;
@@ -61,11 +61,6 @@ impl<'a> LinkTriangle<'a> {
     ) -> Result<Self, Unsupported> {
         let is_finite = triangle.vertices().iter().all(|vertex| vertex.is_finite());
         if is_finite { Ok(Self { link, triangle, link_is_first }) } else { Err(Unsupported) }
-    }
-
-    /// The support maps in the pair's order.
-    pub fn support_maps(&self) -> (&'a dyn SupportMap, &'a dyn SupportMap) {
-        if self.link_is_first { (self.link, self.triangle) } else { (self.triangle, self.link) }
     }
 }
 

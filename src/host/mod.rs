@@ -17,6 +17,7 @@ mod link_halfspace_manifold;
 mod link_link;
 mod link_link_manifold;
 mod link_triangle;
+mod link_triangle_cast;
 mod link_triangle_manifold;
 mod manifold;
 mod mass;

@@ -22,3 +22,4 @@ mod rays;
 mod scene;
 mod serialised;
 mod shape;
+mod straight_casts;

@@ -13,6 +13,8 @@ use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 use std::collections::BTreeMap;
 
 const ROUNDING: Real = 1e-11;
+/// At which distance a cast takes a link and a triangle for touching: 1e-9 of the link's size.
+const EARLY: Real = 1e-8;
 /// What parry's GJK leaves open for shapes of size 1.
 const GJK: Real = 1e-5;
 /// By what a translation from parry's EPA may fall short of separating: two barrels or balls more than others.
@@ -112,7 +114,8 @@ fn what_parry_answers_is_off_by_no_more_than_the_table_says() {
         let is_exact = ["ball", "half-space", "triangle"].contains(&name);
         let iterated = if is_exact { ROUNDING } else { GJK };
         assert!(distance <= iterated && points <= iterated, "{name}: {distance} {points}");
-        assert!(cast <= GJK, "{name}: {cast}");
+        let early = if name == "triangle" { EARLY } else { GJK };
+        assert!(cast <= early, "{name}: {cast}");
         let epa = match name {
             "capsule" | "link" => EPA_ROUND,
             _ if is_exact => ROUNDING,

@@ -66,7 +66,16 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         refuse("rapier_ventricle", arguments, expected);
     }
     assert!(!place("bar.jpg").exists() && !place("film.png").exists());
-    for name in ["ventricle", "rapier_ventricle"] {
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--margin", "-1"], "at least 0"),
+        (&["--margin", "3"], "does not keep 3 mm at its base"),
+        (&["--plans", "0"], "1..=10000"),
+    ] {
+        refuse("plan", arguments, expected);
+    }
+    for name in ["ventricle", "rapier_ventricle", "plan"] {
         assert!(succeed(name, &["--help"]).contains("--mesh"));
     }
 }
@@ -85,6 +94,31 @@ fn programs_draw_their_pictures() {
     for name in ["drawn/ventricle.png", "drawn/seven.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
+}
+
+#[test]
+fn a_way_is_planned_proven_and_drawn() {
+    let out = succeed("plan", &["--plans", "2", "--margin", "0.3", "--picture", "planned/way.png"]);
+    let rows: Vec<_> = ["proof", "steps of 0.5 mm", "steps of 0.1 mm"]
+        .into_iter()
+        .map(|name| {
+            let row = out
+                .lines()
+                .find_map(|line| line.strip_prefix(name))
+                .unwrap_or_else(|| panic!("{name}: {out}"));
+            let numbers: Vec<f64> = row.split_whitespace().filter_map(|cell| cell.parse().ok()).collect();
+            // Drawn, clear, edges, accepted, shapes an edge, two shares, time, touch, failed.
+            assert_eq!(numbers.len(), 10, "{row}");
+            assert!(numbers[0] > numbers[1] && numbers[1] > 0.0 && numbers[2] > numbers[3], "{row}");
+            assert!(numbers[4] >= 1.0 && (numbers[5] + numbers[6] - 100.0).abs() < 2.0, "{row}");
+            numbers
+        })
+        .collect();
+    // No proven edge touches, no plan failed, and fine steps look at more shapes.
+    assert!(rows[0][8] == 0.0 && rows.iter().all(|row| row[9] == 0.0), "{out}");
+    assert!(rows[2][4] > 2.0 * rows[1][4] && rows[2][4] > rows[0][4], "{out}");
+    assert!(out.contains("it keeps 0.3 mm, which"), "{out}");
+    assert!(colours("planned/way.png") > 1000);
 }
 
 #[test]

@@ -118,16 +118,11 @@ impl Robot {
         let starts = ends.iter().zip(&self.sections).map(|(end, section)| end - section.length);
         let mut breaks: Vec<Real> = starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
         breaks.sort_by(Real::total_cmp);
-        let (mut from, mut frame, mut arcs) = (0.0, Pose::IDENTITY, Vec::with_capacity(breaks.len()));
-        for to in breaks {
+        let mut from = 0.0;
+        Curve::joined(breaks.into_iter().map(|to| {
             let bend = self.curvature(joints, &ends, 0.5 * (from + to));
-            let inward = frame.rotation * bend.cross(Vector::Z);
-            let along = frame.rotation * Vector::Z;
-            arcs.push(CurveArc { from, to, place: frame.translation, along, inward, bend: bend.length() });
-            frame *= arc(bend, to - from);
-            from = to;
-        }
-        Curve { arcs }
+            (to - std::mem::replace(&mut from, to), bend)
+        }))
     }
 
     /// The robot as the curve that it is, in its own frame; sections that are not out are left out.
@@ -219,6 +214,28 @@ struct CurveArc {
 }
 
 impl Curve {
+    /// Arcs that leave the origin along z one after the other, each of a length and a curvature vector in the frame that
+    /// is carried along the curve without twist.
+    pub(crate) fn joined(parts: impl Iterator<Item = (Real, Vector)>) -> Self {
+        let (mut from, mut frame) = (0.0, Pose::IDENTITY);
+        let arcs = parts.map(|(length, bend)| {
+            let inward = frame.rotation * bend.cross(Vector::Z);
+            let along = frame.rotation * Vector::Z;
+            let part = CurveArc {
+                from,
+                to: from + length,
+                place: frame.translation,
+                along,
+                inward,
+                bend: bend.length(),
+            };
+            frame *= arc(bend, length);
+            from += length;
+            part
+        });
+        Self { arcs: arcs.collect() }
+    }
+
     /// The point and the unit direction at an arc length.
     pub fn at(&self, arc_length: Real) -> (Vector, Vector) {
         let arc =

@@ -4,7 +4,7 @@
 //! | what | modules |
 //! |---|---|
 //! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
-//! | the robot | [`ctr`]; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
+//! | the robot | [`ctr`]; [`joint_motion`], while its joints move; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
 //! | pictures | `picture`, `figure`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
 //! | programs | `command`, `anatomy` (feature `command`); [`timing`], [`levels`] |
@@ -22,6 +22,7 @@ pub mod ctr;
 pub mod field;
 #[cfg(feature = "pictures")]
 pub mod figure;
+pub mod joint_motion;
 #[cfg(feature = "pictures")]
 pub mod lettering;
 pub mod levels;

@@ -22,9 +22,17 @@ pub fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
 /// # Errors
 /// The README cannot be written.
 pub fn in_readme(text: &str, mark: &str, docs: &Path) -> Result<(), String> {
-    let path = docs.join("../README.md");
-    let Ok(readme) = fs::read_to_string(&path) else { return Ok(()) };
-    let Some([before, _, after]) = parted(&readme, mark) else { return Ok(()) };
-    fs::write(&path, format!("{before}{text}{after}"))
-        .map_err(|error| format!("cannot write {} ({error})", path.display()))
+    in_page(text, mark, &docs.join("../README.md")).map(drop)
+}
+
+/// Puts `text` between two marks of a page; whether there is one that has these marks.
+///
+/// # Errors
+/// The page cannot be written.
+pub fn in_page(text: &str, mark: &str, path: &Path) -> Result<bool, String> {
+    let Ok(page) = fs::read_to_string(path) else { return Ok(false) };
+    let Some([before, _, after]) = parted(&page, mark) else { return Ok(false) };
+    fs::write(path, format!("{before}{text}{after}"))
+        .map_err(|error| format!("cannot write {} ({error})", path.display()))?;
+    Ok(true)
 }

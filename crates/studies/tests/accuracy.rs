@@ -34,6 +34,7 @@ fn assert_same(written: &str, measured: &str) {
 #[test]
 fn the_written_errors_are_the_measured_ones() {
     let cases = distance_cases();
+    assert_same(&written("millimetres"), &reference::in_millimetres(&cases));
     assert_same(&written("ours"), &reference::table(&cases));
     let file = read("docs/accuracy_cases.csv");
     let (head, file) = file.split_once('\n').expect("a head");

@@ -27,8 +27,8 @@ fn the_trade_is_measured_drawn_and_quoted() {
     let hall = room("hall.obj");
     readme("trade", "tradeoff");
     let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
-    let small = ["--shapes", "12", "--timed", "2", "--out", "trade/docs"];
-    succeed(TRADEOFF, &[place, small].concat());
+    let small = ["--shapes", "12", "--timed", "2", "--edges", "4", "--out", "trade/docs"];
+    succeed(TRADEOFF, &[&place[..], &small].concat());
 
     let page = read("trade/docs/TRADEOFF.md");
     let trade = page.split("## The trade").nth(1).unwrap().split("![").next().unwrap();
@@ -52,6 +52,17 @@ fn the_trade_is_measured_drawn_and_quoted() {
         assert!(page.contains(text), "{text}: {page}");
     }
     assert_finite(&page);
+    let motions = table(&page, "| tip moves |");
+    let of: Vec<_> = motions.iter().map(|row| &*row[0]).collect();
+    assert_eq!(of, ["1 mm", "2 mm", "5 mm", "10 mm"]);
+    // This chapter alone, with other edges: nothing else changes.
+    succeed(TRADEOFF, &[&place[..], &["--only", "motions", "--edges", "2", "--out", "trade/docs"]].concat());
+    let again = read("trade/docs/TRADEOFF.md");
+    let parts = |page: &str| -> Vec<String> { page.split(" -->\n").map(str::to_owned).collect() };
+    let (before, after) = (parts(&page), parts(&again));
+    assert!(before.len() == 3 && before[0] == after[0] && before[2] == after[2] && before[1] != after[1]);
+    assert!(after[1].contains(" 2 of each length"), "{again}");
+    refuse(TRADEOFF, &["--only", "motions", "--out", "trade/nowhere"], "has no such chapter");
     // Discs and rings for the search of four models at seven tolerances, and in the legend.
     assert_eq!(read("trade/docs/tradeoff.svg").matches("<circle").count(), 2 * 4 * 7 + 2);
     assert_quoted("trade", "tradeoff", "**Take a `Tube`");

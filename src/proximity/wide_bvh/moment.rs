@@ -45,8 +45,9 @@ pub(super) enum Verdict {
     Contact { found: Found, is_fine: bool },
     /// It is too near to the margin for the resolution.
     Undecided,
-    /// It keeps the margin only for so long before and after the middle shape, as far as that tells.
-    Fails { still: Real },
+    /// It keeps the margin only for so long before and after the middle shape, as far as that tells. `is_near`: there it
+    /// is above the margin by no more than the resolution.
+    Fails { still: Real, is_near: bool },
 }
 
 /// A motion during an interval.
@@ -114,7 +115,8 @@ impl<M: Motion> Moment<'_, M> {
             let (section, resolution) = (waiting.section as usize, self.resolution);
             return Err(ProximityError::TooFast { section, speed, resolution });
         }
-        Ok(Verdict::Fails { still: still(nearest.distance - self.margin - tube.slack(), speed) })
+        let still = still(nearest.distance - self.margin - tube.slack(), speed);
+        Ok(Verdict::Fails { still, is_near: upper <= self.margin + self.resolution })
     }
 
     /// How fast what the body has to hold moves.

@@ -80,6 +80,11 @@ pub(super) struct MotionSearch<'a, M> {
     pub last: Option<u32>,
 }
 
+/// How many shapes are looked at after one that is above the margin by no more than the resolution. A contact that is
+/// deeper than that, or a proof, shows sooner as a rule; and what stays that near for long would be divided into
+/// thousands of intervals.
+const PATIENCE: u64 = 256;
+
 /// What the middle shape of an interval tells.
 struct Seen {
     /// A place where it is at most the margin away.
@@ -88,6 +93,8 @@ struct Seen {
     is_fine: bool,
     /// Whether a piece is too near to the margin for the resolution.
     is_undecided: bool,
+    /// Whether the shape is above the margin by no more than the resolution.
+    is_near: bool,
     /// Which pieces failed, and for how long before and after the shape they do not.
     failed: Range<usize>,
     still: Real,
@@ -97,9 +104,23 @@ impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
     pub(super) fn clears(&mut self) -> Result<MotionAnswer, ProximityError> {
         let mut undecided = None::<[Real; 2]>;
+        // An interval with a shape near the margin, and how many shapes there may be in all then.
+        let mut near = None::<([Real; 2], u64)>;
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_front() {
+            if let Some((near, most)) = near
+                && self.shapes >= most
+            {
+                let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
+                let first = left.chain(undecided).fold(near, |first, times| {
+                    if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
+                });
+                return Ok(MotionAnswer::Undecided { interval: first });
+            }
             let seen = self.examine(&interval)?;
+            if seen.is_near && near.is_none() {
+                near = Some((interval.times, self.shapes + PATIENCE));
+            }
             if let Some(found) = seen.contact {
                 let t = interval.middle();
                 let Found { place, witness, on_mesh } = found;
@@ -223,6 +244,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             contact: None,
             is_fine: false,
             is_undecided: false,
+            is_near: false,
             failed: first..first,
             still: Real::INFINITY,
         };
@@ -233,8 +255,9 @@ impl<M: Motion> MotionSearch<'_, M> {
                 Verdict::Keeps => {}
                 Verdict::Part(halves) => pieces.extend(waiting.halves(&tube, halves)),
                 Verdict::Undecided => seen.is_undecided = true,
-                Verdict::Fails { still } => {
+                Verdict::Fails { still, is_near } => {
                     seen.still = seen.still.min(still);
+                    seen.is_near |= is_near;
                     failed.push(waiting);
                 }
                 Verdict::Contact { found, is_fine } => {

@@ -65,6 +65,31 @@ pub fn table(cases: &[Case]) -> String {
     text + &row("**all**", &cases.iter().collect::<Vec<_>>())
 }
 
+/// This crate's worst errors in a scene of 100 mm, by pair.
+pub fn in_millimetres(cases: &[Case]) -> String {
+    let mut text = String::from("| pair | f64: error below | f32: error below |\n|---|---|---|\n");
+    for (kind, name) in KINDS {
+        let cases = of_kind(cases, kind);
+        let single: Vec<_> = cases.iter().copied().filter(|case| case.f32).collect();
+        let [double, single] = [worst_share::<f64>(&cases), worst_share::<f32>(&single)].map(at_hundred);
+        text += &format!("| {name} | {double} mm | {single} mm |\n");
+    }
+    text
+}
+
+/// The largest error as a share of the extent.
+fn worst_share<T: Precision>(cases: &[&Case]) -> f64 {
+    let share = |case: &&Case| (distance::<T>(case, 1.0) - case.distance()).abs() / case.scale;
+    cases.iter().map(share).fold(0.0, f64::max)
+}
+
+/// A share of 100, rounded up to one digit.
+fn at_hundred(share: f64) -> String {
+    let error = 100.0 * share;
+    let digit = 10.0_f64.powf(error.log10().floor());
+    format!("{:.0e}", (error / digit).ceil() * digit)
+}
+
 /// The head of [`lines`].
 pub const HEAD: &str =
     "pair,category,cases,f64 median,f64 worst,f32 cases,f32 median,f32 worst,parry median,parry worst";

@@ -15,6 +15,7 @@ mod front;
 mod gpu;
 mod guide;
 mod kinematics;
+mod motions;
 mod outcome;
 mod page;
 mod plot;
@@ -50,11 +51,26 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = TIMED, value_parser = command::whole(1..=u32::MAX))]
     timed: u32,
 
+    /// Edges of each length whose motion is checked
+    #[arg(long, value_name = "COUNT", default_value_t = EDGES, value_parser = clap::value_parser!(u32).range(1..))]
+    edges: u32,
+
+    /// Write this chapter alone into the page that is there
+    #[arg(long, value_enum)]
+    only: Option<Chapter>,
+
     /// Where to write TRADEOFF.md and tradeoff.svg [default: docs, or target/tradeoff with other options]
     #[arg(long, value_name = "DIRECTORY")]
     out: Option<PathBuf>,
 }
 
+/// A chapter that can be written alone.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Chapter {
+    Motions,
+}
+
+const EDGES: u32 = 400;
 const SHAPES: u32 = 10_000;
 const TIMED: u32 = 300;
 
@@ -66,11 +82,25 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options) -> Result<(), String> {
-    let usual = options.anatomy.is_planned() && options.shapes == SHAPES && options.timed == TIMED;
+    let usual = options.anatomy.is_planned()
+        && options.shapes == SHAPES
+        && options.timed == TIMED
+        && options.edges == EDGES;
     let out = options.out.clone().unwrap_or_else(|| if usual { "docs" } else { "target/tradeoff" }.into());
     let mesh = options.anatomy.load()?;
     let base = options.anatomy.pose(&mesh)?;
     let robot = ctr::three_tubes();
+
+    let file = out.join("TRADEOFF.md");
+    if options.only == Some(Chapter::Motions) {
+        let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
+        return if quote::in_page(&motions, motions::MARK, &file)? {
+            println!("{}", file.display());
+            Ok(())
+        } else {
+            Err(format!("{} has no such chapter; write it whole, without --only", file.display()))
+        };
+    }
 
     let start = Instant::now();
     let stage = |name: &str| println!("{:5.0} s  {name}", start.elapsed().as_secs_f64());
@@ -116,6 +146,9 @@ fn measure(options: &Options) -> Result<(), String> {
     let (from_samples, rows) =
         from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING)?;
 
+    stage("motions");
+    let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
+
     stage("writing");
     let errors = front::errors(&outcomes);
     let all = front::combinations(&times, &errors);
@@ -134,8 +167,10 @@ fn measure(options: &Options) -> Result<(), String> {
         device: devices.first().map(|device| device.name.as_str()),
     });
     fs::create_dir_all(&out).map_err(|error| unwritable(&out, error))?;
-    let file = out.join("TRADEOFF.md");
-    fs::write(&file, page + "\n" + &from_samples + "\n" + &shares::chapter(&outcomes) + "\n" + &kinematics)
+    let shares = shares::chapter(&outcomes);
+    let mark = motions::MARK;
+    let motions = format!("<!-- {mark} -->\n{motions}<!-- /{mark} -->\n");
+    fs::write(&file, [page, from_samples, motions, shares, kinematics].join("\n"))
         .map_err(|error| unwritable(&file, error))?;
     plot::draw(&all, &out.join("tradeoff.svg"))?;
     let guide = guide::text(&guide::Facts {

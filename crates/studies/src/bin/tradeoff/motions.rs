@@ -1,0 +1,308 @@
+//! What it takes to prove a motion, beside one bound for the whole robot and beside steps.
+
+use crate::statistics::{Share, quantile};
+use crate::ways::text;
+use continuum_scene::ctr::{Joints, Robot};
+use continuum_scene::joint_motion::JointMotion;
+use continuum_scene::steer::Random;
+use continuum_scene::ventricle;
+use continuum_studies::machine;
+use parry_continuum::parry::math::{Pose, Real};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
+use parry_continuum::{Motion, RobotError, Speed, Tube};
+use std::cell::Cell;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// What encloses the chapter in the page.
+pub const MARK: &str = "motions";
+
+/// How far the tips move, and the margins that are asked for, mm.
+const LENGTHS: [Real; 4] = [1.0, 2.0, 5.0, 10.0];
+const MARGINS: [Real; 2] = [0.0, 0.5];
+
+/// How near to the margin an answer may stay open, mm.
+const RESOLUTION: Real = 0.001;
+
+/// How often each edge is checked; its time is the median.
+const TURNS: usize = 3;
+
+/// Random edges of a length that are tried for each that is wanted: both ends have to keep the margin.
+const TRIES: usize = 300;
+
+/// A motion that counts its shapes.
+struct Counted<'a> {
+    motion: &'a JointMotion,
+    shapes: Cell<u64>,
+}
+
+impl Motion for Counted<'_> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        self.shapes.set(self.shapes.get() + 1);
+        self.motion.shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        self.motion.speed(section, shares, times)
+    }
+}
+
+/// What a way of checking makes of an edge.
+#[derive(Clone, Copy, PartialEq)]
+enum Verdict {
+    Clear,
+    Contact,
+    Undecided,
+}
+
+type Way<'a> = &'a dyn Fn(&mut BvhSearch, &Counted, Real) -> Result<Verdict, String>;
+
+/// By a bound for each piece.
+fn by_pieces(search: &mut BvhSearch, motion: &Counted, margin: Real) -> Result<Verdict, String> {
+    Ok(match search.clears_motion(motion, margin, RESOLUTION).map_err(text)? {
+        MotionAnswer::Clear => Verdict::Clear,
+        MotionAnswer::Contact { .. } => Verdict::Contact,
+        _ => Verdict::Undecided,
+    })
+}
+
+/// By one bound for the whole robot: its clearance in the middle of an interval tells for how long before and after
+/// nothing can come nearer than the margin, if all of it moves as fast as its fastest point. What is left is
+/// halved. (Conservative advancement, to both sides.)
+fn by_one_bound(
+    search: &mut BvhSearch,
+    motion: &Counted,
+    base: &Pose,
+    sections: usize,
+    margin: Real,
+) -> Result<Verdict, String> {
+    let fastest = |number: usize| {
+        let Speed { point, turn } = motion.speed(number, [0.0, 1.0], [0.0, 1.0]);
+        // The discs of the widest tube.
+        point + 1.25 * turn
+    };
+    let speed = (0..sections).map(fastest).fold(0.0, Real::max);
+    let mut tube = motion.motion.tube(0.0).map_err(text)?;
+    let (mut waiting, mut verdict) = (std::collections::VecDeque::from([[0.0, 1.0]]), Verdict::Clear);
+    while let Some([from, to]) = waiting.pop_front() {
+        let (middle, half): (Real, Real) = (0.5 * (from + to), 0.5 * (to - from));
+        motion.shape(middle, &mut tube).map_err(text)?;
+        let tolerance = (0.25 * half * speed).max(0.25 * RESOLUTION);
+        let found = search.clearance(&tube, base, tolerance).map_err(text)?;
+        if found.upper <= margin {
+            return Ok(Verdict::Contact);
+        }
+        if half * speed <= 0.5 * RESOLUTION && found.lower <= margin + half * speed {
+            verdict = Verdict::Undecided;
+            continue;
+        }
+        let still = ((found.lower - margin) / speed).max(0.0);
+        if still < half {
+            waiting.extend([[from, middle - still], [middle + still, to]]);
+        }
+    }
+    Ok(verdict)
+}
+
+/// By shapes between which the tip moves by `step`: the middle first, then the middles of the halves.
+fn by_steps(
+    search: &mut BvhSearch,
+    motion: &Counted,
+    base: &Pose,
+    step: Real,
+    margin: Real,
+) -> Result<Verdict, String> {
+    let tips: Vec<_> = (0..=8).map(|k| motion.motion.tip(Real::from(k) / 8.0)).collect();
+    let moved: Real = tips.windows(2).map(|tips| (tips[1] - tips[0]).length()).sum();
+    let count = (moved / step).ceil().max(1.0) as usize;
+    let mut order: Vec<_> = (1..count).collect();
+    order.sort_by_key(|k| k.reverse_bits());
+    let mut tube = motion.motion.tube(0.0).map_err(text)?;
+    for k in order {
+        motion.shape(k as Real / count as Real, &mut tube).map_err(text)?;
+        if search.tube_clears(&tube, base, margin, RESOLUTION).map_err(text)? != Decision::Clear {
+            return Ok(Verdict::Contact);
+        }
+    }
+    Ok(Verdict::Clear)
+}
+
+/// What a way makes of all edges.
+struct Measured {
+    shapes: Vec<f64>,
+    seconds: Vec<f64>,
+    verdicts: Vec<Verdict>,
+}
+
+impl Measured {
+    fn mean(values: &[f64]) -> f64 {
+        values.iter().sum::<f64>() / values.len() as f64
+    }
+
+    fn shapes(&self) -> f64 {
+        Self::mean(&self.shapes)
+    }
+
+    fn microseconds(&self) -> f64 {
+        1e6 * Self::mean(&self.seconds)
+    }
+
+    fn count(&self, verdict: Verdict) -> usize {
+        self.verdicts.iter().filter(|found| **found == verdict).count()
+    }
+}
+
+/// Every way with every edge, in turns.
+fn measure(
+    edges: &[(JointMotion, Real)],
+    ways: &[Way],
+    searches: &mut [BvhSearch],
+) -> Result<Vec<Measured>, String> {
+    let empty = || Measured { shapes: Vec::new(), seconds: Vec::new(), verdicts: Vec::new() };
+    let mut all: Vec<_> = ways.iter().map(|_| empty()).collect();
+    for (motion, margin) in edges {
+        for ((way, search), measured) in ways.iter().zip(&mut *searches).zip(&mut all) {
+            let (mut seconds, mut seen) = (Vec::with_capacity(TURNS), None);
+            for _ in 0..TURNS {
+                let counted = Counted { motion, shapes: Cell::new(0) };
+                search.forget();
+                let begin = Instant::now();
+                let verdict = way(search, &counted, *margin)?;
+                seconds.push(begin.elapsed().as_secs_f64());
+                seen = Some((verdict, counted.shapes.get()));
+            }
+            measured.seconds.extend(quantile(seconds, 0.5));
+            measured.verdicts.extend(seen.map(|(verdict, _)| verdict));
+            measured.shapes.extend(seen.map(|(_, shapes)| shapes as f64));
+        }
+    }
+    Ok(all)
+}
+
+/// Random edges whose ends keep their margin.
+fn edges(
+    robot: &Robot,
+    base: &Pose,
+    search: &mut BvhSearch,
+    random: &mut Random,
+    length: Real,
+    count: usize,
+) -> Result<Vec<(JointMotion, Real)>, String> {
+    let (mut edges, mut tries) = (Vec::new(), 0);
+    while edges.len() < count && tries < TRIES * count {
+        tries += 1;
+        let motion = JointMotion::random(robot, *base, length, || random.share());
+        let margin = MARGINS[edges.len() % MARGINS.len()];
+        let mut is_clear = true;
+        for t in [0.0, 1.0] {
+            let tube = motion.tube(t).map_err(text)?;
+            let decision = search.tube_clears(&tube, base, margin, RESOLUTION).map_err(text)?;
+            is_clear &= decision == Decision::Clear;
+        }
+        if is_clear {
+            edges.push((motion, margin));
+        }
+    }
+    Ok(edges)
+}
+
+/// The planned way in: section after section comes out along the robot's final shape.
+fn insertion(robot: &Robot, goal: &Joints) -> Result<Vec<JointMotion>, String> {
+    const NOT_OUT: Real = 0.01;
+    let out = |sections: usize| {
+        let length = |k: usize| if k < sections { goal.extensions[k] } else { NOT_OUT };
+        Joints { extensions: (0..goal.extensions.len()).map(length).collect(), angles: goal.angles.clone() }
+    };
+    (0..goal.extensions.len())
+        .map(|k| {
+            JointMotion::new(robot, [&out(k), &out(k + 1)], ventricle::entry()).ok_or_else(|| {
+                "the planned goal has a tube that is straight where it should be curved".into()
+            })
+        })
+        .collect()
+}
+
+/// The chapter, with so many edges of each length.
+pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Result<String, String> {
+    let mut search = BvhSearch::new(mesh).map_err(text)?;
+    let sections = robot.sections.len();
+    let one_bound = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
+        by_one_bound(search, motion, base, sections, margin)
+    };
+    let coarse =
+        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.5, margin);
+    let fine =
+        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.1, margin);
+    let ways: [Way; 4] = [&by_pieces, &one_bound, &coarse, &fine];
+    let mut searches: Vec<_> = ways.iter().map(|_| search.clone()).collect();
+
+    let mut page = format!(
+        "## Motions\n\n\
+         Measured on {}, in the mesh of {} triangles. Random edges in joint space, {count} of each length, whose ends keep \
+         the margin of {} or {} mm, half of the edges each: shapes of the robot that were looked at, and time with all that it takes to \
+         make them. *Proof*: `clears_motion` with a resolution of {RESOLUTION} mm, which bounds the speed of each \
+         piece. *One bound*: the same halving of time, but with the speed of the fastest point for all of the robot, and its \
+         clearance (`clearance`). *Steps*: shapes between which the tip moves so far, by `tube_clears`, the middle first; \
+         they prove nothing, and *missed* are edges that they accept and in which a contact was found. All on one thread, \
+         without the last answers, in means over the edges (the median of {TURNS} turns each).\n\n\
+         | tip moves | proof: shapes, median | mean | time | one bound: shapes | time | 0.5 mm: shapes | time | missed | \
+         0.1 mm: shapes | time | missed | contacts | undecided |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        machine::description(),
+        mesh.num_triangles(),
+        MARGINS[0],
+        MARGINS[1],
+    );
+    let (mut random, mut undecided) = (Random(1), Share::default());
+    for length in LENGTHS {
+        let edges = edges(robot, base, &mut search, &mut random, length, count)?;
+        if edges.is_empty() {
+            return Err("no edge keeps the margin; move the robot with --base and --axis".into());
+        }
+        let all = measure(&edges, &ways, &mut searches)?;
+        let [proof, one, coarse, fine] = &all[..] else { return Err("a way is missing".into()) };
+        let missed = |steps: &Measured| {
+            let pairs = steps.verdicts.iter().zip(&proof.verdicts);
+            pairs.filter(|pair| *pair == (&Verdict::Clear, &Verdict::Contact)).count()
+        };
+        undecided.count += proof.count(Verdict::Undecided);
+        undecided.of += edges.len();
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            page,
+            "| {length} mm | {} | {:.1} | {:.0} us | {:.1} | {:.0} us | {:.1} | {:.0} us | {} | {:.1} | {:.0} us | {} | {} | {} |",
+            quantile(proof.shapes.clone(), 0.5).unwrap_or(f64::NAN),
+            proof.shapes(),
+            proof.microseconds(),
+            one.shapes(),
+            one.microseconds(),
+            coarse.shapes(),
+            coarse.microseconds(),
+            missed(coarse),
+            fine.shapes(),
+            fine.microseconds(),
+            missed(fine),
+            proof.count(Verdict::Contact),
+            proof.count(Verdict::Undecided),
+        );
+    }
+    let _ = writeln!(page, "\nUndecided in all: {undecided}.");
+    if *base == ventricle::entry() {
+        let goal = ventricle::goal();
+        let (mut shapes, mut is_clear) = (0, true);
+        for motion in insertion(robot, &goal)? {
+            let counted = Counted { motion: &motion, shapes: Cell::new(0) };
+            is_clear &= by_pieces(&mut search, &counted, MARGINS[1])? == Verdict::Clear;
+            shapes += counted.shapes.get();
+        }
+        let _ = writeln!(
+            page,
+            "\nThe planned way in, {:.0} mm, section after section: {shapes} shapes {} that it keeps {} mm.",
+            robot.length(&goal),
+            if is_clear { "prove" } else { "do not prove" },
+            MARGINS[1]
+        );
+    }
+    Ok(page)
+}

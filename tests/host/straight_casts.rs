@@ -1,0 +1,179 @@
+//! Casts of links that move straight against triangles: never late, early by no more than is said, and beside parry's.
+
+use crate::draw::Draw;
+use crate::scene::floor_mesh;
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::query::{
+    DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions, ShapeCastStatus,
+};
+use parry_continuum::parry::shape::{Shape, Triangle};
+use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
+
+/// What a hit may be early by, for shapes of size one: the share of the size at which a link touches.
+const EARLY: Real = 1e-8;
+
+/// A link, a triangle, where it is, and a velocity that is often towards the link.
+fn scene(random: &mut Random) -> (ModifiedCylinder, Triangle, Pose, Vector) {
+    let triangle = Triangle::new(random.vector(2.0), random.vector(2.0), random.vector(2.0));
+    let pose = random.pose(5.0);
+    let link = random.link();
+    let velocity = link.start() - pose * triangle.center() + random.vector(1.5);
+    (link, triangle, pose, velocity)
+}
+
+#[test]
+fn straight_casts_stop_where_the_two_are_as_near_as_they_may() {
+    let (mut random, ours) = (Random::new(151), ContinuumDispatcher::default());
+    let (mut hits, mut misses, mut parry_misses, mut parry_late) = (0, 0, 0, 0);
+    for _ in 0..3000 {
+        let (link, triangle, pose, velocity) = scene(&mut random);
+        let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
+        let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
+        let back = -(pose.rotation.inverse() * velocity);
+        let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
+            [(pose, velocity, &link, &triangle), (pose.inverse(), back, &triangle, &link)];
+        let at = |time: Real| {
+            let pose = Pose::from_translation(velocity * time) * pose;
+            ours.distance(&pose, &link, &triangle).unwrap().distance
+        };
+        if at(0.0) <= target_distance {
+            continue;
+        }
+        let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
+        for (pos12, velocity, g1, g2) in pairs {
+            let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
+                misses += 1;
+                assert_eq!(met, None, "{link:?} {triangle:?} {pose:?} {velocity}");
+                continue;
+            };
+            hits += 1;
+            let time = hit.time_of_impact;
+            assert_eq!(hit.status, ShapeCastStatus::Converged);
+            assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}");
+            assert!((at(time) - target_distance).abs() < EARLY, "{hit:?}: {}", at(time));
+            // Points that are as far apart, on either shape, along the normal.
+            let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
+            assert!(((other - one).length() - target_distance).abs() < EARLY, "{hit:?}");
+            assert!(((other - one).dot(hit.normal1) - target_distance).abs() < EARLY, "{hit:?}");
+            assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
+            // parry's own, on the same two shapes.
+            match DefaultQueryDispatcher.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() {
+                None => parry_misses += usize::from(met.is_some()),
+                Some(theirs) => {
+                    let late = theirs.time_of_impact - time;
+                    parry_late += usize::from(late * velocity.length() > 1e-4);
+                }
+            }
+        }
+    }
+    println!("{hits} hits, {misses} misses; parry misses {parry_misses} and is late in {parry_late}");
+    assert!(hits > 1500 && misses > 500, "{hits} hits, {misses} misses");
+}
+
+#[test]
+fn options_mean_what_they_mean_in_parry() {
+    let (mut random, ours) = (Random::new(152), ContinuumDispatcher::default());
+    let (mut held, mut freed, mut limited) = (0, 0, 0);
+    for _ in 0..2000 {
+        let (link, triangle, pose, velocity) = scene(&mut random);
+        let cast = |pose: &Pose, velocity, options| {
+            ours.cast_shapes(pose, velocity, &link, &triangle, options).unwrap()
+        };
+        let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+        // As long as it takes, and not a moment less.
+        if let Some(hit) = cast(&pose, velocity, options).filter(|hit| hit.time_of_impact > 0.0) {
+            let limit = |share: Real| ShapeCastOptions::with_max_time_of_impact(hit.time_of_impact * share);
+            assert_eq!(
+                cast(&pose, velocity, limit(1.0)).map(|hit| hit.time_of_impact),
+                Some(hit.time_of_impact)
+            );
+            assert!(cast(&pose, velocity, limit(0.999)).is_none());
+            limited += 1;
+        }
+        // What overlaps at the start.
+        let near = Pose::from_parts(pose.rotation * -triangle.center() + link.start(), pose.rotation);
+        let Some(contact) = ours.contact(&near, &link, &triangle, 0.0).unwrap() else { continue };
+        let through = ShapeCastOptions { stop_at_penetration: false, ..options };
+        let stopped = cast(&near, velocity, options).unwrap();
+        assert_eq!(
+            (stopped.time_of_impact, stopped.status),
+            (0.0, ShapeCastStatus::PenetratingOrWithinTargetDist)
+        );
+        let parts = contact.normal1.dot(velocity) >= 0.0;
+        assert_eq!(cast(&near, velocity, through).is_none(), parts, "{contact:?} {velocity}");
+        held += usize::from(!parts);
+        freed += usize::from(parts);
+    }
+    assert!(held > 200 && freed > 200 && limited > 200, "{held} {freed} {limited}");
+}
+
+/// Casts down on a large face, where GJK's error grows with the face.
+#[test]
+fn the_error_does_not_grow_with_the_triangle() {
+    let (mut random, ours) = (Random::new(153), ContinuumDispatcher::default());
+    for extent in [5.0, 50.0, 500.0, 5e5] {
+        let [a, b, c] = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| Vector::new(x, 0.0, z) * extent);
+        let triangle = Triangle::new(a, b, c);
+        for _ in 0..200 {
+            let link = ModifiedCylinder::capsule(random.vector(1.0), random.vector(1.0), 0.5).unwrap();
+            let lowest = link.start().y.min(link.end().y) - 0.5;
+            let height = random.between(3.0, 9.0);
+            let place = Pose::from_translation(Vector::new(0.1, height, 0.2));
+            let hit = ours
+                .cast_shapes(&place, -2.0 * Vector::Y, &triangle, &link, ShapeCastOptions::default())
+                .unwrap()
+                .unwrap();
+            let expected = 0.5 * (height + lowest);
+            assert!(
+                (hit.time_of_impact - expected).abs() <= EARLY + 1e-14 * extent,
+                "{extent}: {hit:?} {expected}"
+            );
+        }
+    }
+}
+
+/// Still objects never meet, however near they are; nor do those that part or slide past.
+#[test]
+fn what_does_not_come_nearer_does_not_meet() {
+    let ours = ContinuumDispatcher::default();
+    let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::X, 0.5).unwrap();
+    let triangle =
+        Triangle::new(Vector::new(-9.0, 0.0, -9.0), Vector::new(9.0, 0.0, -9.0), Vector::new(0.0, 0.0, 9.0));
+    for gap in [1e-300, 1e-12, 1e-6, 1e-3, 1.0] {
+        let place = Pose::from_translation(Vector::Y * (0.5 + gap));
+        for velocity in [Vector::ZERO, Vector::Y, Vector::X, 3.0 * Vector::Z] {
+            for stop_at_penetration in [true, false] {
+                let options = ShapeCastOptions { stop_at_penetration, ..Default::default() };
+                let hit = ours.cast_shapes(&place, velocity, &triangle, &link, options).unwrap();
+                // Nothing is left of the smallest gap.
+                let is_hit = gap < 1e-200 && stop_at_penetration;
+                assert_eq!(hit.is_some(), is_hit, "{gap} {velocity} {hit:?}");
+            }
+        }
+    }
+}
+
+/// Against a mesh: the first triangle that a cast against each alone meets.
+#[test]
+fn a_mesh_is_met_where_its_first_triangle_is() {
+    let (mut random, ours, mesh) = (Random::new(154), ContinuumDispatcher::default(), floor_mesh());
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..200 {
+        let link = random.link();
+        let pose = Pose::from_translation(random.vector(1.0) + 4.0 * Vector::Y);
+        let velocity = random.vector(1.0) - 6.0 * Vector::Y;
+        let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+        let each = mesh.triangles().map(|triangle| {
+            ours.cast_shapes(&pose, velocity, &triangle, &link, options)
+                .unwrap()
+                .map_or(Real::INFINITY, |hit| hit.time_of_impact)
+        });
+        let first = each.fold(Real::INFINITY, Real::min);
+        let hit = ours.cast_shapes(&pose, velocity, &mesh, &link, options).unwrap();
+        assert_eq!(hit.map_or(Real::INFINITY, |hit| hit.time_of_impact), first);
+        hits += usize::from(hit.is_some());
+        misses += usize::from(hit.is_none());
+    }
+    assert!(hits > 50 && misses > 10, "{hits} hits, {misses} misses");
+}

@@ -1,0 +1,64 @@
+//! Motions through a wall, and into one at once.
+
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
+use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube};
+
+/// Between their ends, motions jump through a wall that no coarse step sees.
+#[test]
+fn a_jump_through_a_wall_is_seen() {
+    let wall = [[-60.0, -60.0], [60.0, -60.0], [60.0, 60.0], [-60.0, 60.0]];
+    let vertices = wall.iter().map(|&[x, y]| Vector::new(x, y, 0.1 * x)).collect();
+    let mut search = BvhSearch::new(&TriMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).unwrap()).unwrap();
+    let (mut random, mut jumps) = (Random::new(3), 0);
+    for round in 0..400 {
+        let radius = random.between(0.01, 0.5);
+        let mut points = vec![random.point() * 5.0 + Vector::Z * 10.0];
+        for k in 0..4 {
+            points.push(points[k] + (random.direction() + Vector::Z) * radius * random.between(0.5, 3.0));
+        }
+        let shift =
+            Vector::new(random.between(-5.0, 5.0), random.between(-5.0, 5.0), random.between(-50.0, -35.0));
+        let to: Vec<_> = points.iter().map(|&point| point + shift + random.point() * radius).collect();
+        let (from, radii) = (&points, [radius; 4]);
+        let linear = [LinearMotion::capsules, LinearMotion::chain][round % 2](from, &to, &radii).unwrap();
+        let tube = Tube::from(&Chain::capsules(from, &radii).unwrap());
+        let turn = random.direction() * random.between(0.0, 0.1);
+        let rigid = RigidMotion::new(tube.clone(), [Pose::IDENTITY, Pose::new(shift, turn)]).unwrap();
+        let coarse = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+        let is_seen = |search: &mut BvhSearch, motion: &dyn Fn(&mut Tube, Real) -> Pose| {
+            coarse.iter().any(|&t| {
+                let mut tube = tube.clone();
+                let pose = motion(&mut tube, t);
+                search.tube_clears(&tube, &pose, 0.0, 1e-6).unwrap() != Decision::Clear
+            })
+        };
+        let linear_seen = is_seen(&mut search, &|tube, t| linear.shape(t, tube).unwrap());
+        let rigid_seen = is_seen(&mut search, &|tube, t| rigid.shape(t, tube).unwrap());
+        jumps += usize::from(!linear_seen) + usize::from(!rigid_seen);
+        for answer in [
+            search.clears_motion(&linear, 0.0, 1e-4).unwrap(),
+            search.clears_motion(&rigid, 0.0, 1e-4).unwrap(),
+        ] {
+            assert!(matches!(answer, MotionAnswer::Contact { .. }), "{answer:?}");
+        }
+    }
+    assert!(jumps > 400, "{jumps} of 800");
+}
+
+/// A link's start becomes round when it is one radius away from the base, and fills a corner of the robot at once.
+#[test]
+fn an_end_that_becomes_round_counts() {
+    let corner = Vector::new(-1.0, 0.0, 1.0).normalize() * 0.95;
+    let speck = [corner, corner + Vector::Y * 1e-3, corner + Vector::new(-1e-3, 0.0, 1e-3)];
+    let mut search = BvhSearch::new(&TriMesh::new(speck.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let line = |base: Real| [Vector::Z * -base, Vector::ZERO, Vector::X * 0.5];
+    // Flat ends leave the speck 0.67 away.
+    let flat = LinearMotion::chain(&line(0.9), &line(0.99), &[1.0; 2]).unwrap();
+    assert_eq!(search.clears_motion(&flat, 0.3, 1e-3), Ok(MotionAnswer::Clear));
+    let opening = LinearMotion::chain(&line(0.9), &line(1.05), &[1.0; 2]).unwrap();
+    let answer = search.clears_motion(&opening, 0.3, 1e-3).unwrap();
+    assert!(matches!(answer, MotionAnswer::Contact { t, .. } if t > 0.666), "{answer:?}");
+}
