@@ -15,19 +15,26 @@
 //! | `measure_lanes` | the same measurement, several triangles together |
 //! | `mesh` | the mesh as every engine keeps it |
 //! | `certificate` | proofs of an answer |
+//! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
+//! | `derivative` | how it changes with the points that link and triangle are made of |
+//! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
 //! | `motion` | what an answer about a motion is |
 //! | `measure_lanes` | that measurement for several triangles at once, bit for bit |
 //! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
 
 mod certificate;
 mod checks;
+mod contact;
+mod derivative;
 mod engine;
 mod error;
 mod exhaustive;
+mod feature;
 mod link_lanes;
 mod measure_lanes;
 mod mesh;
 mod motion;
+mod nearest_features;
 mod parallel;
 mod placed;
 mod report;
@@ -53,10 +60,13 @@ pub(crate) use placed::{Best, Nearest, PlacedLink};
 pub(crate) use search_frame::{SearchFrame, SearchLink};
 
 pub use certificate::Certificate;
+pub use contact::Contact;
+pub use derivative::Derivative;
 pub use engine::Proximity;
 #[cfg(feature = "gpu")]
 pub use error::DeviceFailure;
 pub use error::{MeshError, ProximityError};
+pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use motion::{FirstContact, MotionAnswer};
 pub use report::{LinkProximity, Work};

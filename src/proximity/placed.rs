@@ -8,7 +8,7 @@
 
 use super::checks::check_pose;
 use super::{LinkProximity, ProximityError};
-use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
+use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Scalar, Vec3, gives_direction};
 use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -209,6 +209,25 @@ impl PlacedLink {
         let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
         ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
     }
+}
+
+/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is rounded but the
+/// link's direction.
+pub(super) fn place_exactly(
+    link: &PlacedLink,
+    corners: [Vector; 3],
+) -> ([Vec3<DoubleDouble>; 3], Link<DoubleDouble>) {
+    let pair = link.pair(corners);
+    let scale = 1.0 / pair.unit;
+    let offset = |point: Vector| {
+        let coordinate = |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
+        let (to, from) = (point, link.start);
+        Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
+    };
+    let has_axis = pair.link.axis != Vec3::zero(0.0);
+    let flat = link.flat.map(|flat| flat && has_axis);
+    let placed = Link::new(offset(link.end), pair.link.radius.into(), flat);
+    (corners.map(offset), placed)
 }
 
 /// A link and a triangle in coordinates of their own.
