@@ -19,10 +19,11 @@ use parry3d_f64::shape::TriMesh;
 /// |---|---|---|
 /// | `start` | (1 - f) n | (1 - f) n + (n . a) l / L |
 /// | `end` | f n | f n - (n . a) l / L |
-/// | `radius` | -1 | n . l / abs(l) at the rim, 0 inside of it |
+/// | `radius` | -1 | -abs(n x a) |
 /// | `vertices[i]` | -w_i n | -w_i n |
 ///
-/// The second term for a flat cap is its lever: the cap turns with the axis. Computed with about 32 digits and rounded
+/// The second term for a flat cap is its lever: the cap turns with the axis. Its radius counts at the rim alone, because
+/// n is parallel to a where the closest point lies inside of it. Computed with about 32 digits and rounded
 /// at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -36,7 +37,8 @@ pub struct Derivative {
     /// With respect to the triangle's corners.
     pub vertices: [Vector; 3],
     /// Whether the distance has a kink here, as [`Contact::kink`](super::Contact::kink) tells: these are then the
-    /// derivatives for one of the points that are as near.
+    /// derivatives for one of the points that are as near. A triangle without area has one too, because its corners can
+    /// move against one another.
     pub kink: bool,
 }
 
@@ -82,9 +84,8 @@ impl LinkProximity {
 
 impl NearestFeatures<DoubleDouble> {
     fn derivative(&self) -> Option<Derivative> {
-        let (normal, zero) = (self.normal?, DoubleDouble::ZERO);
+        let (normal, one) = (self.normal?, DoubleDouble::from(1.0));
         let rounded = |v: Vec3<DoubleDouble>| Vector::new(v.x.rounded(), v.y.rounded(), v.z.rounded());
-        let one = zero.one();
         let (mut start, mut end) = (normal * (one - self.fraction), normal * self.fraction);
         let mut radius = -one;
         if let Some(cap) = self.flat_cap {
@@ -93,14 +94,14 @@ impl NearestFeatures<DoubleDouble> {
             }
             let turn = self.lever * normal.dot(cap.axis).over(cap.length);
             (start, end) = (start + turn, end - turn);
-            radius = if cap.at_rim { normal.dot(self.lever.normalised()) } else { zero };
+            radius = -normal.cross(cap.axis).norm();
         }
         Some(Derivative {
             start: rounded(start),
             end: rounded(end),
             radius: radius.rounded(),
             vertices: self.weights.map(|weight| rounded(-normal * weight)),
-            kink: self.kink,
+            kink: self.kink || !self.has_area,
         })
     }
 }

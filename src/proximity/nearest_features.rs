@@ -49,6 +49,8 @@ pub(super) struct NearestFeatures<T> {
     /// The cap, where a flat one decides.
     pub flat_cap: Option<FlatCap<T>>,
     pub kink: bool,
+    /// Whether the triangle has an area, so that only one mean of its corners is the closest point.
+    pub has_area: bool,
 }
 
 /// A flat cap that decides.
@@ -58,8 +60,6 @@ pub(super) struct FlatCap<T> {
     pub axis: Vec3<T>,
     /// How long the link is, in units of the pair.
     pub length: T,
-    /// Whether its closest point lies at the rim.
-    pub at_rim: bool,
     pub touches: bool,
 }
 
@@ -92,6 +92,7 @@ impl NearestFeatures<DoubleDouble> {
             lever: vector(self.lever),
             flat_cap: None,
             kink: self.kink,
+            has_area: self.has_area,
         }
     }
 }
@@ -102,6 +103,8 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearestFeatures<T> {
         let face = Face::new(*triangle);
         let axial = Axial::new(link, &face);
         let (zero, one) = (axial.s.zero(), axial.s.one());
+        let longest = (face.vertices[2] - face.vertices[1]).norm();
+        let has_area = (one.lit(TIE) * longest).lt(face.across.norm());
         if axial.beyond_flat_cap() {
             let closest = axial.with_caps(link, &face);
             let (centre, _) = axial.cap(link);
@@ -124,13 +127,9 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearestFeatures<T> {
                 normal,
                 depth: None,
                 lever,
-                flat_cap: Some(FlatCap {
-                    axis: link.axis,
-                    length: link.end.norm(),
-                    at_rim: (link.radius - lever.norm()).le(one.lit(TIE)),
-                    touches,
-                }),
+                flat_cap: Some(FlatCap { axis: link.axis, length: link.end.norm(), touches }),
                 kink,
+                has_area,
             };
             return (found, gap);
         }
@@ -154,6 +153,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearestFeatures<T> {
             lever: normal.map_or(Vec3::zero(zero), |normal| normal * -gap.min(link.radius)),
             flat_cap: None,
             kink: normal.is_some_and(|normal| is_kink(triangle, link, normal, gap, false)),
+            has_area,
         };
         (found, gap)
     }

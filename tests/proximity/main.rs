@@ -4,6 +4,8 @@ mod agreement;
 mod allocations;
 mod certify;
 mod chain_cases;
+mod contacts;
+mod derivatives;
 mod far_parts;
 mod fuzz;
 mod large;
