@@ -6,6 +6,9 @@ pub mod shape {}
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 
+#[doc = include_str!("../docs/book/control.md")]
+pub mod control {}
+
 #[doc = include_str!("../docs/book/tube.md")]
 pub mod tube {}
 
