@@ -122,10 +122,11 @@ impl LocalMinima {
         let Ranked { nearest, .. } = self.near[place as usize];
         let corners = mesh.corners(nearest.triangle);
         self.piece.push(place);
-        // The corners and edges that nearer triangles have, each by its two ends.
-        let (mut shared, mut count) = ([(corners[0], corners[0], 0); 6], 0);
+        let tie = 64.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
+        // The corners and edges that nearer triangles have, each by its two ends, and whether it holds the least point.
+        let (mut shared, mut count) = ([(corners[0], corners[0], 0, false); 6], 0);
         let mut share = |from: Vector, to: Vector, with: u32| {
-            shared[count] = (from, to, with);
+            shared[count] = (from, to, with, is_on(nearest.on_mesh, from, to, tie));
             count += 1;
         };
         let mut numbers = [0; 3];
@@ -151,19 +152,17 @@ impl LocalMinima {
                 Entry::Occupied(entry) => share(corners[from], corners[to], *entry.get()),
             }
         }
-        let shared = &shared[..count];
-        let tie = 64.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
         // Those that hold its least point come first: they are met at its own distance.
-        for at_least_point in [true, false] {
-            for &(from, to, with) in shared {
-                if is_on(nearest.on_mesh, from, to, tie) != at_least_point {
+        for met_there in [true, false] {
+            for &(from, to, with, holds_least_point) in &shared[..count] {
+                if holds_least_point != met_there {
                     continue;
                 }
                 let (mine, other) = (self.first_of(place), self.first_of(with));
                 let farther = self.distance(mine).max(self.distance(other)) + tie;
                 if mine != other
                     && nearest.distance <= farther
-                    && (at_least_point || link.comes_within(farther, from, to))
+                    && (met_there || link.comes_within(farther, from, to))
                 {
                     // The piece appeared where the nearer one did.
                     self.piece[mine.max(other) as usize] = mine.min(other);
