@@ -32,8 +32,8 @@ pub struct Contact {
     /// they overlap. It is known beside the link and beyond a round cap, where every point is one radius from the axis,
     /// as long as the axis does not cross the triangle. Beyond a flat cap it would jump, so there is none.
     pub depth: Option<Real>,
-    /// The unit vector from the wall to the robot, within 1e-12. Where they touch it leads from the triangle to the
-    /// link's axis, and there is none if the axis itself meets the triangle.
+    /// The unit vector from the wall to the robot. Where they touch it leads from the triangle to the link's axis, and
+    /// there is none if the axis itself meets the triangle.
     pub normal: Option<Vector>,
     /// The link's closest point.
     pub on_robot: Vector,
