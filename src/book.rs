@@ -11,6 +11,8 @@ pub mod queries {}
 
 #[doc = include_str!("../docs/book/inside.md")]
 pub mod inside {}
+#[doc = include_str!("../docs/book/control.md")]
+pub mod control {}
 
 #[doc = include_str!("../docs/book/tube.md")]
 pub mod tube {}

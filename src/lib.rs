@@ -37,6 +37,8 @@
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
 //!   `gpu` adds `gpu::GpuExhaustive`.
+//! - **Contacts.** [`within`](proximity::Proximity::within) finds every place where the robot is near the wall, with a
+//!   normal, and how it changes with the joints. [`book::control`] is about controllers.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand a
 //!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
 //!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.

@@ -74,10 +74,12 @@ pub fn triangle_capsule<T: Scalar>(
 pub(crate) struct Axial<T: Scalar> {
     /// F^2, the squared distance between axis and triangle.
     pub axis_squared: T,
+    /// s, where on the axis.
+    pub s: T,
     /// p*, the triangle's point.
-    on_triangle: Vec3<T>,
+    pub on_triangle: Vec3<T>,
     /// Whether the disc at the start, or at the end, decides (case 2).
-    at_flat: [T::Mask; 2],
+    pub at_flat: [T::Mask; 2],
 }
 
 impl<T: Scalar> Axial<T> {
@@ -93,6 +95,7 @@ impl<T: Scalar> Axial<T> {
         let at_end = beyond_end | (one.le(axis.s) & !before_start);
         Self {
             axis_squared: axis.squared,
+            s: axis.s,
             on_triangle: axis.on_triangle,
             at_flat: [link.flat[0] & has_axis & at_start, link.flat[1] & has_axis & at_end],
         }

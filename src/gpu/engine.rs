@@ -10,8 +10,8 @@ use super::wgsl::CONVEX;
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    DeviceFailure, LinkProximity, Mesh, MeshError, PlacedLink, Proximity, ProximityError, SearchFrame,
-    check_margin, pairs,
+    Contact, DeviceFailure, LinkProximity, Mesh, MeshError, PlacedLink, PlacedRobot, Proximity,
+    ProximityError, SearchFrame, check_margin, contacts_by_all_triangles, pairs,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -183,6 +183,32 @@ impl Proximity for GpuExhaustive {
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
         self.search(std::iter::once((robot, pose)), None)?;
         Ok(self.least(0))
+    }
+
+    /// As [`minimum`](Proximity::minimum), whatever the bound.
+    fn minimum_within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        check_margin(bound)?;
+        let least = self.minimum(robot, pose)?;
+        Ok((least.distance <= bound).then_some(least))
+    }
+
+    /// On the CPU: the device names the nearest triangles of a link, and not all that are near.
+    fn within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        contacts_by_all_triangles(&self.mesh, PlacedRobot::new(robot, pose)?, margin, out);
+        Ok(())
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {

@@ -8,7 +8,8 @@
 //! normals of the features (faces, edges, axis) are tried as well.
 
 use super::checks::{check_ends, check_vertex};
-use super::{LinkProximity, MeshError, ProximityError};
+use super::report::corners;
+use super::{LinkProximity, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
 use crate::robot::{Chain, ModifiedCylinder, distance_to_segment, has_direction};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -74,12 +75,8 @@ impl LinkProximity {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn certify(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Certificate, ProximityError> {
-        let link = self.placed(robot, pose)?;
-        let triangles = mesh.indices().len();
-        let indices = mesh.indices().get(self.triangle as usize);
-        let missing = ProximityError::NoSuchTriangle { triangle: self.triangle as usize, triangles };
-        let indices = indices.ok_or(missing)?;
-        Ok(link.bounds(corners(mesh, indices)?))
+        let link = self.certified(robot, pose)?;
+        Ok(link.bounds(self.corners(mesh)?))
     }
 
     /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously: a proof that no
@@ -96,7 +93,7 @@ impl LinkProximity {
         mesh: &TriMesh,
     ) -> Result<Certificate, ProximityError> {
         let own = self.certify(robot, pose, mesh)?;
-        let link = self.placed(robot, pose)?;
+        let link = self.certified(robot, pose)?;
         let mut all = own;
         for indices in mesh.indices() {
             let triangle = corners(mesh, indices)?;
@@ -109,19 +106,9 @@ impl LinkProximity {
         Ok(all)
     }
 
-    fn placed(&self, robot: &Chain, pose: &Pose) -> Result<CertifiedLink, ProximityError> {
-        let (link, links) = (self.link as usize, robot.links());
-        let found = links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })?;
-        CertifiedLink::new(found, pose, link)
+    fn certified(&self, robot: &Chain, pose: &Pose) -> Result<CertifiedLink, ProximityError> {
+        CertifiedLink::new(self.find_link(robot)?, pose, self.link as usize)
     }
-}
-
-fn corners(mesh: &TriMesh, indices: &[u32; 3]) -> Result<[Vector; 3], MeshError> {
-    let triangle = indices.map(|index| mesh.vertices()[index as usize]);
-    for (index, point) in indices.iter().zip(triangle) {
-        check_vertex(*index as usize, point)?;
-    }
-    Ok(triangle)
 }
 
 type Number = DoubleDouble;

@@ -2,10 +2,11 @@
 //! [`PlacedLink::measure`], on every instruction set.
 
 use super::mesh::Mesh;
-use super::placed::{Best, Pair, PlacedLink};
+use super::placed::{Best, Nearest, Pair, PlacedLink};
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Closest, Face, Link, Unfused, Vec3};
 use fearless_simd::{Level, dispatch};
+use parry3d_f64::math::Real;
 
 /// How many triangles are measured together: the widest pack of `f64`.
 pub(super) const TOGETHER: usize = 8;
@@ -33,33 +34,62 @@ impl Best {
             let measure = |is_best, &triangle| self.measure(link, triangle, mesh.corners(triangle)) | is_best;
             return triangles.iter().fold(false, measure);
         }
-        let (mut pairs, mut answers) = ([[0.0; TOGETHER]; 16], [[0.0; TOGETHER]; 7]);
-        let mut units = [0.0; TOGETHER];
-        for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
-            let pair = link.pair(mesh.corners(triangle));
-            let [a, b, c] = pair.triangle;
-            put(&mut pairs, 0, lane, a);
-            put(&mut pairs, 3, lane, b);
-            put(&mut pairs, 6, lane, c);
-            put(&mut pairs, 9, lane, pair.link.end);
-            put(&mut pairs, 12, lane, pair.link.axis);
-            pairs[15][lane] = pair.link.radius;
-            units[lane] = pair.unit;
-        }
-        let (flat, count) = (link.flat(), triangles.len());
-        dispatch!(level, simd => closest::<Unfused<_>>(simd, &pairs, flat, count, &mut answers));
         let mut is_best = false;
-        for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
-            let distance = answers[0][lane];
-            if distance * units[lane] <= self.bound() {
-                let point = |row: usize| {
-                    Vec3::new(answers[row][lane], answers[row + 1][lane], answers[row + 2][lane])
-                };
-                let closest = Closest { distance, point1: point(1), point2: point(4) };
-                is_best |= self.take(Pair::report(units[lane], link.start(), triangle, closest));
-            }
-        }
+        measure_pack(level, link, mesh, triangles, self.bound(), |nearest| is_best |= self.take(nearest));
         is_best
+    }
+}
+
+/// Measures triangles, however many.
+pub(super) fn measure_each(
+    level: Level,
+    link: &PlacedLink,
+    mesh: &Mesh,
+    triangles: &[u32],
+    mut take: impl FnMut(Nearest),
+) {
+    for together in triangles.chunks(TOGETHER) {
+        if together.len() < WORTH_A_PACK {
+            together.iter().for_each(|&triangle| take(link.measure(triangle, mesh.corners(triangle))));
+        } else {
+            measure_pack(level, link, mesh, together, Real::INFINITY, &mut take);
+        }
+    }
+}
+
+/// Measures up to [`TOGETHER`] triangles in packs. `take` gets those that are at most `bound` away.
+#[inline(always)]
+fn measure_pack(
+    level: Level,
+    link: &PlacedLink,
+    mesh: &Mesh,
+    triangles: &[u32],
+    bound: Real,
+    mut take: impl FnMut(Nearest),
+) {
+    let (mut pairs, mut answers) = ([[0.0; TOGETHER]; 16], [[0.0; TOGETHER]; 7]);
+    let mut units = [0.0; TOGETHER];
+    for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
+        let pair = link.pair(mesh.corners(triangle));
+        let [a, b, c] = pair.triangle;
+        put(&mut pairs, 0, lane, a);
+        put(&mut pairs, 3, lane, b);
+        put(&mut pairs, 6, lane, c);
+        put(&mut pairs, 9, lane, pair.link.end);
+        put(&mut pairs, 12, lane, pair.link.axis);
+        pairs[15][lane] = pair.link.radius;
+        units[lane] = pair.unit;
+    }
+    let (flat, count) = (link.flat(), triangles.len());
+    dispatch!(level, simd => closest::<Unfused<_>>(simd, &pairs, flat, count, &mut answers));
+    for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
+        let distance = answers[0][lane];
+        if distance * units[lane] <= bound {
+            let point =
+                |row: usize| Vec3::new(answers[row][lane], answers[row + 1][lane], answers[row + 2][lane]);
+            let closest = Closest { distance, point1: point(1), point2: point(4) };
+            take(Pair::report(units[lane], link.start(), triangle, closest));
+        }
     }
 }
 

@@ -16,18 +16,27 @@
 //! | `mesh` | the mesh as every engine keeps it |
 //! | `winding/` | how the mesh winds around a point, and on which side of it that is; `wide_bvh/winding` sums it up |
 //! | `certificate` | proofs of an answer |
+//! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
+//! | `local_minima` | the local minima of a link's distance: one contact for each |
+//! | `derivative` | how it changes with the points that link and triangle are made of |
+//! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
 //! | `motion` | what an answer about a motion is |
 //! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
 
 mod certificate;
 mod checks;
+mod contact;
+mod derivative;
 mod engine;
 mod error;
 mod exhaustive;
+mod feature;
 mod link_lanes;
+mod local_minima;
 mod measure_lanes;
 mod mesh;
 mod motion;
+mod nearest_features;
 mod parallel;
 mod placed;
 mod report;
@@ -44,6 +53,8 @@ pub(crate) use checks::check_margin;
 #[cfg(feature = "gpu")]
 pub(crate) use engine::pairs;
 #[cfg(feature = "gpu")]
+pub(crate) use local_minima::contacts_by_all_triangles;
+#[cfg(feature = "gpu")]
 pub(crate) use mesh::Mesh;
 #[cfg(feature = "gpu")]
 pub(crate) use parallel::each;
@@ -54,11 +65,14 @@ pub(crate) use placed::{Best, Nearest, PlacedLink};
 pub(crate) use search_frame::{SearchFrame, SearchLink};
 
 pub use certificate::Certificate;
+pub use contact::Contact;
+pub use derivative::Derivative;
 pub use engine::Proximity;
 #[cfg(feature = "gpu")]
 pub use error::DeviceFailure;
 pub use error::{MeshError, ProximityError};
 pub use exhaustive::{Exhaustive, SearchPrecision};
+pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
 pub use motion::{FirstContact, MotionAnswer};
 pub use report::{LinkProximity, Work};
 pub use tube::{Clearance, Decision};

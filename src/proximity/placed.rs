@@ -8,7 +8,9 @@
 
 use super::checks::check_pose;
 use super::{LinkProximity, ProximityError};
-use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
+use crate::distance::{
+    Axial, Closest, DoubleDouble, Face, Link, Scalar, Vec3, gives_direction, segment_segment,
+};
 use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -160,6 +162,13 @@ impl PlacedLink {
         )
     }
 
+    /// A lower bound on the distance between link and triangle.
+    #[cfg(feature = "gpu")]
+    pub(super) fn at_least(&self, corners: [Vector; 3]) -> Real {
+        let pair = self.pair(corners);
+        pair.at_least() * pair.unit
+    }
+
     /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
     fn measure_within(&self, bound: Real, triangle: u32, corners: [Vector; 3]) -> Option<Nearest> {
         let pair = self.pair(corners);
@@ -180,10 +189,35 @@ impl PlacedLink {
         (nearest.distance <= bound).then_some(nearest)
     }
 
+    /// The distance between the axis and a triangle, less the radius.
+    pub(super) fn axis_depth(&self, corners: [Vector; 3]) -> Real {
+        let pair = self.pair(corners);
+        let axial = Axial::new(&pair.link, &Face::new(pair.triangle));
+        (axial.axis_squared.sqrt() - pair.link.radius) * pair.unit
+    }
+
+    /// Whether the link is at most `bound` from the segment between two points.
+    pub(super) fn comes_within(&self, bound: Real, from: Vector, to: Vector) -> bool {
+        // The capsule around the link is quick to measure, and no farther.
+        let pair = self.pair([from, to, to]);
+        let [from, to, _] = pair.triangle;
+        let axis = segment_segment([Vec3::zero(0.0), pair.link.end], [from, to]).distance;
+        if (axis - pair.link.radius - SLACK) * pair.unit > bound {
+            return false;
+        }
+        let edge = Face::new(pair.triangle);
+        Axial::new(&pair.link, &edge).with_caps(&pair.link, &edge).distance * pair.unit <= bound
+    }
+
+    /// The largest coordinate of link and triangle from the link's start, or the radius.
+    pub(super) fn extent_with(&self, corners: [Vector; 3]) -> Real {
+        let [a, b, c] = corners.map(|corner| (corner - self.start).abs());
+        a.max(b).max(c).max_element().max(self.extent)
+    }
+
     pub(super) fn pair(&self, corners: [Vector; 3]) -> Pair {
         let offsets = corners.map(|corner| corner - self.start);
-        let [a, b, c] = offsets.map(Vector::abs);
-        let extent = a.max(b).max(c).max_element().max(self.extent);
+        let extent = self.extent_with(corners);
         let scale = extent.power_of_two_to_unity();
         let end = Vec3::from(self.along * scale);
         // A length whose square vanishes beside the triangle tells no direction.
@@ -214,6 +248,25 @@ impl PlacedLink {
         let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
         ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
     }
+}
+
+/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is rounded but the
+/// link's direction.
+pub(super) fn place_exactly(
+    link: &PlacedLink,
+    corners: [Vector; 3],
+) -> ([Vec3<DoubleDouble>; 3], Link<DoubleDouble>) {
+    let pair = link.pair(corners);
+    let scale = 1.0 / pair.unit;
+    let offset = |point: Vector| {
+        let coordinate = |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
+        let (to, from) = (point, link.start);
+        Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
+    };
+    let has_axis = pair.link.axis != Vec3::zero(0.0);
+    let flat = link.flat.map(|flat| flat && has_axis);
+    let placed = Link::new(offset(link.end), pair.link.radius.into(), flat);
+    (corners.map(offset), placed)
 }
 
 /// A link and a triangle in coordinates of their own.

@@ -1,4 +1,9 @@
-use parry3d_f64::math::{Real, Vector};
+use super::checks::{check_ends, check_vertex};
+use super::placed::PlacedLink;
+use super::{MeshError, ProximityError};
+use crate::{Chain, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
 
 /// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +32,52 @@ impl LinkProximity {
         let nowhere = Vector::splat(Real::NAN);
         Self { link: 0, triangle: 0, distance: Real::NAN, on_robot: nowhere, on_mesh: nowhere }
     }
+
+    /// The link that this answer is about.
+    ///
+    /// # Errors
+    /// The robot does not have it.
+    pub(super) fn find_link<'a>(&self, robot: &'a Chain) -> Result<&'a ModifiedCylinder, ProximityError> {
+        let (link, links) = (self.link as usize, robot.links());
+        links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })
+    }
+
+    /// The same in the mesh's frame.
+    ///
+    /// # Errors
+    /// The robot does not have it, or the pose is not finite or moves it out of range.
+    pub(super) fn placed_link(&self, robot: &Chain, pose: &Pose) -> Result<PlacedLink, ProximityError> {
+        let link = self.find_link(robot)?;
+        if !pose.is_finite() {
+            return Err(ProximityError::PoseNotFinite);
+        }
+        let placed = PlacedLink::new(link, pose);
+        check_ends(self.link as usize, [placed.start(), placed.end()])?;
+        Ok(placed)
+    }
+
+    /// The corners of the triangle that this answer is about.
+    ///
+    /// # Errors
+    /// The mesh does not have it, or one of them is not finite or out of range.
+    pub(super) fn corners(&self, mesh: &TriMesh) -> Result<[Vector; 3], ProximityError> {
+        let triangle = self.triangle as usize;
+        let indices = mesh.indices().get(triangle);
+        let missing = ProximityError::NoSuchTriangle { triangle, triangles: mesh.indices().len() };
+        Ok(corners(mesh, indices.ok_or(missing)?)?)
+    }
+}
+
+/// The corners of a triangle.
+///
+/// # Errors
+/// One of them is not finite or out of range.
+pub(super) fn corners(mesh: &TriMesh, indices: &[u32; 3]) -> Result<[Vector; 3], MeshError> {
+    let triangle = indices.map(|index| mesh.vertices()[index as usize]);
+    for (index, point) in indices.iter().zip(triangle) {
+        check_vertex(*index as usize, point)?;
+    }
+    Ok(triangle)
 }
 
 /// How much an engine has computed since it was built, batches left out.

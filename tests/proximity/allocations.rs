@@ -1,4 +1,4 @@
-//! A control loop allocates nothing once it runs: centreline, chain, queries.
+//! A control loop allocates nothing once it runs: centreline, chain, queries, contacts.
 
 use continuum_scene::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -27,7 +27,7 @@ fn a_control_loop_allocates_nothing() {
     let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
     let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
     let mut chain = Chain::from_centreline(&points, &line.radii).unwrap();
-    let (mut moved, mut answers) = (Vec::new(), Vec::new());
+    let (mut moved, mut answers, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
 
     let mut search = BvhSearch::new(&mesh).unwrap();
     let mut seen = Vec::new();
@@ -38,6 +38,8 @@ fn a_control_loop_allocates_nothing() {
         search.per_link(&chain, &pose, &mut answers).unwrap();
         search.clears(&chain, &pose, 0.5).unwrap();
         search.clears_inside(&chain, &pose, 0.5).unwrap();
+        search.within(&chain, &pose, 3.0, &mut contacts).unwrap();
+        assert!(contacts.len() > 1 && least.contact(&chain, &pose, &mesh).is_ok());
         if tick < 50 {
             seen.push(least.distance);
         }

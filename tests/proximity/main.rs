@@ -5,6 +5,8 @@ mod allocations;
 mod certify;
 mod chain_cases;
 mod coherence;
+mod contacts;
+mod derivatives;
 mod far_parts;
 mod fuzz;
 mod large;

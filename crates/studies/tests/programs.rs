@@ -108,6 +108,16 @@ fn speed_is_measured_drawn_and_quoted() {
     }
     assert_eq!(table(&page, "| scene | triangles | one thread |").len(), 3);
     assert!(page.contains("6,000 triangles divided in four once"), "{page}");
+    let latency = table(&page, "| query | triangles | ticks |");
+    let queries: Vec<_> = latency.iter().map(|row| &*row[0]).collect();
+    assert_eq!(queries, ["`minimum`", "`clears`", "`per_link`", "`within`"]);
+    for row in &latency {
+        // The median, what one tick in a thousand exceeds, and the largest; warm, then with cold caches.
+        let micros: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+        for times in micros.chunks(4) {
+            assert!(times[0] >= 20.0 && times[1..].is_sorted() && times[1] > 0.0, "{row:?}");
+        }
+    }
     assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
     let shares = table(&page, "| order | precision | K |");
     assert_eq!(shares.len(), 4);

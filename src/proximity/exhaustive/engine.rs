@@ -5,9 +5,10 @@ use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::engine::pairs;
+use crate::proximity::local_minima::{LocalMinima, Searched};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::PlacedLink;
-use crate::proximity::{LinkProximity, MeshError, Proximity, ProximityError, Work};
+use crate::proximity::{Contact, LinkProximity, MeshError, Proximity, ProximityError, Work};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -31,6 +32,8 @@ pub struct Exhaustive<T: SearchPrecision> {
     culling: bool,
     work: Work,
     pass: Pass<T>,
+    /// Memory of a query for contacts: the second are the triangles of one link.
+    contacts: (LocalMinima, Vec<u32>),
 }
 
 /// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
@@ -48,6 +51,7 @@ impl<T: SearchPrecision> Clone for Exhaustive<T> {
             culling: self.culling,
             work: Work::default(),
             pass: Pass::default(),
+            contacts: Default::default(),
         }
     }
 }
@@ -67,7 +71,14 @@ impl<T: SearchPrecision> Exhaustive<T> {
     pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
         let level = Level::new();
         let triangles = Arc::new(Triangles::new(level, Mesh::new(mesh)?));
-        Ok(Self { level, triangles, culling: true, work: Work::default(), pass: Pass::default() })
+        Ok(Self {
+            level,
+            triangles,
+            culling: true,
+            work: Work::default(),
+            pass: Pass::default(),
+            contacts: Default::default(),
+        })
     }
 
     /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless told otherwise.
@@ -99,11 +110,15 @@ impl<T: SearchPrecision> Exhaustive<T> {
     }
 
     /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
-    fn least(&self, robot: &Chain, pose: &Pose, number: usize) -> LinkProximity {
+    fn least_within(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
             a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
         };
-        self.pass.answers(number).min_by(order).unwrap_or_else(|| {
+        self.pass.answers(number).min_by(order)
+    }
+
+    fn least(&self, robot: &Chain, pose: &Pose, number: usize) -> LinkProximity {
+        self.least_within(number).unwrap_or_else(|| {
             // Without a bound some triangle is always the nearest; this is any other.
             let link = PlacedLink::new(&robot.links()[0], pose);
             link.measure(0, self.triangles.mesh.corners(0)).report(0)
@@ -125,8 +140,46 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
     }
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        self.run(std::iter::once((robot, pose)), Aim::Least)?;
+        self.run(std::iter::once((robot, pose)), Aim::Least(Real::INFINITY))?;
         Ok(self.least(robot, pose, 0))
+    }
+
+    fn minimum_within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        check_margin(bound)?;
+        self.run(std::iter::once((robot, pose)), Aim::Least(bound))?;
+        Ok(self.least_within(0))
+    }
+
+    fn within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.run(std::iter::once((robot, pose)), Aim::Every(margin))?;
+        let Self { level, ref triangles, ref mut pass, ref mut contacts, ref mut work, .. } = *self;
+        let mesh = &triangles.mesh;
+        let (mut number, mut before) = (0, 0.0);
+        let (minima, of_link) = contacts;
+        for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
+            before += robot.links()[number..pairs[0].0].iter().map(|link| link.length()).sum::<Real>();
+            number = pairs[0].0;
+            let link = PlacedLink::new(&robot.links()[number], pose);
+            of_link.clear();
+            of_link.extend(pairs.iter().map(|pair| pair.1));
+            work.measured += of_link.len() as u64;
+            let searched = Searched { level, mesh, link, number: number as u32, before, margin };
+            minima.find(&searched, of_link, out);
+        }
+        Ok(())
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
@@ -156,7 +209,7 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        self.run(pairs(robots), Aim::Least)?;
+        self.run(pairs(robots), Aim::Least(Real::INFINITY))?;
         out.extend(pairs(robots).enumerate().map(|(number, (robot, pose))| self.least(robot, pose, number)));
         Ok(())
     }

@@ -51,10 +51,21 @@ impl<T: Kernels> Triangles<T> {
 pub(super) enum Aim {
     /// The nearest triangle of every link.
     EachLink,
-    /// The nearest triangle of all links of a robot together.
-    Least,
+    /// The nearest triangle of all links of a robot together, if it is at most so far away.
+    Least(Real),
     /// Any triangle at most so far away, for each robot.
     Within(Real),
+    /// Every triangle that may be at most so far away, for each link.
+    Every(Real),
+}
+
+impl Aim {
+    fn bound(self) -> Real {
+        match self {
+            Self::EachLink => Real::INFINITY,
+            Self::Least(bound) | Self::Within(bound) | Self::Every(bound) => bound,
+        }
+    }
 }
 
 /// The links of a pass and what it found, in memory that is used again.
@@ -96,22 +107,25 @@ impl<T: Kernels> Pass<T> {
     ) -> Result<Work, ProximityError> {
         let links = self.place(level, triangles, robots, aim)?;
         let Self { links: resolved, double, bounds, findings, robots } = self;
-        let bound = if let Aim::Within(margin) = aim { margin } else { Real::INFINITY };
         bounds.clear();
-        bounds
-            .resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || SharedBound::new(bound));
+        bounds.resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || {
+            SharedBound::new(aim.bound())
+        });
         findings.resize_with(threads(links * triangles.mesh.len()), Findings::default);
         for findings in &mut *findings {
             findings.work = Work::default();
+            findings.within.clear();
             findings.nearest.clear();
             findings.nearest.resize(links, None);
         }
-        let (mesh, stop_at_first) = (&triangles.mesh, matches!(aim, Aim::Within(_)));
-        let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first };
+        let mesh = &triangles.mesh;
+        let (stop_at_first, every) = (matches!(aim, Aim::Within(_)), matches!(aim, Aim::Every(_)));
+        let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
         scan(level, culling, &job, findings);
         if !double.is_empty() {
             let blocks = triangles.double(level);
-            scan(level, culling, &Job { mesh, blocks, links: double, bounds, stop_at_first }, findings);
+            let job = Job { mesh, blocks, links: double, bounds, stop_at_first, every };
+            scan(level, culling, &job, findings);
         }
         let (first, others) = findings.split_at_mut(1);
         for other in others {
@@ -165,6 +179,13 @@ impl<T: Kernels> Pass<T> {
         places.enumerate().filter_map(|(link, place)| Some(self.found(place)?.report(link)))
     }
 
+    /// The triangles that may be within the bound of the last pass, link by link and each once.
+    pub(super) fn within(&mut self) -> &[(usize, u32)] {
+        let within = &mut self.findings[0].within;
+        within.sort_unstable();
+        within
+    }
+
     /// Whether nothing was found for a robot.
     pub(super) fn is_clear(&self, robot: usize) -> bool {
         self.robots[robot].clone().all(|place| self.found(place).is_none())
@@ -188,7 +209,7 @@ fn threads(_: usize) -> usize {
 
 /// Has every thread take the next chunk until there is none.
 fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [Findings]) {
-    if culling && !job.stop_at_first {
+    if culling && !job.stop_at_first && !job.every {
         E::first_bounds(level, job);
     }
     let next = AtomicUsize::new(0);

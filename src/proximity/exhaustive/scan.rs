@@ -27,6 +27,8 @@ pub(super) struct Job<'a, E> {
     pub bounds: &'a [SharedBound],
     /// Any triangle within the bound will do.
     pub stop_at_first: bool,
+    /// Every triangle that may be within the bound is wanted.
+    pub every: bool,
 }
 
 /// A link that a job is about.
@@ -85,6 +87,8 @@ impl SharedBound {
 pub(super) struct Findings {
     /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
     pub nearest: Vec<Option<Nearest>>,
+    /// Where every triangle is wanted, each link's place and each triangle that may be within its bound.
+    pub within: Vec<(usize, u32)>,
     pub work: Work,
 }
 
@@ -92,6 +96,7 @@ impl Findings {
     /// Takes over what another thread found.
     pub(super) fn merge(&mut self, other: &Findings) {
         self.work += other.work;
+        self.within.extend(&other.within);
         for (mine, theirs) in self.nearest.iter_mut().zip(&other.nearest) {
             let mut best = Best::resume(Real::INFINITY, *mine);
             if theirs.is_some_and(|theirs| best.take(theirs)) {
@@ -147,7 +152,8 @@ impl<E: Lane> Job<'_, E> {
             }
             let best = Best::resume(bound, findings.nearest[link.place]);
             let best = best.touching_below(touching.saturating_add(1));
-            let mut turn = Turn { job: self, link: &link.link, best, work: &mut findings.work };
+            let Findings { within, work, .. } = &mut *findings;
+            let mut turn = Turn { job: self, link: &link.link, place: link.place, best, within, work };
             match &link.searched {
                 Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
                 None => turn.measure_all(blocks.clone()),
@@ -169,7 +175,9 @@ impl<E: Lane> Job<'_, E> {
 struct Turn<'a, E> {
     job: &'a Job<'a, E>,
     link: &'a PlacedLink,
+    place: usize,
     best: Best,
+    within: &'a mut Vec<(usize, u32)>,
     work: &'a mut Work,
 }
 
@@ -220,10 +228,14 @@ impl<E: Lane> Turn<'_, E> {
         }
     }
 
-    /// Measures one triangle in double precision. True if it is the nearest so far.
+    /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest so far.
     #[inline(never)] // the same code whatever the instruction set
     fn measure(&mut self, triangle: usize) -> bool {
         if triangle >= self.job.mesh.len().min(self.best.wanted_below() as usize) {
+            return false;
+        }
+        if self.job.every {
+            self.within.push((self.place, triangle as u32));
             return false;
         }
         self.work.measured += 1;

@@ -3,14 +3,14 @@
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
 use super::last_clear::LastClear;
 use super::motion_queries::MotionMemory;
-use super::queries::RobotSearch;
+use super::queries::{ContactMemory, RobotSearch};
 use super::tube_queries::TubeMemory;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::in_shares;
 use crate::proximity::placed::PlacedRobot;
-use crate::proximity::{LinkProximity, MeshError, Proximity, ProximityError, Work};
+use crate::proximity::{Contact, LinkProximity, MeshError, Proximity, ProximityError, Work};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -59,6 +59,7 @@ pub(super) struct Memory {
     pub scratch: Scratch,
     pub tube: TubeMemory,
     pub motion: MotionMemory,
+    contacts: ContactMemory,
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
@@ -184,6 +185,13 @@ impl<'a> Query<'a> {
         nearest.report(link)
     }
 
+    fn minimum_within(&mut self, bound: Real) -> Option<LinkProximity> {
+        let last = self.context.memory.last_minimum;
+        let (link, nearest) = self.search().minimum_within(last, bound)?;
+        self.context.memory.last_minimum = Some((link, nearest.triangle));
+        Some(nearest.report(link))
+    }
+
     fn clears(&mut self, margin: Real) -> bool {
         let (robot, reach) = (self.robot, self.context.hierarchy.reach);
         if self.context.memory.last_clear.still_keeps(robot, margin, reach) {
@@ -197,6 +205,13 @@ impl<'a> Query<'a> {
             self.context.memory.last_clear.miss();
         }
         self.search().clears(margin)
+    }
+
+    fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {
+        let Context { level, hierarchy, ref mut memory } = self.context;
+        let Memory { scratch, contacts, .. } = &mut **memory;
+        let search = MeshSearch { level, hierarchy, scratch };
+        RobotSearch { search, robot: self.robot }.within(margin, contacts, out);
     }
 
     fn search(&mut self) -> RobotSearch<'_> {
@@ -224,9 +239,32 @@ impl Proximity for BvhSearch {
         Ok(self.query(robot, pose)?.minimum())
     }
 
+    fn minimum_within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        check_margin(bound)?;
+        Ok(self.query(robot, pose)?.minimum_within(bound))
+    }
+
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
         check_margin(margin)?;
         Ok(self.query(robot, pose)?.clears(margin))
+    }
+
+    fn within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.query(robot, pose)?.within(margin, out);
+        Ok(())
     }
 
     fn per_link_batch(

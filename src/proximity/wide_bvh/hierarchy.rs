@@ -161,6 +161,16 @@ impl MeshSearch<'_> {
         links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none())
     }
 
+    /// The triangles that may be at most `bound` from a link, in place of what `found` holds.
+    pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut Vec<u32>) {
+        found.clear();
+        match self.hierarchy.searched(self.level, link) {
+            Searched::Single(searched) => self.single().within(&searched, bound, found),
+            Searched::Double(searched) => self.double().within(&searched, bound, found),
+            Searched::OutOfReach => found.extend(0..self.hierarchy.mesh.len() as u32),
+        }
+    }
+
     /// Some triangle, for a link whose nearest no search tells.
     pub(super) fn any(&self, link: &PlacedLink) -> Nearest {
         link.measure(0, self.hierarchy.mesh.corners(0))

@@ -1,8 +1,10 @@
 //! The queries of a robot: all its links, the closest of them, or only whether they keep away.
 
 use super::hierarchy::MeshSearch;
-use crate::proximity::LinkProximity;
+use crate::ModifiedCylinder;
+use crate::proximity::local_minima::{LocalMinima, Searched};
 use crate::proximity::placed::{Best, Nearest, PlacedRobot};
+use crate::proximity::{Contact, LinkProximity};
 use crate::robot::{LinkNode, distance_to_segment};
 use parry3d_f64::math::Real;
 
@@ -10,6 +12,13 @@ use parry3d_f64::math::Real;
 pub(super) struct RobotSearch<'a> {
     pub search: MeshSearch<'a>,
     pub robot: PlacedRobot<'a>,
+}
+
+/// Memory of a query for contacts, used again by the next.
+#[derive(Clone, Default)]
+pub(super) struct ContactMemory {
+    minima: LocalMinima,
+    triangles: Vec<u32>,
 }
 
 /// A link of the robot and its nearest triangle.
@@ -29,20 +38,27 @@ impl RobotSearch<'_> {
 
     /// The closest link and triangle. `last` are those to start with.
     pub(super) fn minimum(&mut self, last: Option<(usize, u32)>) -> OfLink {
+        self.minimum_within(last, Real::INFINITY).unwrap_or_else(|| (0, self.search.any(&self.robot.link(0))))
+    }
+
+    /// The closest link and triangle, if they are at most `bound` apart. `last` are those to start with.
+    pub(super) fn minimum_within(&mut self, last: Option<(usize, u32)>, bound: Real) -> Option<OfLink> {
         let (first, triangle) = match last {
             Some((link, triangle)) if link < self.robot.links().len() => (link, triangle),
             _ => self.likely_minimum(),
         };
         let link = self.robot.link(first);
-        let nearest =
-            self.search.nearest(&link, Best::within(Real::INFINITY), [Some(triangle), None]).nearest();
-        let mut best = (first, nearest.unwrap_or_else(|| self.search.any(&link)));
+        let nearest = self.search.nearest(&link, Best::within(bound), [Some(triangle), None]).nearest();
+        let mut best = nearest.map(|nearest| (first, nearest));
         let tree = self.robot.link_tree();
         let mut place = 0;
         while let Some(node) = tree.get(place) {
-            let bound = best.1.distance;
+            let bound = best.map_or(bound, |best| best.1.distance);
             // Of the links that touch, the one with the lowest triangle counts, then the lowest link.
-            let below = if bound > 0.0 { u32::MAX } else { best.1.triangle.saturating_add(1) };
+            let below = match best {
+                Some((_, nearest)) if nearest.distance <= 0.0 => nearest.triangle.saturating_add(1),
+                _ => u32::MAX,
+            };
             match node {
                 LinkNode::Inner { bound: capsule, below: links_below } => {
                     if !self.search.may_meet_below(&self.robot.bound(capsule), bound, below) {
@@ -53,7 +69,8 @@ impl RobotSearch<'_> {
                     let placed = self.robot.link(*link);
                     let wanted = Best::within(bound).touching_below(below);
                     if let Some(nearest) = self.search.nearest(&placed, wanted, [None, None]).nearest() {
-                        best = nearer((*link, nearest), best);
+                        let found = (*link, nearest);
+                        best = Some(best.map_or(found, |best| nearer(found, best)));
                     }
                 }
                 LinkNode::Leaf(_) => {}
@@ -61,6 +78,35 @@ impl RobotSearch<'_> {
             place += 1;
         }
         best
+    }
+
+    /// The contacts of every link.
+    pub(super) fn within(&mut self, margin: Real, memory: &mut ContactMemory, out: &mut Vec<Contact>) {
+        let ContactMemory { minima, triangles } = memory;
+        let (level, mesh) = (self.search.level, &self.search.hierarchy.mesh);
+        let (tree, mut before, mut place) = (self.robot.link_tree(), 0.0, 0);
+        let mut link = 0;
+        while let Some(node) = tree.get(place) {
+            match node {
+                LinkNode::Inner { bound, below } => {
+                    if !self.search.may_meet(&self.robot.bound(bound), margin) {
+                        place += below;
+                    }
+                }
+                LinkNode::Leaf(number) => {
+                    let skipped = &self.robot.links()[link..*number];
+                    before += skipped.iter().map(ModifiedCylinder::length).sum::<Real>();
+                    link = *number;
+                    let placed = self.robot.link(link);
+                    self.search.within(&placed, margin, triangles);
+                    self.search.scratch.work.measured += triangles.len() as u64;
+                    let searched =
+                        Searched { level, mesh, link: placed, number: link as u32, before, margin };
+                    minima.find(&searched, triangles, out);
+                }
+            }
+            place += 1;
+        }
     }
 
     /// Whether every link keeps more than `margin` away from the mesh.

@@ -58,6 +58,8 @@ enum Aim<'a> {
     About(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
+    /// Every triangle that may be within the limit.
+    Every,
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -75,6 +77,7 @@ impl<E: Lane> Target<'_, E> {
             // Once a triangle overlaps, the limit is 0 and nothing is below it.
             Aim::About(_, leaves) => *leaves == 0,
             Aim::Any(found) => *found,
+            Aim::Every => false,
         }
     }
 }
@@ -113,6 +116,14 @@ impl<E: Lane> Traversal<'_, E> {
         let mut target = Target { searched, limit, below, aim: Aim::Any(false) };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
         matches!(target.aim, Aim::Any(true))
+    }
+
+    /// Adds to `found` every triangle that may be at most `bound` from the link.
+    pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<u32>) {
+        let limit = searched.axis_limit(bound);
+        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every };
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        found.extend(self.stack.candidates.iter().map(|candidate| candidate.1));
     }
 
     #[inline(always)]
@@ -228,6 +239,18 @@ impl<E: Lane> Traversal<'_, E> {
                 return;
             }
             Aim::About(_, leaves) => *leaves -= 1,
+            Aim::Every => {
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    let triangle = leaf.triangles[lane];
+                    // A leaf that is not full repeats its last triangle.
+                    if self.stack.candidates.last().is_none_or(|last| last.1 != triangle) {
+                        self.stack.candidates.push((lower[lane], triangle));
+                    }
+                }
+                return;
+            }
             Aim::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);

@@ -11,6 +11,7 @@
 mod exhaustive;
 mod goals;
 mod growth;
+mod latency;
 mod moving;
 mod planner;
 mod search;
@@ -77,7 +78,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let (planner, shapes) = planner::chapter(effort, &mut goals)?;
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
     let growth = growth::chapter(effort, &options.out)?;
-    for chapter in [search, planner, exhaustive, growth, moving::chapter(effort)?, memory] {
+    let latency = latency::chapter(effort)?;
+    for chapter in [search, planner, latency, exhaustive, growth, moving::chapter(effort)?, memory] {
         page.push('\n');
         page.push_str(&chapter);
     }

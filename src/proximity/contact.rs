@@ -1,0 +1,186 @@
+//! Where and how link and wall are nearest: what a controller needs beyond two points.
+
+use super::feature::ContactFeature;
+use super::nearest_features::NearestFeatures;
+use super::placed::{Nearest, PlacedLink};
+use super::{LinkProximity, ProximityError};
+use crate::Chain;
+use crate::robot::length;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
+
+/// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
+///
+/// What it means where the two touch is told at each field: the distance is then 0 and both points are one, but the
+/// normal and the depth still tell the way out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Contact {
+    /// The link's position in [`Chain::links`].
+    pub link: u32,
+    /// Where along the link's axis, from 0 at its start to 1 at its end.
+    pub fraction: Real,
+    /// Where along the chain's centreline, from the base.
+    pub arc_length: Real,
+    /// The triangle's position in the mesh.
+    pub triangle: u32,
+    /// Which parts of link and triangle are nearest to each other.
+    pub feature: ContactFeature,
+    /// The distance between link and triangle, 0 where they touch or overlap.
+    pub distance: Real,
+    /// The distance between the link's axis and the triangle, less the radius: the distance with a sign, negative where
+    /// they overlap. It is known beside the link and beyond a round cap, where every point is one radius from the axis,
+    /// as long as the axis does not cross the triangle. Beyond a flat cap it would jump, so there is none.
+    pub depth: Option<Real>,
+    /// The unit vector from the wall to the robot. Where they touch it leads from the triangle to the link's axis, and
+    /// there is none if the axis itself meets the triangle.
+    pub normal: Option<Vector>,
+    /// The link's closest point.
+    pub on_robot: Vector,
+    /// The triangle's closest point; the same as `on_robot` where the distance is 0.
+    pub on_mesh: Vector,
+    /// From the point of the axis at `fraction` to the link's closest point: the arm on which a turn of the link moves
+    /// that point.
+    pub lever: Vector,
+    /// Whether other points of the two are as near, as far as rounding can tell: an edge or a face along the link, or
+    /// one across a flat cap. The distance then has a kink: its derivative depends on the direction of the motion, and
+    /// what is computed is that for one of the points.
+    pub kink: bool,
+}
+
+impl LinkProximity {
+    /// This answer with its normal, its place on the robot and the features that are nearest. Give the same robot, pose
+    /// and mesh as to the query.
+    ///
+    /// # Errors
+    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link out of range.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, LinkFeature, Proximity, TriangleFeature};
+    ///
+    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let mesh = TriMesh::new(floor.to_vec(), vec![[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
+    /// let contact = closest.contact(&robot, &Pose::IDENTITY, &mesh)?;
+    /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
+    /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
+    /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
+    /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contact(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Contact, ProximityError> {
+        let (link, corners) = (self.placed_link(robot, pose)?, self.corners(mesh)?);
+        let before = robot.links()[..self.link as usize].iter().map(|link| link.length()).sum();
+        let Self { triangle, distance, on_robot, on_mesh, .. } = *self;
+        let nearest = Nearest { triangle, distance, on_robot, on_mesh };
+        Ok(Contact::new(self.link, &link, corners, &nearest, before))
+    }
+}
+
+impl Contact {
+    /// `before` is the length of the links before this one.
+    pub(super) fn new(
+        number: u32,
+        link: &PlacedLink,
+        corners: [Vector; 3],
+        nearest: &Nearest,
+        before: Real,
+    ) -> Self {
+        let found = NearestFeatures::of(link, corners);
+        let Nearest { triangle, distance, on_robot, on_mesh } = *nearest;
+        Self {
+            link: number,
+            fraction: found.fraction,
+            arc_length: before + found.fraction * length(link.along()),
+            triangle,
+            feature: ContactFeature { link: found.link, triangle: found.triangle },
+            distance,
+            depth: found.depth.map(|depth| if distance > 0.0 { distance } else { depth.min(0.0) }),
+            normal: found.normal.map(Vector::from),
+            on_robot,
+            on_mesh,
+            lever: found.lever.into(),
+            kink: found.kink,
+        }
+    }
+
+    /// How fast the distance changes with a joint q, or with time: the derivative of [`distance`](Self::distance), and
+    /// of [`depth`](Self::depth) where link and wall touch. The wall stands still.
+    ///
+    /// `velocity` is dc/dq, that of the centreline's point at [`arc_length`](Self::arc_length), and `angular_velocity`
+    /// is how the link turns there, dt/dq = angular_velocity x t for its direction t; both in the mesh's frame. A turn
+    /// about the link's own axis has no effect. Beside the link and beyond a round cap only the velocity counts; at a
+    /// flat cap the turn moves the closest point on its lever:
+    ///
+    /// ```text
+    /// normal . (velocity + angular_velocity x lever)
+    /// ```
+    ///
+    /// There is none where there is no normal, and none where a flat cap touches: its distance stays 0. At a
+    /// [`kink`](Self::kink) it is the derivative for `on_robot`.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let wall = [Vector::new(-9.0, 0.0, 3.0), Vector::new(9.0, 0.0, 3.0), Vector::new(0.0, 9.0, 4.0)];
+    /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
+    /// let mut search = BvhSearch::new(&mesh)?;
+    /// // One link with flat caps that turns about the x axis through its base, by q.
+    /// let robot = |q: f64| Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5]);
+    /// let q = 0.2;
+    /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
+    /// let contact = closest.contact(&robot(q)?, &Pose::IDENTITY, &mesh)?;
+    /// let tangent = Vector::new(0.0, -q.sin(), q.cos());
+    /// let rate = contact.rate(Vector::X.cross(contact.arc_length * tangent), Vector::X).ok_or("no normal")?;
+    /// let mut distance = |q: f64| -> Result<f64, Box<dyn std::error::Error>> {
+    ///     Ok(search.minimum(&robot(q)?, &Pose::IDENTITY)?.distance)
+    /// };
+    /// assert!((rate - (distance(q + 1e-6)? - distance(q - 1e-6)?) / 2e-6).abs() < 1e-8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn rate(&self, velocity: Vector, angular_velocity: Vector) -> Option<Real> {
+        if self.distance <= 0.0 && self.depth.is_none() {
+            return None;
+        }
+        Some(self.normal?.dot(velocity + angular_velocity.cross(self.lever)))
+    }
+
+    /// [`rate`](Self::rate) for each joint of a robot: `jacobian(arc_length, joint)` gives velocity and angular velocity
+    /// of the centreline at an arc length. `out` is cleared first, and stays empty where there is no rate.
+    ///
+    /// ```
+    /// # use parry_continuum::Chain;
+    /// # use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// # use parry_continuum::proximity::{BvhSearch, Proximity};
+    /// # let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// # let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
+    /// # let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5])?;
+    /// # let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
+    /// # let contact = closest.contact(&robot, &Pose::IDENTITY, &mesh)?;
+    /// // A straight robot that moves along z by joint 0 and turns about x by joint 1.
+    /// let mut rates = Vec::new();
+    /// contact.gradient(2, |arc_length, joint| match joint {
+    ///     0 => (Vector::Z, Vector::ZERO),
+    ///     _ => (Vector::X.cross(arc_length * Vector::Z), Vector::X),
+    /// }, &mut rates);
+    /// assert_eq!(rates[0], -1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn gradient(
+        &self,
+        joints: usize,
+        mut jacobian: impl FnMut(Real, usize) -> (Vector, Vector),
+        out: &mut Vec<Real>,
+    ) {
+        out.clear();
+        out.extend((0..joints).filter_map(|joint| {
+            let (velocity, angular_velocity) = jacobian(self.arc_length, joint);
+            self.rate(velocity, angular_velocity)
+        }));
+    }
+}

@@ -1,0 +1,33 @@
+//! The parts of a link and of a triangle that can be nearest to each other.
+
+/// A part of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkFeature {
+    /// The surface around the axis, between its ends.
+    Side,
+    /// The cap at the start, flat or round.
+    StartCap,
+    /// The cap at the end, flat or round.
+    EndCap,
+}
+
+/// A part of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TriangleFeature {
+    /// The inside.
+    Face,
+    /// The edge from this corner (0, 1 or 2) to the next.
+    Edge(u8),
+    /// This corner (0, 1 or 2).
+    Vertex(u8),
+}
+
+/// The features at the closest points of a link and a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ContactFeature {
+    /// Where on the link.
+    pub link: LinkFeature,
+    /// Where on the triangle, as far as rounding can tell.
+    pub triangle: TriangleFeature,
+}

@@ -1,0 +1,303 @@
+//! Contacts: every local minimum within the margin and none twice, against brute force over all pairs of triangles; the
+//! minimum within a bound.
+
+use super::scenes::mesh_of;
+use continuum_testing::Random;
+use parry_continuum::Chain;
+use parry_continuum::distance::{Vec3, point_modified_cylinder, point_triangle, triangle_modified_cylinder};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, Proximity};
+use parry_continuum::{Cap, ModifiedCylinder};
+
+/// What rounding may do to a distance: the room that the definition of a local minimum has.
+const TIE: f64 = 64.0 * f64::EPSILON / 2.0;
+
+/// A small mesh: a wall with bumps, a lumen, or triangles between any of a few points. On a lattice, where ties and
+/// parallels are common, or not; with slivers, or not; with shared corners, or each triangle with its own.
+fn small_mesh(random: &mut Random) -> TriMesh {
+    let is_lattice = random.below(3) == 0;
+    let place = |point: Vector| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
+    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+    let rough = [0.0, 0.05, 0.3][random.below(3) as usize];
+    let (rows, columns) = (5, 4);
+    let kind = random.below(3);
+    if kind < 2 {
+        for row in 0..rows {
+            for column in 0..columns {
+                let (u, v) = (f64::from(row) - 2.0, f64::from(column));
+                let bump = random.between(-rough, rough);
+                let turn = std::f64::consts::TAU * v / f64::from(columns);
+                vertices.push(match kind {
+                    0 => place(Vector::new(u, v - 1.5, 1.0 + bump)),
+                    _ => place(Vector::new(u, (1.5 + bump) * turn.cos(), (1.5 + bump) * turn.sin())),
+                });
+            }
+        }
+        for row in 0..rows - 1 {
+            for column in 0..columns - u32::from(kind == 0) {
+                let corner = |r: u32, c: u32| (row + r) * columns + (column + c) % columns;
+                indices.push([corner(0, 0), corner(1, 0), corner(1, 1)]);
+                indices.push([corner(0, 0), corner(1, 1), corner(0, 1)]);
+            }
+        }
+    } else {
+        vertices.extend((0..9).map(|_| place(random.point() * 2.0)));
+        for _ in 0..20 {
+            let from = random.below(9);
+            indices.push([from, (from + 1 + random.below(4)) % 9, (from + 5 + random.below(3)) % 9]);
+        }
+    }
+    if random.below(3) == 0 {
+        // A corner next to another makes slivers of the triangles between them.
+        let (one, other) = (random.below(9) as usize, random.below(9) as usize);
+        vertices[one] = vertices[other] + random.point() * 1e-7;
+    }
+    let triangles: Vec<_> = indices.iter().map(|c| c.map(|i: u32| vertices[i as usize].to_array())).collect();
+    if random.below(2) == 0 { mesh_of(&triangles) } else { TriMesh::new(vertices, indices).unwrap() }
+}
+
+fn small_robot(random: &mut Random) -> Chain {
+    let place = |point: Vector, is_lattice| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
+    loop {
+        let is_lattice = random.below(2) == 0;
+        let mut points = vec![place(random.point(), is_lattice)];
+        for _ in 0..2 {
+            let last = points[points.len() - 1];
+            points.push(place(last + random.point() * 1.2, is_lattice));
+        }
+        let radius = [0.0, 0.25, 0.5][random.below(3) as usize];
+        let made = match random.below(3) {
+            0 => Chain::from_centreline(&points, &[radius, 0.5 * radius]),
+            1 => Chain::capsules(&points, &[radius; 2]),
+            _ => Chain::cylinders(&points, &[radius; 2]),
+        };
+        if let Ok(robot) = made {
+            return robot;
+        }
+    }
+}
+
+/// The distances between a link and triangles, and how far from the link one must go to come from one to another on the
+/// mesh: over all ways, by Floyd and Warshall.
+struct Passes {
+    distances: Vec<f64>,
+    heights: Vec<Vec<f64>>,
+}
+
+impl Passes {
+    fn new(link: &ModifiedCylinder, triangles: &[[Vector; 3]]) -> Self {
+        let to = |corners: [Vector; 3]| {
+            let flat = link.caps().map(|cap| cap == Cap::Flat);
+            let [start, end] = [link.start(), link.end()].map(Vec3::from);
+            triangle_modified_cylinder(corners.map(Vec3::from), start, end, link.radius(), flat).distance
+        };
+        let count = triangles.len();
+        let distances: Vec<_> = triangles.iter().map(|&corners| to(corners)).collect();
+        let mut heights = vec![vec![f64::INFINITY; count]; count];
+        for one in 0..count {
+            heights[one][one] = distances[one];
+            for other in 0..one {
+                let shared: Vec<_> =
+                    triangles[one].iter().filter(|corner| triangles[other].contains(corner)).collect();
+                let mut least = f64::INFINITY;
+                for &&from in &shared {
+                    for &&along in &shared {
+                        least = least.min(to([from, along, along]));
+                    }
+                }
+                heights[one][other] = least;
+                heights[other][one] = least;
+            }
+        }
+        for through in 0..count {
+            for one in 0..count {
+                for other in 0..count {
+                    let way = heights[one][through].max(heights[through][other]);
+                    heights[one][other] = heights[one][other].min(way);
+                }
+            }
+        }
+        Self { distances, heights }
+    }
+}
+
+fn contacts(engine: &mut impl Proximity, robot: &Chain, margin: f64) -> Vec<Contact> {
+    let mut out = Vec::new();
+    engine.within(robot, &Pose::IDENTITY, margin, &mut out).unwrap();
+    out
+}
+
+/// What the sample has seen.
+#[derive(Debug, Default)]
+struct Census {
+    contacts: usize,
+    touching: usize,
+    several: usize,
+    ties: usize,
+    merged: usize,
+    sampled: usize,
+}
+
+fn judge(seed: u64, census: &mut Census) {
+    let mut random = Random::new(seed);
+    let (mesh, robot) = (small_mesh(&mut random), small_robot(&mut random));
+    let triangles: Vec<[Vector; 3]> =
+        mesh.indices().iter().map(|corners| corners.map(|i| mesh.vertices()[i as usize])).collect();
+    let margin = [0.0, 0.3, 1.0, 4.0][random.below(4) as usize];
+    let mut search = BvhSearch::new(&mesh).unwrap();
+    let found = contacts(&mut search, &robot, margin);
+    assert_eq!(found, contacts(&mut Exhaustive::<f32>::new(&mesh).unwrap(), &robot, margin), "{seed}");
+    assert_eq!(found, contacts(&mut Exhaustive::<f64>::new(&mesh).unwrap(), &robot, margin), "{seed}");
+    // A smaller margin has the nearer of them.
+    let mut nearer = found.clone();
+    nearer.retain(|contact| contact.distance <= 0.4 * margin);
+    assert_eq!(nearer, contacts(&mut search, &robot, 0.4 * margin), "{seed}");
+
+    for (number, link) in robot.links().iter().enumerate() {
+        let of_link: Vec<_> = found.iter().filter(|contact| contact.link as usize == number).collect();
+        assert!(of_link.is_sorted_by_key(|contact| contact.distance));
+        let passes = Passes::new(link, &triangles);
+        // No coordinate is beyond 5, so no extent beyond 10.
+        let tie = 10.0 * TIE;
+        let height = |one: u32, other: u32| passes.heights[one as usize][other as usize];
+        for (triangle, &distance) in passes.distances.iter().enumerate() {
+            if distance <= margin - tie {
+                // From everywhere a way leads to a contact that is no farther, hardly rising.
+                let reached = of_link.iter().filter(|contact| {
+                    contact.distance <= distance + tie
+                        && height(triangle as u32, contact.triangle) <= distance + 2.0 * tie
+                });
+                assert!(reached.count() > 0, "{seed}: triangle {triangle} at {distance} leads nowhere");
+            }
+            let at_a_contact = of_link
+                .iter()
+                .filter(|contact| contact.triangle != triangle as u32)
+                .any(|contact| height(triangle as u32, contact.triangle) <= contact.distance + tie / 8.0);
+            census.merged += usize::from(at_a_contact);
+        }
+        for (place, one) in of_link.iter().enumerate() {
+            let true_distance = passes.distances[one.triangle as usize];
+            assert!((one.distance - true_distance).abs() <= tie, "{seed}: {one:?} {true_distance}");
+            for other in &of_link[..place] {
+                let farther = one.distance.max(other.distance);
+                let pass = height(one.triangle, other.triangle);
+                assert!(pass > farther + tie / 64.0, "{seed}: {one:?} and {other:?} are one, over {pass}");
+                census.ties += usize::from((one.distance - other.distance).abs() <= tie);
+            }
+            census.contacts += 1;
+            census.touching += usize::from(one.distance == 0.0);
+            census.several += usize::from(place == 1);
+            census.sampled += sample_around(link, &triangles, one, &mut random);
+        }
+    }
+}
+
+fn distance_to_segment(point: Vector, from: Vector, to: Vector) -> f64 {
+    point_triangle(point.into(), [from, to, to].map(Vec3::from)).distance
+}
+
+/// No point of the mesh next to a contact is nearer.
+fn sample_around(
+    link: &ModifiedCylinder,
+    triangles: &[[Vector; 3]],
+    contact: &Contact,
+    random: &mut Random,
+) -> usize {
+    let flat = link.caps().map(|cap| cap == Cap::Flat);
+    let mut sampled = 0;
+    for corners in triangles {
+        for _ in 0..4 {
+            let (mut u, mut v) = (random.unit(), random.unit());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            let inside = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
+            // Joined with the contact's triangle where the contact is.
+            let own = &triangles[contact.triangle as usize];
+            let shared: Vec<_> = corners.iter().filter(|corner| own.contains(corner)).collect();
+            let holds = |&&from: &&Vector, &&along: &&Vector| {
+                distance_to_segment(contact.on_mesh, from, along) < 1e-15
+            };
+            if !shared.iter().any(|from| shared.iter().any(|along| holds(from, along))) {
+                continue;
+            }
+            let near = contact.on_mesh.lerp(inside, 1e-3);
+            let [start, end] = [link.start(), link.end()].map(Vec3::from);
+            let away = point_modified_cylinder(near.into(), start, end, link.radius(), flat).distance;
+            assert!(away >= contact.distance - 1e-13, "{contact:?}: {away} at {near}");
+            sampled += 1;
+        }
+    }
+    sampled
+}
+
+#[test]
+fn every_local_minimum_once() {
+    let mut census = Census::default();
+    (0..400).for_each(|seed| judge(seed, &mut census));
+    let Census { contacts, touching, several, ties, merged, sampled } = census;
+    assert!(contacts > 1000 && touching > 100 && several > 200, "{census:?}");
+    assert!(ties > 20 && merged > 500 && sampled > 4000, "{census:?}");
+}
+
+#[test]
+#[ignore = "minutes: run it by name, in release"]
+fn every_local_minimum_once_of_many_scenes() {
+    let mut census = Census::default();
+    (1000..21_000).for_each(|seed| judge(seed, &mut census));
+    println!("{census:?}");
+}
+
+/// A wall of many triangles along a link is one contact, and so is one that it lies in.
+#[test]
+fn a_flat_wall_is_one_contact() {
+    for height in [0.0, 0.4, 0.5, 2.0] {
+        let corner = |i: u32| Vector::new(f64::from(i % 9) - 4.0, f64::from(i / 9) - 4.0, height);
+        let squares = (0..72).filter(|i| i % 9 != 8);
+        let indices = squares.flat_map(|i| [[i, i + 1, i + 10], [i, i + 10, i + 9]]).collect();
+        let mesh = TriMesh::new((0..81).map(corner).collect(), indices).unwrap();
+        let ends = [Vector::new(-3.3, 0.2, 0.0), Vector::new(3.1, 0.2, 0.0)];
+        for robot in [Chain::capsules(&ends, &[0.5]), Chain::cylinders(&ends, &[0.5])] {
+            let found = contacts(&mut BvhSearch::new(&mesh).unwrap(), &robot.unwrap(), 3.0);
+            assert_eq!(found.len(), 1, "{found:?}");
+            let contact = &found[0];
+            assert!((contact.distance - (height - 0.5).max(0.0)).abs() < 1e-15);
+            if height > 0.0 {
+                assert!(contact.kink && (contact.depth.unwrap() - (height - 0.5)).abs() < 1e-15);
+                assert!((contact.normal.unwrap() + Vector::Z).length() < 1e-15);
+            } else {
+                assert_eq!((contact.depth, contact.normal), (None, None), "the axis meets the wall");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_minimum_within_a_bound() {
+    let (mut within, mut beyond, mut touching) = (0, 0, 0);
+    for seed in 5000..5200 {
+        let mut random = Random::new(seed);
+        let (mesh, robot) = (small_mesh(&mut random), small_robot(&mut random));
+        let pose = random.pose(1.0);
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        let least = search.minimum(&robot, &pose).unwrap();
+        let mut engines: [Box<dyn Proximity>; 3] = [
+            Box::new(BvhSearch::new(&mesh).unwrap()),
+            Box::new(search),
+            Box::new(Exhaustive::<f32>::new(&mesh).unwrap()),
+        ];
+        for engine in &mut engines {
+            for bound in [0.0, 0.5 * least.distance, least.distance, 2.0 * least.distance, f64::INFINITY] {
+                let found = engine.minimum_within(&robot, &pose, bound).unwrap();
+                assert_eq!(found, (least.distance <= bound).then_some(least), "{seed} {bound}");
+                within += usize::from(found.is_some());
+                beyond += usize::from(found.is_none());
+                touching += usize::from(least.distance == 0.0);
+            }
+            assert!(engine.minimum_within(&robot, &pose, -1.0).is_err());
+            assert!(engine.within(&robot, &pose, f64::NAN, &mut Vec::new()).is_err());
+        }
+    }
+    assert!(within > 1000 && beyond > 300 && touching > 300, "{within} {beyond} {touching}");
+}
