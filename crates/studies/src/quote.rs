@@ -22,17 +22,16 @@ pub fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
 /// # Errors
 /// The README cannot be written.
 pub fn in_readme(text: &str, mark: &str, docs: &Path) -> Result<(), String> {
-    in_page(text, mark, &docs.join("../README.md")).map(drop)
+    in_page(text, mark, &docs.join("../README.md"))
 }
 
-/// Puts `text` between two marks of a page; whether there is one that has these marks.
+/// Puts `text` between two marks of a page, if there is one that has these marks.
 ///
 /// # Errors
 /// The page cannot be written.
-pub fn in_page(text: &str, mark: &str, path: &Path) -> Result<bool, String> {
-    let Ok(page) = fs::read_to_string(path) else { return Ok(false) };
-    let Some([before, _, after]) = parted(&page, mark) else { return Ok(false) };
+pub fn in_page(text: &str, mark: &str, path: &Path) -> Result<(), String> {
+    let Ok(page) = fs::read_to_string(path) else { return Ok(()) };
+    let Some([before, _, after]) = parted(&page, mark) else { return Ok(()) };
     fs::write(path, format!("{before}{text}{after}"))
-        .map_err(|error| format!("cannot write {} ({error})", path.display()))?;
-    Ok(true)
+        .map_err(|error| format!("cannot write {} ({error})", path.display()))
 }

@@ -93,13 +93,15 @@ fn measure(options: &Options) -> Result<(), String> {
 
     let file = out.join("TRADEOFF.md");
     if options.only == Some(Chapter::Motions) {
+        let is_there =
+            fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, motions::MARK).is_some());
+        if !is_there {
+            return Err(format!("{} has no such chapter; write it whole, without --only", file.display()));
+        }
         let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
-        return if quote::in_page(&motions, motions::MARK, &file)? {
-            println!("{}", file.display());
-            Ok(())
-        } else {
-            Err(format!("{} has no such chapter; write it whole, without --only", file.display()))
-        };
+        quote::in_page(&motions, motions::MARK, &file)?;
+        println!("{}", file.display());
+        return Ok(());
     }
 
     let start = Instant::now();
