@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 #[derive(Parser)]
 struct Options {
     /// Ticks of a millisecond
-    #[arg(long, value_name = "COUNT", default_value_t = 4000, value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 4000, value_parser = command::whole(100..=1_000_000))]
     ticks: u32,
 
     /// Measure how long a tick takes over 100,000 of them

@@ -37,7 +37,7 @@ struct Options {
     seed: u64,
 
     /// Plans of each kind, with other random places each; the first one is shown
-    #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = command::whole(1..=10_000))]
     plans: u32,
 
     /// Draw the shapes of the way into this file, or as plan.png into this directory

@@ -71,7 +71,7 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--mesh", sheet], "name one with --base"),
         (&["--margin", "-1"], "at least 0"),
         (&["--margin", "3"], "does not keep 3 mm at its base"),
-        (&["--plans", "0"], "1..=10000"),
+        (&["--plans", "0"], "write a whole number from 1 to 10000"),
     ] {
         refuse("plan", arguments, expected);
     }
@@ -94,6 +94,27 @@ fn programs_draw_their_pictures() {
     for name in ["drawn/ventricle.png", "drawn/seven.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
+}
+
+/// The number before ` mm` in the line that begins so.
+fn nearest(output: &str, line: &str) -> f64 {
+    let line = output.lines().find(|text| text.trim_start().starts_with(line)).expect("the line");
+    let (number, _) =
+        line.split_once("nearer than ").and_then(|(_, rest)| rest.split_once(" mm")).expect("a number");
+    number.parse().expect("a number")
+}
+
+#[test]
+fn a_fixture_keeps_the_robot_away_from_the_wall() {
+    let out = succeed("control", &["--ticks", "800", "--out", "controlled/way.png"]);
+    assert!(nearest(&out, "as it likes") < 0.01, "{out}");
+    assert!(nearest(&out, "with the fixture") >= 0.5, "{out}");
+    for part in ["kinematics", "robot", "query", "p99.9"] {
+        assert!(out.contains(part), "{out}");
+    }
+    assert!(colours("controlled/way.png") > 10);
+    refuse("control", &["--ticks", "1"], "write a whole number from 100 to 1000000");
+    refuse("control", &["--out", "bar.jpg"], "ends in .jpg");
 }
 
 #[test]
