@@ -159,7 +159,7 @@ fn speed_is_measured_drawn_and_quoted() {
     );
 
     for (arguments, expected) in [
-        (["--largest", "7"], "1..=6"),
+        (["--largest", "7"], "from 1 to 6"),
         (["--enough", "-1"], "--help"),
         (["--enough=nan", "--largest=1"], "seconds from 0 to 60"),
     ] {
