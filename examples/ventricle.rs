@@ -31,7 +31,7 @@ struct Options {
 
     /// Bounds on the clearance of the curve itself that are this close together, in millimetres, and links that stay this
     /// close to it [default: 30 links, no bounds]
-    #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = command::length, allow_negative_numbers = true)]
     tolerance: Option<Real>,
 
     /// The engine that looks at every triangle, beside the search: on the CPU, or on the GPU (cargo feature `gpu`)
@@ -80,13 +80,6 @@ impl Engine {
                               `cargo run --release --features gpu --example ventricle -- --engine gpu`"
                 .into()),
         }
-    }
-}
-
-fn length(text: &str) -> Result<Real, String> {
-    match text.parse() {
-        Ok(length) if length >= 0.0 && Real::is_finite(length) => Ok(length),
-        _ => Err("write a length of at least 0, for example 0.1".into()),
     }
 }
 

@@ -119,16 +119,10 @@ impl Edges<'_> {
         Ok(is_clear)
     }
 
-    /// The middle first, then the middles of the halves: so contacts show early.
     fn is_clear_in_steps(&mut self, motion: &Watched, step: Real) -> Result<bool, String> {
-        let tips: Vec<_> = (0..=8).map(|k| motion.motion.tip(Real::from(k) / 8.0)).collect();
-        let moved: Real = tips.windows(2).map(|tips| (tips[1] - tips[0]).length()).sum();
-        let count = (moved / step).ceil().max(1.0) as usize;
-        let mut order: Vec<_> = (1..=count).collect();
-        order.sort_by_key(|k| k.reverse_bits());
-        for k in order {
-            let mut tube = motion.motion.tube(0.0).map_err(text)?;
-            let pose = motion.shape(k as Real / count as Real, &mut tube).map_err(text)?;
+        let mut tube = motion.motion.tube(0.0).map_err(text)?;
+        for t in motion.motion.steps(step) {
+            let pose = motion.shape(t, &mut tube).map_err(text)?;
             let decision = self.search.tube_clears(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
             if decision != Decision::Clear {
                 return Ok(false);

@@ -29,7 +29,7 @@ struct Options {
     anatomy: Anatomy,
 
     /// The room that the robot keeps from the wall, in millimetres
-    #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = command::length, allow_negative_numbers = true)]
     margin: Real,
 
     /// Where the random places come from
@@ -43,13 +43,6 @@ struct Options {
     /// Draw the shapes of the way into this file, or as plan.png into this directory
     #[arg(long, value_name = "PATH")]
     picture: Option<PathBuf>,
-}
-
-fn length(text: &str) -> Result<Real, String> {
-    match text.parse() {
-        Ok(length) if length >= 0.0 && Real::is_finite(length) => Ok(length),
-        _ => Err("write a length of at least 0, for example 0.5".into()),
-    }
 }
 
 fn main() -> ExitCode {

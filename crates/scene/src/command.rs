@@ -49,6 +49,14 @@ pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String>
     }
 }
 
+/// Reads a length of at least 0.
+pub fn length(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
+        _ => Err("write a length of at least 0, for example 0.5".into()),
+    }
+}
+
 /// The command that runs this program as it was run; `program` is how cargo finds it.
 pub fn line(program: &str) -> String {
     let mut line = format!("cargo run --release {program}");

@@ -170,6 +170,17 @@ impl JointMotion {
         self.base * curve.at(joints.extensions.iter().sum()).0
     }
 
+    /// Times between which the tip moves by at most `step`, without 0: the middle first, then the middles of the halves,
+    /// so that contacts show early.
+    pub fn steps(&self, step: Real) -> impl Iterator<Item = Real> + use<> {
+        let tips: Vec<_> = (0..=8).map(|k| self.tip(Real::from(k) / 8.0)).collect();
+        let moved: Real = tips.windows(2).map(|tips| (tips[1] - tips[0]).length()).sum();
+        let count = (moved / step).ceil().max(1.0) as usize;
+        let mut order: Vec<_> = (1..=count).collect();
+        order.sort_by_key(|k| k.reverse_bits());
+        order.into_iter().map(move |k| k as Real / count as Real)
+    }
+
     /// The curvature vector of each section.
     fn bends(&self, joints: &Joints) -> impl Iterator<Item = Vector> {
         let towards = |angle: &Real| Vector::new(-angle.sin(), angle.cos(), 0.0);

@@ -105,7 +105,7 @@ fn by_one_bound(
     Ok(verdict)
 }
 
-/// By shapes between which the tip moves by `step`: the middle first, then the middles of the halves.
+/// By shapes between which the tip moves by `step`; the ends are known.
 fn by_steps(
     search: &mut BvhSearch,
     motion: &Counted,
@@ -113,14 +113,9 @@ fn by_steps(
     step: Real,
     margin: Real,
 ) -> Result<Verdict, String> {
-    let tips: Vec<_> = (0..=8).map(|k| motion.motion.tip(Real::from(k) / 8.0)).collect();
-    let moved: Real = tips.windows(2).map(|tips| (tips[1] - tips[0]).length()).sum();
-    let count = (moved / step).ceil().max(1.0) as usize;
-    let mut order: Vec<_> = (1..count).collect();
-    order.sort_by_key(|k| k.reverse_bits());
     let mut tube = motion.motion.tube(0.0).map_err(text)?;
-    for k in order {
-        motion.shape(k as Real / count as Real, &mut tube).map_err(text)?;
+    for t in motion.motion.steps(step).filter(|t| *t < 1.0) {
+        motion.shape(t, &mut tube).map_err(text)?;
         if search.tube_clears(&tube, base, margin, RESOLUTION).map_err(text)? != Decision::Clear {
             return Ok(Verdict::Contact);
         }
