@@ -7,8 +7,20 @@
 //! carried along, without twist.
 
 use super::tube::check_sections;
-use super::{BendingSection, RobotError, Tube, TubeSection};
+use super::{RobotError, Tube, TubeSection};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
+
+/// A stretch of constant curvature, for [`ConstantCurvature`] and [`BendingMotion`](crate::BendingMotion).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendingSection {
+    /// Arc length of the centreline.
+    pub length: Real,
+    /// Radius of the tube.
+    pub radius: Real,
+    /// Its curvature, 1 / length, towards x and y of the frame that is carried along the curve without twist; at the base
+    /// that is the robot's, whose curve leaves the origin along z.
+    pub bend: [Real; 2],
+}
 
 /// The centreline of a robot of sections of constant curvature: of a tendon robot, or of concentric tubes that do not
 /// twist.
@@ -100,10 +112,13 @@ impl ConstantCurvature {
     /// # Errors
     /// A section with a flat end whose curvature times its radius is 1 or more; a section that ends out of range.
     pub fn tube(&self) -> Result<Tube, RobotError> {
+        self.clone().into_tube()
+    }
+
+    pub(super) fn into_tube(self) -> Result<Tube, RobotError> {
         let sections: Vec<_> = self.arcs.iter().map(|arc| stated(&arc.section)).collect();
-        let robot = self.clone();
         Tube::from_function(&sections, move |arc_length| {
-            let frame = robot.frame(arc_length);
+            let frame = self.frame(arc_length);
             (frame.translation, frame.rotation * Vector::Z)
         })
     }

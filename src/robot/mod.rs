@@ -24,14 +24,13 @@ mod tube;
 
 pub use cap::Cap;
 pub use chain::Chain;
-pub use constant_curvature::ConstantCurvature;
+pub use constant_curvature::{BendingSection, ConstantCurvature};
 pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
 pub use modified_cylinder::ModifiedCylinder;
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub use motion::{
-    BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed, bending_speed,
-    verify_motion,
+    BendingMotion, BendingRates, LinearMotion, Motion, RigidMotion, Speed, bending_speed, verify_motion,
 };
 pub(crate) use motion::{Sampled, Sections};
 pub use registration::{MatrixError, pose_from_matrix};

@@ -21,8 +21,8 @@
 use super::{Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::modified_cylinder::check_points;
-use crate::robot::{RobotError, Tube, TubeSection};
-use parry3d_f64::math::{Pose, Real, Rotation, Vector};
+use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// How a section of constant curvature changes during a motion, for [`bending_speed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,18 +83,6 @@ pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2
     Speed { point: (point + along) * up, turn: (turn + curvature * along) * up }
 }
 
-/// A stretch of constant curvature, for [`BendingMotion`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BendingSection {
-    /// Arc length of the centreline.
-    pub length: Real,
-    /// Radius of the tube.
-    pub radius: Real,
-    /// Its curvature, 1 / length, towards x and y of the frame that is carried along the curve without twist; at the base
-    /// that is the robot's, whose curve leaves the origin along z.
-    pub bend: [Real; 2],
-}
-
 /// The motion of a robot of sections of constant curvature, from one shape to another: lengths and curvatures, in both
 /// directions, change evenly.
 ///
@@ -152,39 +140,17 @@ impl BendingMotion {
 
 impl Motion for BendingMotion {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
-        let (mut stated, mut arcs) =
-            (Vec::with_capacity(self.from.len()), Vec::with_capacity(self.from.len()));
-        let (mut frame, mut start) = (Pose::IDENTITY, 0.0);
-        for (from, to) in self.from.iter().zip(&self.to) {
-            let between = |from: Real, to: Real| from + (to - from) * t;
-            let length = between(from.length, to.length);
-            // Turning about this vector bends z towards `bend`.
-            let turn =
-                Vector::new(-between(from.bend[1], to.bend[1]), between(from.bend[0], to.bend[0]), 0.0);
-            stated.push(TubeSection { length, radius: from.radius, curvature: turn.length() });
-            arcs.push((start, frame, turn));
-            frame *= arc(turn, length);
-            start += length;
-        }
-        *tube = Tube::from_function(&stated, move |s| {
-            let number = arcs.partition_point(|(start, ..)| *start < s).max(1) - 1;
-            let (start, frame, turn) = arcs[number];
-            let frame = frame * arc(turn, s - start);
-            (frame.translation, frame.rotation * Vector::Z)
-        })?;
+        let between = |from: Real, to: Real| from + (to - from) * t;
+        let sections = self.from.iter().zip(&self.to).map(|(from, to)| BendingSection {
+            length: between(from.length, to.length),
+            radius: from.radius,
+            bend: [0, 1].map(|axis| between(from.bend[axis], to.bend[axis])),
+        });
+        *tube = ConstantCurvature::new(&sections.collect::<Vec<_>>())?.into_tube()?;
         Ok(self.pose)
     }
 
     fn speed(&self, section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
         bending_speed(&self.rates, section, shares)
     }
-}
-
-/// The way along an arc that leaves the origin along z and turns by `turn` per length, which is perpendicular to z.
-fn arc(turn: Vector, length: Real) -> Pose {
-    let angle = turn.length() * length;
-    let sinc = |x: Real| if x == 0.0 { 1.0 } else { x.sin() / x };
-    let across = 0.5 * length * length * sinc(0.5 * angle) * sinc(0.5 * angle);
-    let point = Vector::Z * (length * sinc(angle)) + turn.cross(Vector::Z) * across;
-    Pose::from_parts(point, Rotation::from_scaled_axis(turn * length))
 }

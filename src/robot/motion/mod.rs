@@ -8,7 +8,7 @@ mod sections;
 mod tests;
 mod verify;
 
-pub use bending::{BendingMotion, BendingRates, BendingSection, bending_speed};
+pub use bending::{BendingMotion, BendingRates, bending_speed};
 pub use linear::LinearMotion;
 pub use rigid::RigidMotion;
 pub(crate) use sections::Sections;
