@@ -42,7 +42,8 @@ pub(super) fn cast(
     let link = pair.link;
     let corners = pair.triangle.vertices().map(|vertex| pose * vertex);
     let (mut time, mut status) = (0.0, ShapeCastStatus::OutOfIterations);
-    let mut contact = at(pair, corners)?;
+    let mut moved = corners;
+    let mut contact = at(pair, moved)?;
     for step in 0..MOST_STEPS {
         let closing = -contact.normal.dot(velocity);
         let excess = contact.distance - options.target_distance;
@@ -57,7 +58,6 @@ pub(super) fn cast(
             status = ShapeCastStatus::Converged;
             break;
         }
-        let moved = corners.map(|corner| corner + velocity * time);
         let nearest =
             moved.map(|corner| corner.dot(contact.normal)).into_iter().fold(Real::INFINITY, Real::min);
         let gap = nearest - link.local_support_point(contact.normal).dot(contact.normal);
@@ -72,7 +72,8 @@ pub(super) fn cast(
             break;
         }
         time = next;
-        contact = at(pair, corners.map(|corner| corner + velocity * time))?;
+        moved = corners.map(|corner| corner + velocity * time);
+        contact = at(pair, moved)?;
     }
     Ok(Some(hit(pair, &pose, velocity * time, contact, time, status)))
 }
