@@ -40,9 +40,8 @@
 use super::contact::Contact;
 use super::measure_lanes::measure_each;
 use super::mesh::Mesh;
-#[cfg(feature = "gpu")]
-use super::placed::PlacedRobot;
-use super::placed::{Nearest, PlacedLink};
+use super::placed::{Nearest, PlacedLink, PlacedRobot};
+use crate::ModifiedCylinder;
 use crate::distance::Scalar;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -61,6 +60,8 @@ pub(super) struct LocalMinima {
     corners: HashMap<(u64, u64, u64), (u32, u32), BuildHasherDefault<Mix>>,
     /// For each edge, by the numbers of its corners, the first triangle that has it.
     edges: HashMap<(u32, u32), u32, BuildHasherDefault<Mix>>,
+    /// The triangles that may be within the margin of one link.
+    triangles: Vec<u32>,
 }
 
 /// A triangle within the margin.
@@ -71,22 +72,63 @@ struct Ranked {
     nearest: Nearest,
 }
 
-/// The link whose contacts are wanted.
-pub(super) struct Searched<'a> {
-    pub level: Level,
-    pub mesh: &'a Mesh,
-    pub link: PlacedLink,
-    pub number: u32,
-    /// How long the links before it are.
-    pub before: Real,
-    pub margin: Real,
+/// The contacts of a robot, link by link.
+pub(super) struct RobotContacts<'a> {
+    level: Level,
+    mesh: &'a Mesh,
+    robot: PlacedRobot<'a>,
+    margin: Real,
+    minima: &'a mut LocalMinima,
+    out: &'a mut Vec<Contact>,
+    /// The last link, and how long those before it are.
+    last: usize,
+    before: Real,
+}
+
+impl<'a> RobotContacts<'a> {
+    /// `out` gets the contacts.
+    pub(super) fn new(
+        level: Level,
+        mesh: &'a Mesh,
+        robot: PlacedRobot<'a>,
+        margin: Real,
+        minima: &'a mut LocalMinima,
+        out: &'a mut Vec<Contact>,
+    ) -> Self {
+        Self { level, mesh, robot, margin, minima, out, last: 0, before: 0.0 }
+    }
+
+    /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
+    /// margin; some may be farther away, and none may stand there twice. Returns how many they are.
+    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut Vec<u32>)) -> u64 {
+        let between = &self.robot.links()[self.last..number];
+        self.before += between.iter().map(ModifiedCylinder::length).sum::<Real>();
+        self.last = number;
+        let link = self.robot.link(number);
+        let mut triangles = std::mem::take(&mut self.minima.triangles);
+        triangles.clear();
+        near(&link, &mut triangles);
+        let places = self.minima.find(self.level, &link, self.mesh, self.margin, &triangles);
+        let (mesh, before) = (self.mesh, self.before);
+        self.out.extend(places.map(|nearest| {
+            Contact::new(number as u32, &link, mesh.corners(nearest.triangle), nearest, before)
+        }));
+        let count = triangles.len() as u64;
+        self.minima.triangles = triangles;
+        count
+    }
 }
 
 impl LocalMinima {
-    /// Adds the link's contacts to `out`, nearest first. `triangles` are those that may be within the margin; some may be
-    /// farther away, and none may stand there twice.
-    pub(super) fn find(&mut self, searched: &Searched, triangles: &[u32], out: &mut Vec<Contact>) {
-        let Searched { level, mesh, ref link, number, before, margin } = *searched;
+    /// The local minima of a link, nearest first.
+    fn find(
+        &mut self,
+        level: Level,
+        link: &PlacedLink,
+        mesh: &Mesh,
+        margin: Real,
+        triangles: &[u32],
+    ) -> impl Iterator<Item = &Nearest> {
         self.near.clear();
         measure_each(level, link, mesh, triangles, |nearest| {
             if nearest.distance <= margin {
@@ -109,12 +151,8 @@ impl LocalMinima {
         for place in 0..self.near.len() {
             self.join(link, mesh, place as u32);
         }
-        for (place, ranked) in self.near.iter().enumerate() {
-            if self.piece[place] == place as u32 {
-                let corners = mesh.corners(ranked.nearest.triangle);
-                out.push(Contact::new(number, link, corners, &ranked.nearest, before));
-            }
-        }
+        let places = self.near.iter().zip(&self.piece).enumerate();
+        places.filter(|(place, (_, piece))| *place as u32 == **piece).map(|(_, (ranked, _))| &ranked.nearest)
     }
 
     /// Joins a triangle with the pieces that nearer ones have made.
@@ -194,14 +232,13 @@ pub(crate) fn contacts_by_all_triangles(
     margin: Real,
     out: &mut Vec<Contact>,
 ) {
-    let (mut minima, mut triangles, mut before) = (LocalMinima::default(), Vec::new(), 0.0);
-    for (number, link) in robot.placed_links().enumerate() {
-        triangles.clear();
-        let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
-        triangles.extend((0..mesh.len() as u32).filter(may_meet));
-        let searched = Searched { level: Level::new(), mesh, link, number: number as u32, before, margin };
-        minima.find(&searched, &triangles, out);
-        before += robot.links()[number].length();
+    let mut minima = LocalMinima::default();
+    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima, out);
+    for number in 0..robot.links().len() {
+        contacts.add(number, |link, near| {
+            let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
+            near.extend((0..mesh.len() as u32).filter(may_meet));
+        });
     }
 }
 

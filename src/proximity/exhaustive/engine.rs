@@ -5,9 +5,9 @@ use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::engine::pairs;
-use crate::proximity::local_minima::{LocalMinima, Searched};
+use crate::proximity::local_minima::{LocalMinima, RobotContacts};
 use crate::proximity::mesh::Mesh;
-use crate::proximity::placed::PlacedLink;
+use crate::proximity::placed::{PlacedLink, PlacedRobot};
 use crate::proximity::{Contact, LinkProximity, MeshError, Proximity, ProximityError, Work};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -32,8 +32,7 @@ pub struct Exhaustive<T: SearchPrecision> {
     culling: bool,
     work: Work,
     pass: Pass<T>,
-    /// Memory of a query for contacts: the second are the triangles of one link.
-    contacts: (LocalMinima, Vec<u32>),
+    minima: LocalMinima,
 }
 
 /// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
@@ -51,7 +50,7 @@ impl<T: SearchPrecision> Clone for Exhaustive<T> {
             culling: self.culling,
             work: Work::default(),
             pass: Pass::default(),
-            contacts: Default::default(),
+            minima: LocalMinima::default(),
         }
     }
 }
@@ -77,7 +76,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
             culling: true,
             work: Work::default(),
             pass: Pass::default(),
-            contacts: Default::default(),
+            minima: LocalMinima::default(),
         })
     }
 
@@ -165,19 +164,12 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         out.clear();
         check_margin(margin)?;
         self.run(std::iter::once((robot, pose)), Aim::Every(margin))?;
-        let Self { level, ref triangles, ref mut pass, ref mut contacts, ref mut work, .. } = *self;
-        let mesh = &triangles.mesh;
-        let (mut number, mut before) = (0, 0.0);
-        let (minima, of_link) = contacts;
+        let Self { level, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
+        let robot = PlacedRobot::new(robot, pose)?;
+        let mut contacts = RobotContacts::new(level, &triangles.mesh, robot, margin, minima, out);
         for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
-            before += robot.links()[number..pairs[0].0].iter().map(|link| link.length()).sum::<Real>();
-            number = pairs[0].0;
-            let link = PlacedLink::new(&robot.links()[number], pose);
-            of_link.clear();
-            of_link.extend(pairs.iter().map(|pair| pair.1));
-            work.measured += of_link.len() as u64;
-            let searched = Searched { level, mesh, link, number: number as u32, before, margin };
-            minima.find(&searched, of_link, out);
+            let triangles = pairs.iter().map(|pair| pair.1);
+            work.measured += contacts.add(pairs[0].0, |_, near| near.extend(triangles));
         }
         Ok(())
     }

@@ -3,10 +3,11 @@
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
 use super::last_clear::LastClear;
 use super::motion_queries::MotionMemory;
-use super::queries::{ContactMemory, RobotSearch};
+use super::queries::RobotSearch;
 use super::tube_queries::TubeMemory;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
+use crate::proximity::local_minima::LocalMinima;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::in_shares;
 use crate::proximity::placed::PlacedRobot;
@@ -59,7 +60,7 @@ pub(super) struct Memory {
     pub scratch: Scratch,
     pub tube: TubeMemory,
     pub motion: MotionMemory,
-    contacts: ContactMemory,
+    minima: LocalMinima,
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
@@ -209,9 +210,9 @@ impl<'a> Query<'a> {
 
     fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {
         let Context { level, hierarchy, ref mut memory } = self.context;
-        let Memory { scratch, contacts, .. } = &mut **memory;
+        let Memory { scratch, minima, .. } = &mut **memory;
         let search = MeshSearch { level, hierarchy, scratch };
-        RobotSearch { search, robot: self.robot }.within(margin, contacts, out);
+        RobotSearch { search, robot: self.robot }.within(margin, minima, out);
     }
 
     fn search(&mut self) -> RobotSearch<'_> {

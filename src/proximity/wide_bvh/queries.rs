@@ -1,8 +1,7 @@
 //! The queries of a robot: all its links, the closest of them, or only whether they keep away.
 
 use super::hierarchy::MeshSearch;
-use crate::ModifiedCylinder;
-use crate::proximity::local_minima::{LocalMinima, Searched};
+use crate::proximity::local_minima::{LocalMinima, RobotContacts};
 use crate::proximity::placed::{Best, Nearest, PlacedRobot};
 use crate::proximity::{Contact, LinkProximity};
 use crate::robot::{LinkNode, distance_to_segment};
@@ -12,13 +11,6 @@ use parry3d_f64::math::Real;
 pub(super) struct RobotSearch<'a> {
     pub search: MeshSearch<'a>,
     pub robot: PlacedRobot<'a>,
-}
-
-/// Memory of a query for contacts, used again by the next.
-#[derive(Clone, Default)]
-pub(super) struct ContactMemory {
-    minima: LocalMinima,
-    triangles: Vec<u32>,
 }
 
 /// A link of the robot and its nearest triangle.
@@ -81,28 +73,21 @@ impl RobotSearch<'_> {
     }
 
     /// The contacts of every link.
-    pub(super) fn within(&mut self, margin: Real, memory: &mut ContactMemory, out: &mut Vec<Contact>) {
-        let ContactMemory { minima, triangles } = memory;
-        let (level, mesh) = (self.search.level, &self.search.hierarchy.mesh);
-        let (tree, mut before, mut place) = (self.robot.link_tree(), 0.0, 0);
-        let mut link = 0;
+    pub(super) fn within(&mut self, margin: Real, minima: &mut LocalMinima, out: &mut Vec<Contact>) {
+        let Self { search, robot } = self;
+        let mut contacts =
+            RobotContacts::new(search.level, &search.hierarchy.mesh, *robot, margin, minima, out);
+        let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
                 LinkNode::Inner { bound, below } => {
-                    if !self.search.may_meet(&self.robot.bound(bound), margin) {
+                    if !search.may_meet(&robot.bound(bound), margin) {
                         place += below;
                     }
                 }
-                LinkNode::Leaf(number) => {
-                    let skipped = &self.robot.links()[link..*number];
-                    before += skipped.iter().map(ModifiedCylinder::length).sum::<Real>();
-                    link = *number;
-                    let placed = self.robot.link(link);
-                    self.search.within(&placed, margin, triangles);
-                    self.search.scratch.work.measured += triangles.len() as u64;
-                    let searched =
-                        Searched { level, mesh, link: placed, number: link as u32, before, margin };
-                    minima.find(&searched, triangles, out);
+                LinkNode::Leaf(link) => {
+                    let count = contacts.add(*link, |link, near| search.within(link, margin, near));
+                    search.scratch.work.measured += count;
                 }
             }
             place += 1;
