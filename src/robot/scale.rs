@@ -6,8 +6,15 @@
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
+/// Between these no square of a length loses a bit that counts.
+const PLAIN_SQUARES: std::ops::Range<Real> = 1.0e-270..1.0e270;
+
 /// The length of `v`.
 pub(crate) fn length(v: Vector) -> Real {
+    let squared = v.length_squared();
+    if PLAIN_SQUARES.contains(&squared) {
+        return squared.sqrt();
+    }
     let scale = v.abs().max_element().power_of_two_to_unity();
     (v * scale).length() / scale
 }
