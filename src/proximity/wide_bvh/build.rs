@@ -5,12 +5,14 @@
 
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
+use crate::distance::Scalar;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::each;
 use crate::proximity::search_frame::SearchFrame;
 use crate::proximity::triangle_block::BLOCK;
 use fearless_simd::{Level, dispatch};
+use std::ops::Range;
 
 /// How many leaves one thread takes over at a time.
 const SHARE: usize = 64;
@@ -76,17 +78,12 @@ impl<E: Lane> WideBvh<E> {
             };
             self.nodes[node].push(child, lowest);
         }
-        self.nodes[node].leaves = [first, self.leaves.len()];
+        self.nodes[node].leaves = first..self.leaves.len();
     }
 
-    /// Calls `visit` with every triangle below a child.
-    pub(super) fn triangles_below(&self, child: Child, visit: &mut impl FnMut(u32)) {
-        match child {
-            Child::Node(node) => {
-                self.nodes[node as usize].children().for_each(|child| self.triangles_below(child, visit));
-            }
-            Child::Leaf(leaf) => self.leaves[leaf as usize].triangles().for_each(visit),
-        }
+    /// The triangles below a child.
+    pub(super) fn triangles_below(&self, child: Child) -> impl Iterator<Item = u32> + Clone {
+        self.leaves[child.leaves(|node| self.nodes[node].leaves.clone())].iter().flat_map(Leaf::triangles)
     }
 
     /// Takes over the positions of the vertices; the division stays.
@@ -98,7 +95,7 @@ impl<E: Lane> WideBvh<E> {
         });
         // No bound waits for another.
         let leaves = &self.leaves;
-        let below: Vec<_> = self.nodes.iter().map(|node| node.leaves).collect();
+        let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
         each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
             dispatch!(level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
@@ -110,18 +107,17 @@ impl<E: Lane> WideBvh<E> {
 fn bound_children<L: Pack>(
     token: L::Token,
     leaves: &[Leaf<L::Element>],
-    below: &[[usize; 2]],
+    below: &[Range<usize>],
     nodes: &mut [Node<L::Element>],
 ) where
     L::Element: Lane,
 {
     for node in nodes {
-        for (child, of) in node.children().enumerate() {
-            let [first, end] = match of {
-                Child::Leaf(leaf) => [leaf as usize, leaf as usize + 1],
-                Child::Node(node) => below[node as usize],
-            };
-            node.set_bound(child, &NodeBound::around::<L>(token, &leaves[first..end]));
+        node.largest = L::Element::default();
+        for (place, child) in node.children().enumerate() {
+            let below = child.leaves(|node| below[node].clone());
+            node.set_bound(place, &NodeBound::around::<L>(token, &leaves[below]));
+            node.largest = node.largest.max(node.size(place));
         }
     }
 }

@@ -161,9 +161,8 @@ impl MeshSearch<'_> {
         links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none())
     }
 
-    /// The triangles that may be at most `bound` from a link, in place of what `found` holds.
+    /// Adds to `found` the triangles that may be at most `bound` from a link.
     pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut Vec<u32>) {
-        found.clear();
         match self.hierarchy.searched(self.level, link) {
             Searched::Single(searched) => self.single().within(&searched, bound, found),
             Searched::Double(searched) => self.double().within(&searched, bound, found),

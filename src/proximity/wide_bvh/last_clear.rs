@@ -11,7 +11,7 @@
 //! margin alone, and a search that is less wide is tried later, ever more rarely.
 
 use crate::proximity::placed::PlacedRobot;
-use crate::robot::LinkNode;
+use crate::robot::{LinkNode, length};
 use parry3d_f64::math::{Real, Vector};
 
 /// How many queries a wider search is to speak for at the most.
@@ -145,19 +145,8 @@ fn moved(then: &Outline, now: &Outline) -> Real {
     let turned = if now.flat == [false; 2] {
         0.0
     } else {
-        // Where squares vanish these are too short, and their quotient too large.
-        let [long, longer] = [then, now].map(|link| (link.ends[1] - link.ends[0]).length());
-        2.0 * now.radius * at_most(end - start) / (long + longer)
+        let [long, longer] = [then, now].map(|link| length(link.ends[1] - link.ends[0]));
+        2.0 * now.radius * length(end - start) / (long + longer)
     };
-    at_most(start).max(at_most(end)) + turned + grown
-}
-
-/// The length of a vector, or a little more where its square is below the range.
-fn at_most(vector: Vector) -> Real {
-    let squared = vector.length_squared();
-    if squared > Real::MIN_POSITIVE / Real::EPSILON {
-        squared.sqrt()
-    } else {
-        2.0 * vector.abs().max_element()
-    }
+    length(start).max(length(end)) + turned + grown
 }

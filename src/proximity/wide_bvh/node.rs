@@ -7,6 +7,7 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::search_frame::SearchFrame;
 use crate::proximity::triangle_block::{BLOCK, load, place_triangle};
+use std::ops::Range;
 
 /// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.
 pub(super) const WIDTH: usize = BLOCK;
@@ -31,6 +32,14 @@ impl Child {
     pub(super) fn unpack(packed: u32) -> Self {
         if packed & Self::LEAF == 0 { Self::Node(packed) } else { Self::Leaf(packed & !Self::LEAF) }
     }
+
+    /// The leaves below, or it alone; `of_node` tells those of a node.
+    pub(super) fn leaves(self, of_node: impl Fn(usize) -> Range<usize>) -> Range<usize> {
+        match self {
+            Self::Node(node) => of_node(node as usize),
+            Self::Leaf(leaf) => leaf as usize..leaf as usize + 1,
+        }
+    }
 }
 
 /// Up to 16 children and what bounds them.
@@ -43,8 +52,8 @@ pub(super) struct Node<E> {
     pub lowest: [u32; WIDTH],
     /// The size of the largest child.
     pub largest: E,
-    /// The first of the leaves below, and the first behind them.
-    pub leaves: [usize; 2],
+    /// The leaves below.
+    pub leaves: Range<usize>,
     count: usize,
 }
 
@@ -71,7 +80,7 @@ impl<E: Lane> Node<E> {
             children: [0; WIDTH],
             lowest: [u32::MAX; WIDTH],
             largest: zero,
-            leaves: [0; 2],
+            leaves: 0..0,
             count: 0,
         }
     }
@@ -87,8 +96,6 @@ impl<E: Lane> Node<E> {
         for (row, value) in rows.into_iter().flatten().enumerate() {
             self.rows[row * WIDTH + child] = value;
         }
-        let children = (0..self.count).map(|child| self.size(child));
-        self.largest = children.fold(E::default(), E::max);
     }
 
     #[cfg(test)]
@@ -138,8 +145,9 @@ impl<E: Lane> Leaf<E> {
     }
 
     /// The triangles, each once.
-    pub(super) fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
-        self.triangles.chunk_by(|one, other| one == other).map(|same| same[0])
+    pub(super) fn triangles(&self) -> impl Iterator<Item = u32> + Clone {
+        let is_first = |&lane: &usize| lane == 0 || self.triangles[lane] != self.triangles[lane - 1];
+        (0..BLOCK).filter(is_first).map(|lane| self.triangles[lane])
     }
 
     /// Takes over where the triangles are.

@@ -27,9 +27,7 @@ impl FarFields {
         let [low, high] = mesh.bounds();
         let scale = (high - low).max_element().power_of_two_to_unity();
         let of = |child: Child| {
-            let mut triangles = Vec::new();
-            tree.triangles_below(child, &mut |triangle| triangles.push(triangle));
-            FarField::new(scale, triangles.iter().map(|&triangle| mesh.corners(triangle)))
+            FarField::new(scale, tree.triangles_below(child).map(|triangle| mesh.corners(triangle)))
         };
         let mut nodes = vec![FarField::default(); tree.nodes.len()];
         let mut leaves = vec![FarField::default(); tree.leaves.len()];
@@ -79,7 +77,7 @@ impl<E: Lane> Winding<'_, E> {
             Child::Node(node) => {
                 self.tree.nodes[node as usize].children().for_each(|child| self.add(child, error, sum));
             }
-            Child::Leaf(_) => self.tree.triangles_below(child, &mut |triangle| {
+            Child::Leaf(_) => self.tree.triangles_below(child).for_each(|triangle| {
                 *sum += solid_angle(self.mesh.corners(triangle), self.point);
             }),
         }
