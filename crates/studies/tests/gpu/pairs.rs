@@ -150,6 +150,42 @@ fn random_and_nasty_problems() {
     }
 }
 
+/// A link as short as a power of ten, with flat caps of radius 0.5, and a triangle at a distance of about 1.
+fn short_link(random: &mut Random, power: i32, precision: Precision) -> PairProblem {
+    let held = |v: Vector| match precision {
+        Precision::F32 => Vec3::from(v.as_vec3().as_dvec3()),
+        Precision::F64 => Vec3::from(v),
+    };
+    let centre = random.direction();
+    let triangle = [(); 3].map(|()| held(centre + random.point() * 0.3));
+    let [start, end] = [Vector::ZERO, random.direction() * 10.0_f64.powi(power)].map(held);
+    PairProblem { triangle, plane_normal: end, start, end, disc_normal: end, radius: 0.5, flat: [true; 2] }
+}
+
+/// A link keeps its flat caps however short it is, on devices too that have no numbers below the normal ones.
+#[test]
+fn short_links() {
+    for (name, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        let shortest = if precision == Precision::F32 { -18 } else { -150 };
+        let mut random = Random::new(43);
+        let powers = (shortest..0).flat_map(|power| [power; 20]);
+        let problems: Vec<_> = powers.map(|power| short_link(&mut random, power, precision)).collect();
+        let pair = Pair::TriangleModifiedCylinder;
+        let decided_by_cap = |problem: &&PairProblem| {
+            let [flat, round] =
+                [true, false].map(|cap| twin(pair, &PairProblem { flat: [cap; 2], ..**problem }).distance);
+            flat > round + 0.05
+        };
+        let caps = problems.iter().filter(decided_by_cap).count();
+        assert!(2 * caps > problems.len(), "{name}: {caps} of {}", problems.len());
+        for pair in [Pair::PointModifiedCylinder, pair] {
+            let (worst, _) = worst(gpu, pair, &problems);
+            println!("{name} {pair:?}: worst {worst:.2}");
+        }
+    }
+}
+
 /// The paper's quartic finds the distance of most discs, and never less than it is: its candidates are points of the
 /// segment. (The closed form loses digits on nearly double roots.)
 #[test]

@@ -17,9 +17,9 @@ struct PointLink {
 }
 
 fn link_new(end: vec3<real>, radius: real, flat_start: bool, flat_end: bool) -> Link {
-    // Where the squared length is below the normal numbers, nothing can tell the ends apart.
-    let squared = norm_squared(end);
-    let has_direction = real(0.0) < squared * (real(2.0) * UNIT_ROUNDOFF);
+    // Where the squared length is below the normal numbers, nothing can tell the ends apart. It is compared as it is: a
+    // smaller multiple of it would be 0 on devices that have no numbers below the normal ones.
+    let has_direction = SMALLEST_NORMAL <= norm_squared(end);
     return Link(end, select(zero(), normalised(end), has_direction), radius, flat_start, flat_end);
 }
 
