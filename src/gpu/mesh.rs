@@ -1,10 +1,10 @@
 //! A mesh in a device's memory, in as many parts as its largest buffer calls for.
 
+use super::Precision;
 use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
 use crate::distance::Vec3;
 use crate::proximity::{Mesh, SearchFrame};
-use parry3d_f64::math::Real;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Numbers of a triangle's sphere, and of its face.
@@ -26,7 +26,7 @@ pub(super) struct Part {
     pub triangles: u32,
     pub spheres: Buffer,
     pub faces: Buffer,
-    /// The mesh's vertices that they have.
+    /// The mesh's vertices that they have, in order, so that memory is read in order when they move.
     vertices: Vec<u32>,
     pub vertex_buffer: Buffer,
     group: BindGroup,
@@ -58,18 +58,22 @@ impl DeviceMesh {
         if std::mem::replace(&mut self.is_current, true) {
             return;
         }
-        let precision = gpu.device.precision;
         let mut encoder = gpu.device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&gpu.prepare);
         let mut bytes = Vec::new();
         for part in &self.parts {
             bytes.clear();
-            for &vertex in &part.vertices {
-                let Vec3 { x, y, z } = frame.point::<Real>(mesh.vertices()[vertex as usize]);
-                for coordinate in [x, y, z] {
-                    precision.write(coordinate, &mut bytes);
-                }
+            let points = part.vertices.iter().map(|&vertex| mesh.vertices()[vertex as usize]);
+            match gpu.device.precision {
+                Precision::F32 => points.for_each(|point| {
+                    let Vec3 { x, y, z } = frame.point::<f32>(point);
+                    bytes.extend_from_slice([x, y, z].map(f32::to_ne_bytes).as_flattened());
+                }),
+                Precision::F64 => points.for_each(|point| {
+                    let Vec3 { x, y, z } = frame.point::<f64>(point);
+                    bytes.extend_from_slice([x, y, z].map(f64::to_ne_bytes).as_flattened());
+                }),
             }
             gpu.device.queue.write_buffer(&part.vertex_buffer, 0, &bytes);
             pass.set_bind_group(0, &part.group, &[]);
@@ -89,22 +93,24 @@ impl DeviceMesh {
 
 impl Part {
     /// `places` says for each vertex of the mesh where it is in the part; none is set before or after.
-    fn new(gpu: &Opened, first: u32, indices: &[[u32; 3]], places: &mut [u32]) -> Self {
+    fn new(gpu: &Opened, first: u32, triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
+        let indices = triangles.as_flattened();
         let mut vertices = Vec::new();
-        let mut bytes = Vec::with_capacity(indices.len() * 12);
-        for &index in indices.iter().flatten() {
-            let place = &mut places[index as usize];
-            if *place == u32::MAX {
-                *place = vertices.len() as u32;
+        for &index in indices {
+            if std::mem::replace(&mut places[index as usize], 0) == u32::MAX {
                 vertices.push(index);
             }
-            bytes.extend(place.to_ne_bytes());
         }
+        vertices.sort_unstable();
+        for (place, &vertex) in (0..).zip(&vertices) {
+            places[vertex as usize] = place;
+        }
+        let bytes: Vec<_> = indices.iter().flat_map(|&index| places[index as usize].to_ne_bytes()).collect();
         for &vertex in &vertices {
             places[vertex as usize] = u32::MAX;
         }
 
-        let (device, count) = (&gpu.device, indices.len() as u64);
+        let (device, count) = (&gpu.device, triangles.len() as u64);
         let size = device.precision.size();
         let uploaded = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let vertex_buffer = device.buffer(vertices.len() as u64 * 3 * size, uploaded);
@@ -116,6 +122,6 @@ impl Part {
             &gpu.prepare_layout,
             &[&vertex_buffer, &index_buffer, &spheres, &faces].map(Buffer::as_entire_binding),
         );
-        Self { first, triangles: indices.len() as u32, spheres, faces, vertices, vertex_buffer, group }
+        Self { first, triangles: triangles.len() as u32, spheres, faces, vertices, vertex_buffer, group }
     }
 }
