@@ -18,10 +18,11 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     assert_finite(&page);
     let precisions = if gpu::open(Precision::F64).is_some() { 2 } else { 1 };
     for (head, rows) in [
-        ("| triangles | precision | K device ms |", precisions),
+        ("| triangles | search, first time |", 1),
+        ("| triangles | search | GPU f32 |", 1),
+        ("| triangles | search | exhaustive f32, CPU |", 1),
+        ("| triangles | precision | capsules, device |", precisions),
         ("| triangles | precision | discs |", 3 * precisions),
-        ("| triangles | exhaustive f32, CPU |", 1),
-        ("| triangles | precision | frame |", precisions),
         ("| distance | precision | clamps, device |", 2 * precisions),
         // Four finders, of which the closed form ends at degree 4, at seven degrees.
         ("| degree | finder |", 4 * 7 - 4),

@@ -1,5 +1,5 @@
-//! How fast on the GPU: exhaustive queries as in the paper's Figure 9 and Table IV, latency, batches and moving anatomy
-//! against the engines on the CPU, and Tables II, III and V. Writes `docs/GPU_SPEED.md`.
+//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU; exhaustive queries as
+//! in the paper's Figure 9 and Table IV, and Tables II, III and V. Writes `docs/GPU_SPEED.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --features gpu --bin gpu_speed -- --tflops 66.9,33.5
@@ -9,7 +9,10 @@
 //! million triangles, which takes minutes and 16 GB; `--largest 100000` is a rehearsal.
 
 mod chains;
+mod engines;
 mod forms;
+mod meshes;
+mod moving;
 mod roots;
 mod timed;
 
@@ -100,9 +103,9 @@ fn measure(options: &Options) -> Result<(), String> {
     let mut page = format!(
         "# Speed on the GPU\n\n\
          Written by `{command}` on {adapter}; the engines on the \
-         CPU beside it ran on {cores} cores. Times are medians; jobs that are compared take turns in one run. Device: the \
-         GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers and what the CPU \
-         measures again.\n"
+         CPU beside it ran on {cores} cores. Times are medians; jobs that are compared take turns in one run, and did so before for as long, because \
+         a GPU at rest starts slowly. Device: the GPU's own clock, from the first kernel to the last. End to end: the whole \
+         call, with transfers and what the CPU measures again.\n"
     );
     if adapter.is_software {
         page.push_str("\nThis is a GPU in software: its times tell nothing of a GPU.\n");
@@ -116,9 +119,14 @@ fn measure(options: &Options) -> Result<(), String> {
         page.push_str(&chapter);
         println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
     };
-    add("chains", chains::chapter(&opened, options.largest, options.every_pair, enough)?);
+    let meshes = meshes::meshes(options.largest)?;
+    let models = meshes::models()?;
+    let [_, robot, _] = &models;
+    add("engines", engines::chapter(&opened, &meshes, robot, enough)?);
+    add("moving", moving::chapter(&opened, &meshes, robot, enough)?);
+    add("chains", chains::chapter(&opened, &meshes, options.every_pair, &models, enough)?);
     add("forms", forms::chapter(&opened, options.problems as usize, enough)?);
-    add("roots", roots::chapter(&opened, options.problems as usize)?);
+    add("roots", roots::chapter(&opened, options.problems as usize, enough / 4)?);
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;

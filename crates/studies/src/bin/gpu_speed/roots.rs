@@ -9,7 +9,7 @@ use std::time::Duration;
 const DEGREES: [usize; 7] = [2, 3, 4, 6, 8, 10, 15];
 
 /// The chapter of the page.
-pub fn chapter(opened: &[Opened], count: usize) -> Result<String, String> {
+pub fn chapter(opened: &[Opened], count: usize, enough: Duration) -> Result<String, String> {
     let mut page = format!(
         "## Table V: roots of random polynomials\n\n\
          {count} polynomials of each degree, coefficients uniform in [-100, 100], a thread each. Milliseconds by the \
@@ -41,7 +41,7 @@ pub fn chapter(opened: &[Opened], count: usize) -> Result<String, String> {
                         roots.solve(&coefficients, &mut out).map_err(text)?;
                         Ok(roots.device_time())
                     }],
-                    Duration::ZERO,
+                    enough,
                 )?;
                 let found = out.iter().filter(|root| !root.re.is_nan()).count() as f64 / out.len() as f64;
                 write!(

@@ -12,11 +12,14 @@ pub struct Timed {
 /// A job that returns what the device's clock says.
 pub type Job<'a> = &'a mut dyn FnMut() -> Result<Option<Duration>, String>;
 
-/// Medians of each of the jobs, called in turns until `enough` has passed (at least 3 rounds after one to warm up).
+/// Medians of each of the jobs, called in turns until `enough` has passed (at least 3 rounds), and before that untimed
+/// for as long (at least one round): a GPU at rest runs at a fraction of its clock.
 pub fn medians(jobs: &mut [Job], enough: Duration) -> Result<Vec<Timed>, String> {
-    for job in jobs.iter_mut() {
-        job()?;
-    }
+    let start = Instant::now();
+    while {
+        jobs.iter_mut().try_for_each(|job| job().map(|_| ()))?;
+        start.elapsed() < enough
+    } {}
     let mut times = vec![(Vec::new(), Vec::new()); jobs.len()];
     let start = Instant::now();
     for round in 0.. {
