@@ -4,12 +4,16 @@ use super::Precision;
 use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
 use crate::distance::Vec3;
-use crate::proximity::{Mesh, SearchFrame};
+use crate::distance::lanes::Lane;
+use crate::proximity::{Mesh, SearchFrame, each};
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Numbers of a triangle's sphere, and of its face.
 const SPHERE: u64 = 4;
 const FACE: u64 = 4 * FACE_VECTORS as u64;
+
+/// Vertices that one thread writes at a time.
+const SHARE: usize = 1 << 14;
 
 /// The mesh, moved to its centre and near one.
 #[derive(Debug)]
@@ -63,17 +67,9 @@ impl DeviceMesh {
         pass.set_pipeline(&gpu.prepare);
         let mut bytes = Vec::new();
         for part in &self.parts {
-            bytes.clear();
-            let points = part.vertices.iter().map(|&vertex| mesh.vertices()[vertex as usize]);
             match gpu.device.precision {
-                Precision::F32 => points.for_each(|point| {
-                    let Vec3 { x, y, z } = frame.point::<f32>(point);
-                    bytes.extend_from_slice([x, y, z].map(f32::to_ne_bytes).as_flattened());
-                }),
-                Precision::F64 => points.for_each(|point| {
-                    let Vec3 { x, y, z } = frame.point::<f64>(point);
-                    bytes.extend_from_slice([x, y, z].map(f64::to_ne_bytes).as_flattened());
-                }),
+                Precision::F32 => part.write(frame, mesh, f32::to_ne_bytes, &mut bytes),
+                Precision::F64 => part.write(frame, mesh, f64::to_ne_bytes, &mut bytes),
             }
             gpu.device.queue.write_buffer(&part.vertex_buffer, 0, &bytes);
             pass.set_bind_group(0, &part.group, &[]);
@@ -123,5 +119,23 @@ impl Part {
             &[&vertex_buffer, &index_buffer, &spheres, &faces].map(Buffer::as_entire_binding),
         );
         Self { first, triangles: triangles.len() as u32, spheres, faces, vertices, vertex_buffer, group }
+    }
+
+    /// The vertices as a shader reads them.
+    fn write<E: Lane, const SIZE: usize>(
+        &self,
+        frame: &SearchFrame,
+        mesh: &Mesh,
+        number: impl Fn(E) -> [u8; SIZE] + Sync + Send,
+        to: &mut Vec<u8>,
+    ) {
+        to.resize(self.vertices.len() * 3 * SIZE, 0);
+        let mut shares: Vec<_> = to.chunks_mut(SHARE * 3 * SIZE).zip(self.vertices.chunks(SHARE)).collect();
+        each(&mut shares, |_, (bytes, vertices)| {
+            for (bytes, &vertex) in bytes.chunks_exact_mut(3 * SIZE).zip(*vertices) {
+                let Vec3 { x, y, z } = frame.point::<E>(mesh.vertices()[vertex as usize]);
+                bytes.copy_from_slice([x, y, z].map(&number).as_flattened());
+            }
+        });
     }
 }

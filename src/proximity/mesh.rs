@@ -2,6 +2,7 @@
 
 use super::MeshError;
 use super::checks::check_vertices;
+use super::parallel::each;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -23,7 +24,7 @@ impl Mesh {
         if mesh.indices().is_empty() {
             return Err(MeshError::Empty);
         }
-        check_vertices(mesh.vertices())?;
+        check_all(mesh.vertices())?;
         Ok(Self::of(mesh.vertices().to_vec(), mesh.indices().to_vec()))
     }
 
@@ -44,12 +45,13 @@ impl Mesh {
         if vertices.len() != self.vertices.len() {
             return Err(MeshError::VertexCount { expected: self.vertices.len(), got: vertices.len() });
         }
-        check_vertices(vertices)
+        check_all(vertices)
     }
 
     /// Takes over vertices that were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
-        self.vertices.copy_from_slice(vertices);
+        let shares = self.vertices.chunks_mut(SHARE).zip(vertices.chunks(SHARE));
+        each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
     }
 
     #[cfg(feature = "gpu")]
@@ -81,11 +83,32 @@ impl Mesh {
     /// The corners of the box around all triangles. Vertices that no triangle uses do not count: exported meshes have
     /// some anywhere.
     pub(super) fn bounds(&self) -> [Vector; 2] {
-        let around = |[low, high]: [Vector; 2], point: Vector| [low.min(point), high.max(point)];
-        let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
         match &self.used {
-            None => self.vertices.iter().copied().fold(nothing, around),
-            Some(used) => used.iter().map(|&vertex| self.vertices[vertex as usize]).fold(nothing, around),
+            None => box_around(&self.vertices, |&point| point),
+            Some(used) => box_around(used, |&vertex| self.vertices[vertex as usize]),
         }
     }
+}
+
+/// Vertices that one thread goes through at a time.
+const SHARE: usize = 1 << 14;
+
+/// [`check_vertices`], on all cores.
+fn check_all(vertices: &[Vector]) -> Result<(), MeshError> {
+    let mut shares: Vec<_> = vertices.chunks(SHARE).map(|share| (share, true)).collect();
+    each(&mut shares, |_, (share, is_right)| *is_right = check_vertices(share).is_ok());
+    // The error names the vertex by its place among all.
+    if shares.iter().all(|(_, is_right)| *is_right) { Ok(()) } else { check_vertices(vertices) }
+}
+
+/// The corners of the box around the points of all items.
+fn box_around<T: Sync>(items: &[T], point: impl Fn(&T) -> Vector + Sync + Send) -> [Vector; 2] {
+    let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
+    let mut shares: Vec<_> = items.chunks(SHARE).map(|share| (share, nothing)).collect();
+    each(&mut shares, |_, (share, corners)| {
+        *corners =
+            share.iter().map(&point).fold(nothing, |[low, high], point| [low.min(point), high.max(point)]);
+    });
+    let corners = shares.into_iter().map(|(_, corners)| corners);
+    corners.fold(nothing, |[low, high], [other_low, other_high]| [low.min(other_low), high.max(other_high)])
 }

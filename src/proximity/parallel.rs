@@ -6,6 +6,10 @@ use rayon::prelude::*;
 
 /// Does `work` on every item, which it gets with its place. An item should be worth some microseconds.
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
+    // To wake another thread for one item would take longer than the item.
+    if let [item] = items {
+        return work(0, item);
+    }
     #[cfg(feature = "parallel")]
     items.par_iter_mut().enumerate().for_each(|(place, item)| work(place, item));
     #[cfg(not(feature = "parallel"))]

@@ -3,8 +3,8 @@
 use crate::scenes::{bent_towards, extent, mesh_of, nasty_mesh, random_robot};
 use continuum_testing::Random;
 use parry_continuum::Chain;
-use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::*;
 
 pub const UNIT: f64 = f64::EPSILON / 2.0;
@@ -147,6 +147,40 @@ fn moved_vertices_are_seen() {
         assert_eq!(engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance, expected.distance, "{name}");
     }
     assert_ne!(other.vertices(), mesh.vertices());
+}
+
+/// More vertices than one thread takes at a time: each is checked, moves and counts for the mesh's frame.
+#[test]
+fn many_moved_vertices_are_seen() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(260, 130);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let count = mesh.vertices().len();
+    assert!(count > 2 * 16_384, "{count}");
+    let robot = Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let place = count - 3000;
+    let mut moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 100.0).collect();
+    // All others are a hundred times as far out.
+    moved[place] = moved[place].normalize() * 10.0;
+    let mut bad = moved.clone();
+    bad[place].y = Real::INFINITY;
+    for (name, mut engine) in engines(&mesh) {
+        let refused = engine.set_vertices(&bad);
+        assert!(
+            matches!(refused, Err(MeshError::NotFinite { vertex, .. }) if vertex == place),
+            "{name}: {refused:?}"
+        );
+        engine.set_vertices(&moved).unwrap();
+        let nearest = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
+        let expected = point_segment(moved[place]) - 0.5;
+        assert!((nearest.distance - expected).abs() < 1e-12, "{name}: {} for {expected}", nearest.distance);
+        let corners = mesh.indices()[nearest.triangle as usize];
+        assert!(corners.contains(&(place as u32)), "{name}: {corners:?}");
+    }
+}
+
+/// How far a point is from the segment between the origin and the unit point of z.
+fn point_segment(point: Vector) -> Real {
+    (point - Vector::Z * point.z.clamp(0.0, 1.0)).length()
 }
 
 #[test]

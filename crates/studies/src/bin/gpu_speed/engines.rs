@@ -9,11 +9,10 @@ use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
-use std::fmt::Write;
 use std::time::Duration;
 
 /// Robots of a batch.
-const BATCH: usize = 256;
+const BATCH: u32 = 256;
 
 /// The chapter of the page.
 pub fn chapter(
@@ -23,10 +22,9 @@ pub fn chapter(
     enough: Duration,
 ) -> Result<String, String> {
     let [mut one, mut many] = [String::new(), String::new()];
-    let mut head = String::new();
-    for opened in opened {
-        write!(head, " GPU {} |", opened.name).map_err(text)?;
-    }
+    let head: String = opened.iter().map(|opened| format!(" GPU {} |", opened.name)).collect();
+    let head_without_pause: String =
+        opened.iter().map(|opened| format!(" GPU {}, no pause |", opened.name)).collect();
     let line = "---|".repeat(opened.len());
     for mesh in meshes {
         one.push_str(&one_robot(opened, mesh, robot, enough)?);
@@ -35,8 +33,10 @@ pub fn chapter(
     Ok(format!(
         "## Beside the engines on the CPU\n\n\
          Milliseconds for the closest points of all {LINKS} links (fitted caps), with transfers. The search is asked for the \
-         first time, then again.\n\n\
-         | triangles | search, first time | search, again | exhaustive f32, CPU |{head}\n|---|---|---|---|{line}\n{one}\n\
+         first time, then again. All engines take turns, so that the GPU rests between two queries; then it is asked \
+         without a pause.\n\n\
+         | triangles | search, first time | search, again | exhaustive f32, CPU |{head}{head_without_pause}\n\
+         |---|---|---|---|{line}{line}\n{one}\n\
          A batch of {BATCH} robots: milliseconds for each of them.\n\n\
          | triangles | search |{head}\n|---|---|{line}\n{many}"
     ))
@@ -58,7 +58,7 @@ fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration)
     for opened in opened {
         engines.push(Box::new(GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?));
     }
-    let mut others: Vec<_> = engines
+    let mut again: Vec<_> = engines
         .iter_mut()
         .map(|engine| {
             let mut out = Vec::new();
@@ -69,8 +69,12 @@ fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration)
         })
         .collect();
     let mut jobs: Vec<Job> = vec![&mut first_time];
-    jobs.extend(others.iter_mut().map(|job| job as Job));
-    row(mesh, &mut jobs, enough, 1)
+    jobs.extend(again.iter_mut().map(|job| job as Job));
+    let mut row = times(&mut jobs, enough, 1)?;
+    for on_gpu in &mut again[2..] {
+        row.push_str(&times(&mut [on_gpu], enough, 1)?);
+    }
+    Ok(format!("| {} |{row}\n", mesh.num_triangles()))
 }
 
 fn batch(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
@@ -90,7 +94,7 @@ fn batch(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> 
         })
         .collect();
     let mut jobs: Vec<Job> = jobs.iter_mut().map(|job| job as Job).collect();
-    row(mesh, &mut jobs, enough, BATCH)
+    Ok(format!("| {} |{}\n", mesh.num_triangles(), times(&mut jobs, enough, BATCH)?))
 }
 
 /// The robot in poses around its own, as a planner would try them.
@@ -98,7 +102,7 @@ fn samples(robot: &Chain) -> Vec<(&Chain, Pose)> {
     let base = ventricle::entry();
     (0..BATCH)
         .map(|sample| {
-            let angle = sample as f64 * 0.1;
+            let angle = f64::from(sample) * 0.1;
             let turn = Pose::rotation(Vector::new(angle.sin(), angle.cos(), (3.0 * angle).sin()) * 0.02);
             (robot, base * turn)
         })
@@ -106,10 +110,7 @@ fn samples(robot: &Chain) -> Vec<(&Chain, Pose)> {
 }
 
 /// What each of the jobs takes for a robot, in turns.
-fn row(mesh: &TriMesh, jobs: &mut [Job], enough: Duration, robots: usize) -> Result<String, String> {
-    let mut row = format!("| {} |", mesh.num_triangles());
-    for timed in medians(jobs, enough)? {
-        write!(row, " {} |", milliseconds(Some(timed.whole / robots as u32))).map_err(text)?;
-    }
-    Ok(row + "\n")
+fn times(jobs: &mut [Job], enough: Duration, robots: u32) -> Result<String, String> {
+    let times = medians(jobs, enough)?;
+    Ok(times.iter().map(|timed| format!(" {} |", milliseconds(Some(timed.whole / robots)))).collect())
 }
