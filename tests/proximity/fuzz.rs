@@ -38,7 +38,7 @@ fn link_triangle() {
 
 #[test]
 fn chain_mesh() {
-    try_bytes("chain_mesh", continuum_fuzzing::chain_mesh, 1000);
+    try_bytes("chain_mesh", continuum_fuzzing::chain_mesh, 400);
 }
 
 #[test]
