@@ -1,6 +1,6 @@
 //! The range of numbers that is answered.
 
-use crate::robot::COORDINATE_LIMIT;
+use crate::robot::{COORDINATE_LIMIT, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::Shape;
@@ -33,13 +33,22 @@ pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
 }
 
 /// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
-/// of lengths leave the range of f64, and where the smaller shape is lost in the rounding of what is large.
-pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
+/// of lengths leave the range of f64, and where the smaller shape, or a link's length or radius, is lost in the rounding of
+/// what is large. What is exactly 0 is not lost: segments, discs and points are shapes of their own. `links` are those of
+/// both shapes.
+pub(super) fn is_iterated<'a>(
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    links: impl Iterator<Item = &'a ModifiedCylinder>,
+) -> bool {
     let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
     let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
     let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
     let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
     let sizes = boxes.iter().map(|bounds| bounds.extents().max_element());
     let is_seen = sizes.into_iter().all(|size| size == 0.0 || size >= LEAST_SHARE * largest);
-    is_finite && ITERATED_RANGE.contains(&largest) && is_seen
+    let mut sizes_of_links = links.flat_map(|link| [link.length(), link.radius()]);
+    let is_solid = sizes_of_links.all(|size| size == 0.0 || size >= Real::EPSILON * largest);
+    is_finite && ITERATED_RANGE.contains(&largest) && is_seen && is_solid
 }
