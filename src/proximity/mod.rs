@@ -75,6 +75,6 @@ pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
 pub use motion::{FirstContact, MotionAnswer};
 pub use report::{LinkProximity, Work};
-pub use tube::{Clearance, Decision};
+pub use tube::{Clearance, Decision, TubePiece};
 pub use wide_bvh::BvhSearch;
 pub use winding::{InsideAnswer, Side};
