@@ -36,6 +36,8 @@ mod local_minima;
 mod measure_lanes;
 mod mesh;
 mod motion;
+#[cfg(feature = "serde-serialize")]
+mod motion_serialised;
 mod nearest_features;
 mod parallel;
 mod placed;
