@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
 //! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
-//! there are a table, the time per query, and a picture. With `--features gpu` and `--engine gpu` the second engine is
-//! the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
+//! there are a table, the time per query, and a picture. `--tolerance 0.01` also bounds the clearance of the curve itself,
+//! and the picture then shows the pieces that it took: long where the wall is far, short where it is near. With
+//! `--features gpu` and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
 //! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
 use clap::{Parser, ValueEnum};
@@ -13,7 +14,7 @@ use continuum_scene::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece};
 use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -147,14 +148,16 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
+    let mut pieces = Vec::new();
     let curve = match options.tolerance {
         Some(tolerance) => {
             let curve = robot.shape(&goal).map_err(text)?;
-            let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
+            let found = search.clearance_pieces(&curve, &base, tolerance, &mut pieces).map_err(text)?;
             println!(
                 "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
                 found.lower, found.upper, found.triangle, found.arc_length
             );
+            print_pieces(&pieces);
             Some(found)
         }
         None => None,
@@ -162,7 +165,7 @@ fn steer(options: &Options) -> Result<(), String> {
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
     let caption = caption(options, &mesh, chain, nearest(&found, curve), times);
-    let picture = figure::draw(&mesh, chain, &base, &found, &caption);
+    let picture = figure::draw(&mesh, chain, &base, &found, &pieces, &caption);
     picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
     Ok(())
@@ -213,6 +216,24 @@ fn print_table(chain: &Chain, answers: &[LinkProximity]) {
             answer.triangle,
             place(answer.on_robot),
             place(answer.on_mesh),
+        );
+    }
+}
+
+/// How finely the curve was divided.
+fn print_pieces(pieces: &[TubePiece]) {
+    let length = |piece: &TubePiece| piece.arc_lengths[1] - piece.arc_lengths[0];
+    let by_length = |a: &&TubePiece, b: &&TubePiece| length(a).total_cmp(&length(b));
+    if let (Some(shortest), Some(longest)) =
+        (pieces.iter().min_by(by_length), pieces.iter().max_by(by_length))
+    {
+        println!(
+            "that took {} pieces, from {:.2} mm, {:.2} mm along it, to {:.2} mm, {:.2} mm along it",
+            pieces.len(),
+            length(shortest),
+            shortest.arc_lengths[0],
+            length(longest),
+            longest.arc_lengths[0],
         );
     }
 }
