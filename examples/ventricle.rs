@@ -164,7 +164,7 @@ fn steer(options: &Options) -> Result<(), String> {
     };
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
-    let caption = caption(options, &mesh, chain, nearest(&found, curve), times);
+    let caption = caption(options, &mesh, chain, nearest(&found, curve, &pieces), times);
     let picture = figure::draw(&mesh, chain, &base, &found, &pieces, &caption);
     picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
@@ -228,7 +228,7 @@ fn print_pieces(pieces: &[TubePiece]) {
         (pieces.iter().min_by(by_length), pieces.iter().max_by(by_length))
     {
         println!(
-            "that took {} pieces, from {:.2} mm, {:.2} mm along it, to {:.2} mm, {:.2} mm along it",
+            "that took {} pieces: the shortest is {:.2} mm and begins {:.2} mm along it, the longest {:.2} mm and {:.2} mm",
             pieces.len(),
             length(shortest),
             shortest.arc_lengths[0],
@@ -284,10 +284,13 @@ fn ratio(of: Duration, to: Duration) -> f64 {
 }
 
 /// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
-fn nearest(links: &[LinkProximity], curve: Option<Clearance>) -> Option<String> {
+fn nearest(links: &[LinkProximity], curve: Option<Clearance>, pieces: &[TubePiece]) -> Option<String> {
     if let Some(curve) = curve {
         let Clearance { lower, upper, arc_length, .. } = curve;
-        return Some(format!("the curve: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"));
+        let count = pieces.len();
+        return Some(format!(
+            "the curve, in {count} pieces: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"
+        ));
     }
     let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
     let LinkProximity { link, triangle, distance, .. } = nearest;

@@ -20,7 +20,7 @@ const LEFT: usize = 1230;
 const TOP: usize = 150;
 const INSET: [usize; 4] = [1250, 70, 690, 800];
 /// Of the outlines of pieces, by turns.
-const OUTLINES: [Colour; 2] = [INK, hex(0xffffff)];
+const OUTLINES: [Colour; 2] = [hex(0xffffff), hex(0xff8c1a)];
 /// From a line of the legend to the next.
 const ROW: usize = 36;
 
@@ -134,10 +134,10 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
 
 /// What the outlines mean.
 fn outline_legend(canvas: &mut Canvas, [x, y]: [f32; 2]) {
-    let [dark, light] = OUTLINES;
-    canvas.panel([x, y - 19.0, x + 50.0, y + 3.0], 4.0, PALE, 0.35);
-    canvas.frame([x + 3.0, y - 15.0, x + 29.0, y - 1.0], 6.0, 2.5, dark);
-    canvas.frame([x + 27.0, y - 13.0, x + 47.0, y - 3.0], 5.0, 2.5, light);
+    let [one, other] = OUTLINES;
+    canvas.panel([x, y - 19.0, x + 50.0, y + 3.0], 4.0, INK, 0.8);
+    canvas.frame([x + 3.0, y - 15.0, x + 29.0, y - 1.0], 6.0, 2.5, one);
+    canvas.frame([x + 27.0, y - 13.0, x + 47.0, y - 3.0], 5.0, 2.5, other);
     canvas.text("bodies in which the curve was searched", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
