@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
 //! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
-//! there are a table, the time per query, and a picture. With `--features gpu` and `--engine gpu` the second engine is
-//! the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
+//! there are a table, the time per query, and a picture. `--tolerance 0.01` also bounds the clearance of the curve itself,
+//! and the picture then shows the pieces that it took: long where the wall is far, short where it is near. With
+//! `--features gpu` and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
 //! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
 use clap::{Parser, ValueEnum};
@@ -13,7 +14,7 @@ use continuum_scene::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece};
 use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -147,22 +148,24 @@ fn steer(options: &Options) -> Result<(), String> {
 
     let chain = &chains[chains.len() - 1];
     print_table(chain, &found);
+    let mut pieces = Vec::new();
     let curve = match options.tolerance {
         Some(tolerance) => {
             let curve = robot.shape(&goal).map_err(text)?;
-            let found = search.clearance(&curve, &base, tolerance).map_err(text)?;
+            let found = search.clearance_pieces(&curve, &base, tolerance, &mut pieces).map_err(text)?;
             println!(
                 "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
                 found.lower, found.upper, found.triangle, found.arc_length
             );
+            print_pieces(&pieces);
             Some(found)
         }
         None => None,
     };
     let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
-    let caption = caption(options, &mesh, chain, nearest(&found, curve), times);
-    let picture = figure::draw(&mesh, chain, &base, &found, &caption);
+    let caption = caption(options, &mesh, chain, nearest(&found, curve, &pieces), times);
+    let picture = figure::draw(&mesh, chain, &base, &found, &pieces, &caption);
     picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
     Ok(())
@@ -217,6 +220,24 @@ fn print_table(chain: &Chain, answers: &[LinkProximity]) {
     }
 }
 
+/// How finely the curve was divided.
+fn print_pieces(pieces: &[TubePiece]) {
+    let length = |piece: &TubePiece| piece.arc_lengths[1] - piece.arc_lengths[0];
+    let by_length = |a: &&TubePiece, b: &&TubePiece| length(a).total_cmp(&length(b));
+    if let (Some(shortest), Some(longest)) =
+        (pieces.iter().min_by(by_length), pieces.iter().max_by(by_length))
+    {
+        println!(
+            "that took {} pieces: the shortest is {:.2} mm and begins {:.2} mm along it, the longest {:.2} mm and {:.2} mm",
+            pieces.len(),
+            length(shortest),
+            shortest.arc_lengths[0],
+            length(longest),
+            longest.arc_lengths[0],
+        );
+    }
+}
+
 /// Times each engine and parry in turns, and prints them. Returns search (cold and warm), exhaustive and parry.
 fn print_times(
     mesh: &TriMesh,
@@ -263,10 +284,13 @@ fn ratio(of: Duration, to: Duration) -> f64 {
 }
 
 /// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
-fn nearest(links: &[LinkProximity], curve: Option<Clearance>) -> Option<String> {
+fn nearest(links: &[LinkProximity], curve: Option<Clearance>, pieces: &[TubePiece]) -> Option<String> {
     if let Some(curve) = curve {
         let Clearance { lower, upper, arc_length, .. } = curve;
-        return Some(format!("the curve: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"));
+        let count = pieces.len();
+        return Some(format!(
+            "the curve, in {count} pieces: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"
+        ));
     }
     let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
     let LinkProximity { link, triangle, distance, .. } = nearest;

@@ -51,7 +51,12 @@ pub(super) fn cast(
             if !options.stop_at_penetration && closing <= 0.0 {
                 return Ok(None);
             }
-            status = ShapeCastStatus::PenetratingOrWithinTargetDist;
+            // As parry has it, what just touches is not within.
+            status = if excess < 0.0 {
+                ShapeCastStatus::PenetratingOrWithinTargetDist
+            } else {
+                ShapeCastStatus::Converged
+            };
             break;
         }
         if step > 0 && excess <= touching(pair, corners, velocity * time)? {

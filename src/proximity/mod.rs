@@ -36,6 +36,8 @@ mod local_minima;
 mod measure_lanes;
 mod mesh;
 mod motion;
+#[cfg(feature = "serde-serialize")]
+mod motion_serialised;
 mod nearest_features;
 mod parallel;
 mod placed;
@@ -75,6 +77,6 @@ pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
 pub use motion::{FirstContact, MotionAnswer};
 pub use report::{LinkProximity, Work};
-pub use tube::{Clearance, Decision};
+pub use tube::{Clearance, Decision, TubePiece};
 pub use wide_bvh::BvhSearch;
 pub use winding::{InsideAnswer, Side};

@@ -4,6 +4,11 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Whether a motion keeps a margin from the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "super::motion_serialised::Answer", into = "super::motion_serialised::Answer")
+)]
 #[non_exhaustive]
 pub enum MotionAnswer {
     /// The clearance is more than the margin at every time from 0 to 1.
@@ -37,6 +42,11 @@ pub enum MotionAnswer {
 
 /// When a motion first comes as close to the mesh as a margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "super::motion_serialised::First", into = "super::motion_serialised::First")
+)]
 #[non_exhaustive]
 pub enum FirstContact {
     /// The clearance is more than the margin at every time from 0 to 1.

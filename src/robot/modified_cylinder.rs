@@ -50,7 +50,7 @@ impl ModifiedCylinder {
     }
 
     /// As [`ModifiedCylinder::new`], for arguments that are known to be good.
-    pub(super) fn unchecked(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Self {
+    pub(crate) fn unchecked(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Self {
         Self { start, end, radius, caps }
     }
 

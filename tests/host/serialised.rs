@@ -6,8 +6,10 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Certificate, LinkProximity, Proximity, Work};
-use parry_continuum::{Cap, Chain, ModifiedCylinder};
+use parry_continuum::proximity::{
+    BvhSearch, Certificate, Clearance, Decision, FirstContact, LinkProximity, MotionAnswer, Proximity, Work,
+};
+use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
 
 #[test]
@@ -91,4 +93,76 @@ fn what_no_constructor_makes_is_an_error() {
     assert!(bounds(0.5, 0.25).contains("0.5 to 0.25 bounds no distance"));
     assert!(bounds(-0.5, 0.25).contains("bounds no distance"));
     assert!(refusal::<Work>(json!({"nodes": 1, "visited": -1})).contains("-1"));
+}
+
+/// Of every kind of answer about a tube and about a motion.
+#[test]
+fn answers_about_tubes_and_motions_come_back() {
+    let (vertices, triangles) = Ball::new(9.0).to_trimesh(32, 32);
+    let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles).unwrap()).unwrap();
+    let points = [Vector::ZERO, Vector::Z, Vector::new(0.3, 0.0, 2.0)];
+    let tube = Tube::from(&Chain::from_centreline(&points, &[0.5; 2]).unwrap());
+    let found = search.clearance(&tube, &Pose::IDENTITY, 0.01).unwrap();
+    assert_eq!(from_str::<Clearance>(&to_string(&found).unwrap()).unwrap(), found);
+    for decision in [Decision::Clear, Decision::Touches, Decision::Undecided] {
+        assert_eq!(from_str::<Decision>(&to_string(&decision).unwrap()).unwrap(), decision);
+    }
+
+    // Out of the ball, and along a floor as far away as the margin but for a little, which nobody can tell.
+    let corners = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, -2.0));
+    let mut floor = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let least = floor.minimum(&Chain::from_centreline(&points, &[0.5; 2]).unwrap(), &Pose::IDENTITY).unwrap();
+    let mut kinds = [0; 6];
+    for step in 1..60 {
+        let shift = Vector::new(0.05, 0.02, 0.15) * f64::from(step);
+        for (search, shift, margin) in
+            [(&mut search, shift, 0.5), (&mut floor, shift.with_z(0.0), least.distance * (1.0 - 1e-9))]
+        {
+            let to = points.map(|point| point + shift);
+            let motion = LinearMotion::chain(&points, &to, &[0.5; 2]).unwrap();
+            let answer = search.clears_motion(&motion, margin, 0.1).unwrap();
+            assert_eq!(from_str::<MotionAnswer>(&to_string(&answer).unwrap()).unwrap(), answer);
+            kinds[match answer {
+                MotionAnswer::Clear => 0,
+                MotionAnswer::Contact { .. } => 1,
+                _ => 2,
+            }] += 1;
+            let answer = search.time_of_contact(&motion, margin, 0.1).unwrap();
+            assert_eq!(from_str::<FirstContact>(&to_string(&answer).unwrap()).unwrap(), answer);
+            kinds[match answer {
+                FirstContact::Never => 3,
+                FirstContact::Within { .. } => 4,
+                _ => 5,
+            }] += 1;
+        }
+    }
+    assert!(kinds.iter().all(|count| *count > 10), "{kinds:?}");
+}
+
+#[test]
+fn what_no_query_about_a_motion_answers_is_an_error() {
+    let contact = json!({
+        "t": 0.5, "upper": 0.25, "arc_length": 3.0, "section": 0, "triangle": 7,
+        "on_robot": [0.0, 0.0, 0.0], "on_mesh": [0.0, 0.0, 0.25],
+    });
+    let with = |key: &str, value: Value| {
+        let mut contact = contact.clone();
+        contact[key] = value;
+        refusal::<MotionAnswer>(json!({"Contact": contact}))
+    };
+    assert_eq!(with("t", json!(1.0)), "");
+    assert!(with("t", json!(1.5)).contains("from 0 to 1"));
+    assert!(with("t", json!(-0.5)).contains("from 0 to 1"));
+    assert!(with("upper", json!(-0.25)).contains("the clearance is -0.25"));
+    assert!(with("on_mesh", json!([0.0, 0.0])).contains("length"));
+    let first = |clear_until: f64| {
+        refusal::<FirstContact>(json!({"Within": {"clear_until": clear_until, "contact": contact}}))
+    };
+    assert_eq!(first(0.5), "");
+    assert!(first(0.75).contains("in order, not 0.75 to 0.5"));
+    let undecided =
+        |interval: [f64; 2]| refusal::<MotionAnswer>(json!({"Undecided": {"interval": interval}}));
+    assert_eq!(undecided([0.25, 0.5]), "");
+    assert!(undecided([0.5, 0.25]).contains("in order"));
+    assert_eq!(refusal::<MotionAnswer>(json!("Clear")), "");
 }

@@ -177,3 +177,102 @@ fn a_mesh_is_met_where_its_first_triangle_is() {
     }
     assert!(hits > 50 && misses > 10, "{hits} hits, {misses} misses");
 }
+
+/// What parry's own tests of its casts ask, with links in place of balls and capsules, and meshes in place of cuboids.
+mod as_parry_asks {
+    use super::EARLY;
+    use parry_continuum::parry::math::{Pose, Vector};
+    use parry_continuum::parry::query::{QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
+    use parry_continuum::parry::shape::{Cuboid, Shape, TriMesh};
+    use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
+
+    fn cuboid(half_extents: Vector) -> TriMesh {
+        let (vertices, indices) = Cuboid::new(half_extents).to_trimesh();
+        TriMesh::new(vertices, indices).unwrap()
+    }
+
+    fn ball(radius: f64) -> ModifiedCylinder {
+        ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, radius).unwrap()
+    }
+
+    /// A robot that moves, and a wall that does not.
+    fn cast(
+        pose: Pose,
+        velocity: Vector,
+        robot: &dyn Shape,
+        wall: &TriMesh,
+        options: ShapeCastOptions,
+    ) -> Option<ShapeCastHit> {
+        let pos12 = pose.inverse();
+        ContinuumDispatcher::default()
+            .cast_shapes(&pos12, -(pos12.rotation * velocity), robot, wall, options)
+            .unwrap()
+    }
+
+    /// Issue 17: a cube of 1e-10, from as near and from as far as a cube of 1 would be.
+    #[test]
+    fn a_tiny_mesh_is_met_as_a_large_one_is() {
+        let wall = cuboid(Vector::splat(0.5e-10));
+        for unit in [1e-10, 1.0] {
+            for (end, caps) in
+                [(Vector::ZERO, "round"), (2.0 * Vector::X, "round"), (2.0 * Vector::X, "flat")]
+            {
+                let model =
+                    if caps == "flat" { ModifiedCylinder::cylinder } else { ModifiedCylinder::capsule };
+                let link = model(-0.5 * end * unit, 0.5 * end * unit, 0.5 * unit).unwrap();
+                let place = Pose::from_translation(Vector::Y * 3.0 * unit);
+                let distance =
+                    ContinuumDispatcher::default().distance(&place.inverse(), &link, &wall).unwrap().distance;
+                let expected = 2.5 * unit - 0.5e-10;
+                assert!((distance - expected).abs() <= 1e-15 * unit, "{unit} {caps}: {distance}");
+                let hit = cast(place, -Vector::Y, &link, &wall, ShapeCastOptions::default()).unwrap();
+                let early = expected - hit.time_of_impact;
+                assert!((-1e-15 * unit..=EARLY * unit).contains(&early), "{unit} {caps}: {hit:?}");
+                // Past it.
+                let beside = Pose::from_translation(Vector::new(0.0, 3.0, 0.6) * unit + Vector::Z * 1e-10);
+                assert!(cast(beside, -Vector::Y, &link, &wall, ShapeCastOptions::default()).is_none());
+            }
+        }
+    }
+
+    /// Issue 26.
+    #[test]
+    fn a_target_distance_is_met_earlier() {
+        let wall = cuboid(Vector::splat(0.5));
+        for (target_distance, expected) in [(0.0, 2.0), (0.5, 1.5), (2.0, 0.0)] {
+            let options = ShapeCastOptions { target_distance, ..Default::default() };
+            let hit = cast(Pose::from_translation(-3.0 * Vector::X), Vector::X, &ball(0.5), &wall, options)
+                .unwrap();
+            assert!((0.0..=EARLY).contains(&(expected - hit.time_of_impact)), "{hit:?}");
+        }
+    }
+
+    /// Issue 106.
+    #[test]
+    fn what_just_touches_is_not_within() {
+        let wall = cuboid(Vector::ONE);
+        for (height, status) in
+            [(1.5, ShapeCastStatus::Converged), (1.375, ShapeCastStatus::PenetratingOrWithinTargetDist)]
+        {
+            let place = Pose::from_translation(Vector::Y * height);
+            let hit = cast(place, -Vector::Y, &ball(0.5), &wall, ShapeCastOptions::default()).unwrap();
+            assert_eq!((hit.time_of_impact, hit.status), (0.0, status));
+        }
+    }
+
+    /// Issue 193: slightly through the top of a large cuboid, and not straight down.
+    #[test]
+    fn what_is_slightly_through_knows_the_face() {
+        let wall = cuboid(Vector::new(20.0, 1.0, 20.0));
+        let upright = ModifiedCylinder::capsule(-5.0 * Vector::Y, 5.0 * Vector::Y, 1.0).unwrap();
+        for (link, height) in
+            [(upright, 6.0 - 0.01), (upright, 6.0 - 0.02), (ball(1.0), 0.8), (ball(1.0), 1.0 - 0.200001)]
+        {
+            let place = Pose::from_translation(Vector::Y * (height + 1.0));
+            let velocity = Vector::new(0.1, 1.0, 0.0);
+            let hit = cast(place, velocity, &link, &wall, ShapeCastOptions::default()).unwrap();
+            assert!((hit.normal1 + Vector::Y).length() < 1e-9, "{height}: {hit:?}");
+            assert!((hit.normal2 - Vector::Y).length() < 1e-9, "{height}: {hit:?}");
+        }
+    }
+}

@@ -87,6 +87,7 @@ fn programs_draw_their_pictures() {
         ["--mesh", &room, "--model", "capsule", "--tolerance", "0.2", "--steps", "3", "--out", "drawn"];
     let out = succeed("ventricle", &arguments);
     assert!(out.contains("12 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
+    assert!(out.contains("that took ") && out.contains(" pieces: the shortest is "), "{out}");
     for line in ["parry distance(Cylinder, TriMesh)", "search, cold", "search, warm", "exhaustive"] {
         assert!(out.contains(line), "{out}");
     }

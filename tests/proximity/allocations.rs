@@ -1,10 +1,14 @@
 //! A control loop allocates nothing once it runs: centreline, chain, queries, contacts.
 
 use continuum_scene::{ctr, ventricle};
-use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
-use parry_continuum::{Chain, Tube, simplify};
+use parry_continuum::{
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
+    simplify,
+};
+use std::cell::Cell;
 
 /// A robot that sways.
 fn sway(points: &[Vector], tick: u32, moved: &mut Vec<Vector>) {
@@ -111,4 +115,66 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
     assert_eq!(allocated, 0);
     seen.dedup();
     assert!(seen.len() > 10, "the robot moves");
+}
+
+/// A motion that counts its shapes.
+struct Counted<M>(M, Cell<u64>);
+
+impl<M: Motion> Motion for Counted<M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        self.1.set(self.1.get() + 1);
+        self.0.shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        self.0.speed(section, shares, times)
+    }
+}
+
+/// How often a planner allocates that asks about edge after edge, and how many shapes it looks at.
+fn planner(search: &mut BvhSearch, edges: Vec<impl Motion>) -> [u64; 2] {
+    let edges: Vec<_> = edges.into_iter().map(|edge| Counted(edge, Cell::new(0))).collect();
+    let mut round = || {
+        edges.iter().for_each(|edge| {
+            search.clears_motion(edge, 0.3, 1e-2).unwrap();
+            search.time_of_contact(edge, 0.3, 1e-2).unwrap();
+        });
+    };
+    round();
+    edges.iter().for_each(|edge| edge.1.set(0));
+    let allocated = allocation_counter::measure(round).count_total;
+    [allocated, edges.iter().map(|edge| edge.1.get()).sum()]
+}
+
+/// Whole edges, proven or not.
+#[test]
+fn motions_are_judged_in_memory_that_is_used_again() {
+    let (vertices, indices) = ventricle::mesh(6_000);
+    let mut search = BvhSearch::new(&TriMesh::new(vertices, indices).unwrap()).unwrap();
+    let line = ctr::three_tubes().centreline(&ventricle::goal(), 60);
+    let base = ventricle::entry();
+    let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
+    let shifts: Vec<_> = (0..20).map(|k| Vector::X * (0.1 * f64::from(k))).collect();
+
+    let moved = |shift: &Vector| points.iter().map(|point| point + shift).collect::<Vec<_>>();
+    let edges = shifts.iter().map(|shift| LinearMotion::chain(&points, &moved(shift), &line.radii).unwrap());
+    let [allocated, shapes] = planner(&mut search, edges.collect());
+    assert!(allocated == 0 && shapes > 100, "{allocated} {shapes}");
+
+    let tube = Tube::from_samples(&line.points, &line.radii, None).unwrap();
+    let edge = |shift: &Vector| {
+        let to = Pose::from_parts(base.translation + shift, base.rotation);
+        RigidMotion::new(tube.clone(), [base, to]).unwrap()
+    };
+    let [allocated, shapes] = planner(&mut search, shifts.iter().map(edge).collect());
+    assert!(allocated == 0 && shapes > 100, "{allocated} {shapes}");
+
+    let section = |length: f64, bend: f64| BendingSection { length, radius: 0.8, bend: [bend, 0.01] };
+    let edge = |shift: &Vector| {
+        let sections =
+            [[section(8.0, 0.01), section(6.0, 0.02)], [section(9.0, 0.02), section(7.0, 0.02 * shift.x)]];
+        BendingMotion::new(&sections[0], &sections[1], base).unwrap()
+    };
+    let [allocated, shapes] = planner(&mut search, shifts.iter().map(edge).collect());
+    assert!(allocated <= 12 * shapes && shapes > 40, "{allocated} {shapes}");
 }

@@ -13,6 +13,7 @@ mod large;
 mod motion;
 mod parity;
 mod patches;
+mod pieces;
 mod planner;
 mod scenes;
 mod side;

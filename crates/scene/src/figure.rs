@@ -1,14 +1,16 @@
 //! The picture of a proximity query: the whole scene on the left, the robot close up on the right.
 //!
 //! Each link has the colour of its distance to the wall. A thin line joins its two closest points, and the triangle
-//! where it ends is painted in the link's colour.
+//! where it ends is painted in the link's colour. The pieces into which a query divided the curve, if there was one, are
+//! outlined close up.
 
 use crate::canvas::{Align, Canvas, Colour, hex, mix};
 use crate::colour_map::ColourMap;
+use crate::outline::outline;
 use crate::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};
-use parry_continuum::proximity::LinkProximity;
+use parry_continuum::proximity::{LinkProximity, TubePiece};
 use parry_continuum::{Chain, ModifiedCylinder};
 
 const INK: Colour = hex(0x22303c);
@@ -17,6 +19,10 @@ const SIZE: [usize; 2] = [2000, 1220];
 const LEFT: usize = 1230;
 const TOP: usize = 150;
 const INSET: [usize; 4] = [1250, 70, 690, 800];
+/// Of the outlines of pieces, by turns.
+const OUTLINES: [Colour; 2] = [hex(0xffffff), hex(0xff8c1a)];
+/// From a line of the legend to the next.
+const ROW: usize = 36;
 
 /// The text on the picture.
 pub struct Caption {
@@ -26,13 +32,14 @@ pub struct Caption {
     pub notes: Vec<String>,
 }
 
-/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one per link. The mesh's
-/// z is taken to be up and its y to the front, as in scans.
+/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one per link; `pieces` are
+/// those of a query about the curve, or none. The mesh's z is taken to be up and its y to the front, as in scans.
 pub fn draw(
     mesh: &TriMesh,
     robot: &Chain,
     pose: &Pose,
     answers: &[LinkProximity],
+    pieces: &[TubePiece],
     caption: &Caption,
 ) -> Canvas {
     let largest = answers.iter().map(|answer| answer.distance).fold(0.0, Real::max);
@@ -66,6 +73,8 @@ pub fn draw(
     let inner = seen.clone();
     seen.extend(ends.clone());
     let [left, top, width, height] = INSET;
+    // Room for one more line in the legend.
+    let height = if pieces.is_empty() { height } else { height - ROW };
     let mut near = Camera::framing(
         &seen,
         broadside + towards.normalize() * 0.5,
@@ -78,7 +87,10 @@ pub fn draw(
     near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
     picture.sky = [sky(top), sky(top + height)];
     picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
-    let inset = picture.render(&near, width, height);
+    let mut inset = picture.render(&near, width, height);
+    for (piece, colour) in pieces.iter().zip(OUTLINES.into_iter().cycle()) {
+        inset.stroke(&[outline(&piece.body, &Pose::IDENTITY, &near, [width, height])], 2.5, colour, 0.9);
+    }
     let frame = [left as f32, top as f32, (left + width) as f32, (top + height) as f32];
     let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
     lens(&mut canvas, &places.collect::<Vec<_>>(), frame);
@@ -93,8 +105,13 @@ pub fn draw(
     let bar = [frame[0], frame[3] + 74.0];
     colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
     legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
+    let mut below = bar[1] + 188.0;
+    if !pieces.is_empty() {
+        outline_legend(&mut canvas, [bar[0], bar[1] + 104.0 + 2.0 * ROW as f32]);
+        below += ROW as f32;
+    }
     for (row, note) in caption.notes.iter().enumerate() {
-        canvas.text(note, [bar[0], bar[1] + 188.0 + 33.0 * row as f32], Align::Left, 18.0, PALE);
+        canvas.text(note, [bar[0], below + 33.0 * row as f32], Align::Left, 18.0, PALE);
     }
     canvas
 }
@@ -105,7 +122,7 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     canvas.stroke(&[vec![[x, y - 7.0], [x + 44.0, y - 7.0]]], 3.0, INK, 1.0);
     canvas.panel([x + 38.0, y - 13.0, x + 50.0, y - 1.0], 6.0, INK, 1.0);
     canvas.text("closest points of a link and the wall", [x + 66.0, y], Align::Left, 18.0, INK);
-    let y = y + 36.0;
+    let y = y + ROW as f32;
     // Filled line by line.
     let rows = (0..=22).map(|row| row as f32).map(|row| {
         let half = 0.9 * row;
@@ -113,6 +130,15 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     });
     canvas.stroke(&rows.collect::<Vec<_>>(), 1.4, tint, 1.0);
     canvas.text("nearest triangle of a link, in the link's colour", [x + 66.0, y], Align::Left, 18.0, INK);
+}
+
+/// What the outlines mean.
+fn outline_legend(canvas: &mut Canvas, [x, y]: [f32; 2]) {
+    let [one, other] = OUTLINES;
+    canvas.panel([x, y - 19.0, x + 50.0, y + 3.0], 4.0, INK, 0.8);
+    canvas.frame([x + 3.0, y - 15.0, x + 29.0, y - 1.0], 6.0, 2.5, one);
+    canvas.frame([x + 27.0, y - 13.0, x + 47.0, y - 3.0], 5.0, 2.5, other);
+    canvas.text("bodies in which the curve was searched", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
 /// Links, and the lines between closest points.

@@ -6,7 +6,7 @@
 //! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
 //! | the robot | [`ctr`]; [`joint_motion`], while its joints move; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
-//! | pictures | `picture`, `figure`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
+//! | pictures | `picture`, `figure`, `outline`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
 //! | programs | `command`, `anatomy` (feature `command`); [`timing`], [`levels`] |
 
 #[cfg(feature = "command")]
@@ -27,6 +27,8 @@ pub mod joint_motion;
 pub mod lettering;
 pub mod levels;
 pub mod lumen;
+#[cfg(feature = "pictures")]
+pub mod outline;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod remesh;

@@ -13,5 +13,5 @@ mod witness;
 pub(super) use outer::Outer;
 pub(super) use piece::Piece;
 pub(super) use placed::PlacedTube;
-pub use report::{Clearance, Decision};
+pub use report::{Clearance, Decision, TubePiece};
 pub(super) use witness::Witness;

@@ -24,6 +24,11 @@ impl BvhSearch {
     /// The stated speeds are trusted. [`verify_motion`](crate::verify_motion) tries them; in debug builds every query does
     /// too, with the shapes that it needs anyway, and refuses a motion that is found too fast.
     ///
+    /// The query allocates nothing once its memory has grown; making the shapes may. [`LinearMotion`](crate::LinearMotion)
+    /// and [`RigidMotion`](crate::RigidMotion) make theirs in memory that is used again, and so can a motion of one's own
+    /// through [`Tube::set_samples`](crate::Tube::set_samples). [`BendingMotion`](crate::BendingMotion) allocates a few times
+    /// for each shape.
+    ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};
     /// use parry_continuum::proximity::{BvhSearch, MotionAnswer};

@@ -7,7 +7,7 @@ use super::tube_queries::{Place, TubeMemory, TubeSearch};
 use crate::Tube;
 use crate::proximity::checks::{check_margin, check_tolerance};
 use crate::proximity::tube::PlacedTube;
-use crate::proximity::{Clearance, Decision, ProximityError};
+use crate::proximity::{Clearance, Decision, ProximityError, TubePiece};
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
@@ -30,6 +30,45 @@ impl BvhSearch {
     ) -> Result<Clearance, ProximityError> {
         check_tolerance(tolerance)?;
         self.context().clearance(tube, pose, tolerance)
+    }
+
+    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube for it, in the order of their
+    /// arc lengths: what the tolerance cost.
+    ///
+    /// Together the pieces are the whole tube, without gap or overlap: few and long far from the wall, short near it. The
+    /// least of their `lower` is that of the answer, unless it is the answer's `upper`. Once a common point with the mesh
+    /// is found, pieces stay as they are, and their `lower` is 0. `out` is cleared first.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
+    /// let mut pieces = Vec::new();
+    /// let found = search.clearance_pieces(&tube, &Pose::IDENTITY, 0.01, &mut pieces)?;
+    /// assert!(pieces.iter().all(|piece| piece.lower >= found.lower));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`clearance`](Self::clearance); `out` is then empty.
+    pub fn clearance_pieces(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        tolerance: Real,
+        out: &mut Vec<TubePiece>,
+    ) -> Result<Clearance, ProximityError> {
+        out.clear();
+        check_tolerance(tolerance)?;
+        let answer = self.context().clearance_pieces(tube, pose, tolerance, out);
+        if answer.is_err() {
+            out.clear();
+        }
+        answer
     }
 
     /// Whether a tube keeps more than `margin` away from the mesh.
@@ -111,8 +150,32 @@ impl BvhSearch {
 impl<'a> Context<'a> {
     fn clearance(self, tube: &'a Tube, pose: &'a Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
         let (mut search, last) = self.tube_search(tube, pose)?;
-        let (answer, place) = search.clearance(tolerance, *last)?;
+        let (answer, place) = search.clearance(tolerance, *last, |_, _, _| ())?;
         *last = Some(place);
+        Ok(answer)
+    }
+
+    fn clearance_pieces(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+        tolerance: Real,
+        out: &mut Vec<TubePiece>,
+    ) -> Result<Clearance, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let placed = search.tube;
+        let (answer, place) = search.clearance(tolerance, *last, |piece, outer, lower| {
+            out.push(placed.report(piece, outer, lower));
+        })?;
+        *last = Some(place);
+        while let Some(piece) = search.pieces.pop() {
+            let outer = search.outer(&piece)?;
+            out.push(placed.report(&piece, &outer, 0.0));
+        }
+        out.sort_unstable_by(|a, b| {
+            let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
+            a.section.cmp(&b.section).then(from).then(to)
+        });
         Ok(answer)
     }
 

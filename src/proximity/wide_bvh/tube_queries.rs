@@ -51,21 +51,29 @@ pub(super) struct Found {
 
 impl TubeSearch<'_> {
     /// The clearance, with bounds no farther apart than the tolerance; and where it was found.
+    ///
+    /// Each piece that is settled is handed over, with its body and how far away that is at least. Those that were not
+    /// needed, because the tube touches the mesh, are left in `pieces`.
     pub(super) fn clearance(
         &mut self,
         tolerance: Real,
         last: Option<Place>,
+        mut settled: impl FnMut(&Piece, &Outer, Real),
     ) -> Result<(Clearance, Place), ProximityError> {
         // So that the bounds of the answer are no farther apart than asked for after they are rounded.
         let aim = (tolerance - 4.0 * self.tube.slack()).max(0.0);
         let mut best = self.first_bound(last);
         self.begin(best.witness.upper.max(tolerance));
         let mut lower = Real::INFINITY;
+        let mut settle = |piece: &Piece, outer: &Outer, apart: Real| {
+            lower = lower.min(apart);
+            settled(piece, outer, apart);
+        };
         while let Some(piece) = self.pieces.pop() {
             let bound = best.witness.upper - aim;
             // Nothing below 0 is left to be found.
             if bound < 0.0 || best.witness.upper <= 0.0 {
-                lower = 0.0;
+                self.pieces.push(piece);
                 break;
             }
             let outer = self.outer(&piece)?;
@@ -75,13 +83,13 @@ impl TubeSearch<'_> {
                 if self.search.may_meet(&outer.body, bound) {
                     self.pieces.extend(halves);
                 } else {
-                    lower = lower.min(bound);
+                    settle(&piece, &outer, bound);
                 }
                 continue;
             }
             let start = [Some(best.place.triangle), None];
             let Some(nearest) = self.search.nearest(&outer.body, Best::within(bound), start).nearest() else {
-                lower = lower.min(bound);
+                settle(&piece, &outer, bound);
                 continue;
             };
             let found = self.witness(&piece, &outer, &nearest);
@@ -89,15 +97,15 @@ impl TubeSearch<'_> {
                 best = found;
             }
             if nearest.distance >= best.witness.upper - aim {
-                lower = lower.min(nearest.distance);
+                settle(&piece, &outer, nearest.distance);
             } else if let Some(halves) = self.halves(&piece, &outer, aim) {
                 self.extend_nearest_last(halves, found.place.arc);
             } else {
-                lower = lower.min(nearest.distance);
+                settle(&piece, &outer, nearest.distance);
             }
         }
         let Found { place, witness, on_mesh } = best;
-        let lower = lower.min(witness.upper);
+        let lower = if self.pieces.is_empty() { lower.min(witness.upper) } else { 0.0 };
         self.check_resolved(witness.upper - lower, tolerance)?;
         let Place { triangle, section, arc } = place;
         let Witness { upper, on_robot, .. } = witness;

@@ -19,8 +19,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// The motion of a chain each of whose vertices moves straight and evenly from one place to another.
 ///
 /// It is what a planner means by "interpolate the two centrelines". In between, links become shorter or longer. Points
-/// are in the mesh's frame. A segment that has no length at both ends has none in between, and is no link; one that loses
-/// its length for a moment is a ball then.
+/// are in the mesh's frame. A segment that has no length at both ends has none in between, and is no link; a radius of its
+/// own is no step. One that loses its length for a moment is a ball then.
 ///
 /// The links are its sections, numbered without those segments.
 ///
@@ -53,6 +53,15 @@ impl LinearMotion {
 
     /// Links with the caps of [`Chain::from_centreline`](crate::Chain::from_centreline) at each time, one radius for each
     /// segment.
+    ///
+    /// Caps may change on the way. Flat for good are the robot's two ends and the wider side of each step in radius. Another
+    /// link's end is flat while it is less than a radius behind such a face, and round when it is farther away. At that moment
+    /// the shape jumps; where that decides whether the margin is kept, the answer is `Undecided`.
+    ///
+    /// A chain by vertex radii ([`Chain::from_vertex_radii`](crate::Chain::from_vertex_radii)) with the smaller radius of each
+    /// segment's two points has the same caps, but for a single thick point and the first joint after a thick tube that is
+    /// shorter than its radius. For these caps implement [`Motion`] and fill the tube with
+    /// [`Tube::set_chain`](crate::Tube::set_chain), which takes chains of either kind.
     ///
     /// # Errors
     /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end, or not as many points at the one as

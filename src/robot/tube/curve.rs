@@ -13,7 +13,6 @@ type Function = dyn Fn(Real) -> (Vector, Vector) + Send + Sync;
 pub(super) const TICKS: u32 = 1 << 20;
 
 /// A centreline in the robot's frame.
-#[derive(Clone)]
 pub(super) enum Curve {
     Samples {
         points: Vec<Vector>,
@@ -30,6 +29,26 @@ pub(crate) struct Foot {
     /// From the one to the other.
     pub share: Real,
     pub arc: Real,
+}
+
+impl Clone for Curve {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Samples { points, arcs } => Self::Samples { points: points.clone(), arcs: arcs.clone() },
+            Self::Function(curve) => Self::Function(Arc::clone(curve)),
+        }
+    }
+
+    /// In the memory that it has.
+    fn clone_from(&mut self, source: &Self) {
+        match (&mut *self, source) {
+            (Self::Samples { points, arcs }, Self::Samples { points: from, arcs: lengths }) => {
+                points.clone_from(from);
+                arcs.clone_from(lengths);
+            }
+            _ => *self = source.clone(),
+        }
+    }
 }
 
 impl Default for Curve {

@@ -31,11 +31,12 @@ impl Tube {
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
     pub fn set_chain(&mut self, chain: &Chain) {
-        self.set_straight(chain.links().iter().map(|link| Straight {
+        let links = chain.links().iter().map(|link| Straight {
             ends: [link.start(), link.end()],
             radius: link.radius(),
             caps: link.caps(),
-        }));
+        });
+        self.set_straight(links, Lasting::WhileAllNear);
     }
 
     /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball.
@@ -54,16 +55,18 @@ impl Tube {
             caps.clear();
             caps.resize(radii.len(), [Cap::Round; 2]);
         }
-        self.set_straight(ends.windows(2).zip(radii).zip(&caps).map(|((ends, &radius), &caps)| {
+        let links = ends.windows(2).zip(radii).zip(&caps).map(|((ends, &radius), &caps)| {
             let ends = [ends[0], ends[1]];
             let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
             Straight { ends, radius, caps }
-        }));
+        });
+        self.set_straight(links, Lasting::WhileNear);
         (self.ends, self.caps) = (ends, caps);
     }
 
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
-    fn set_straight(&mut self, sections: impl Iterator<Item = Straight>) {
+    /// `lasting` tells of flat ends that are not so by the radii alone.
+    fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {
         let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
         points.clear();
         arcs.clear();
@@ -74,12 +77,7 @@ impl Tube {
             let (axis, end) = (direction(along), start + length(along));
             let face = |end: usize| {
                 let outward = if end == 0 { -axis } else { axis };
-                (caps[end] == Cap::Flat).then_some(Face {
-                    centre: ends[end],
-                    outward,
-                    tilt: 0.0,
-                    lasting: Lasting::WhileNear,
-                })
+                (caps[end] == Cap::Flat).then_some(Face { centre: ends[end], outward, tilt: 0.0, lasting })
             };
             self.sections.push(Section {
                 first: points.len() as u32,

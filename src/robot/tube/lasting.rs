@@ -4,6 +4,11 @@
 //! away from the last limit (`algorithm_1`). Radii do not change during a motion. A distance between two points changes
 //! by no more than the points move: if it is D at one time and the points are v and w fast, then it is below the radius
 //! for a time tau before and after as long as D + tau (v + w) is.
+//!
+//! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its two vertices' R_k and
+//! R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links' radii is one by the vertices'. Not the other way
+//! round: a single thick vertex is a limit that the links' radii don't show. So the true limit is the one that they show or
+//! a vertex between that and the end, and an end that is less than r_k <= R_k away from all of these is flat by either rule.
 
 use super::Tube;
 use crate::distance::Scalar;
@@ -16,6 +21,8 @@ pub(crate) enum Lasting {
     Always,
     /// For want of room behind such a face.
     WhileNear,
+    /// The same in a chain that may be capped by vertex radii: behind such a face, or any vertex from there on.
+    WhileAllNear,
     /// Its direction gets lost.
     Never,
 }
@@ -49,16 +56,23 @@ impl Tube {
         for end in [0, 1] {
             self.walk(end, |tube, number, limit| {
                 let section = &tube.sections[number];
-                let Some(face) = section.faces[end].filter(|face| face.lasting == Lasting::WhileNear) else {
-                    return;
+                let Some(face) = section.faces[end] else { return };
+                let limits = match face.lasting {
+                    Lasting::WhileNear => limit..=limit,
+                    Lasting::WhileAllNear => limit.min(number)..=limit.max(number),
+                    Lasting::Always | Lasting::Never => return,
                 };
-                let at = &tube.sections[limit];
-                let from = tube.point(at, if end == 0 { at.first } else { at.last });
-                let change = moves(number, end) + moves(limit, end);
-                let apart = (face.centre - from).length() + change + rounding;
-                let stays = apart < section.radius;
-                if !stays {
-                    opening = opening.max(change);
+                let mut stays = true;
+                for limit in limits.filter(|limit| *limit != number) {
+                    let at = &tube.sections[limit];
+                    let from = tube.point(at, if end == 0 { at.first } else { at.last });
+                    let change = moves(number, end) + moves(limit, end);
+                    let apart = (face.centre - from).length() + change + rounding;
+                    let is_near = apart < section.radius;
+                    if !is_near {
+                        opening = opening.max(change);
+                    }
+                    stays &= is_near;
                 }
                 if stays && let Some(face) = &mut tube.sections[number].faces[end] {
                     face.lasting = Lasting::Always;

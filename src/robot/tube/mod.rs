@@ -49,7 +49,6 @@ use parry3d_f64::math::{Real, Vector};
 /// assert!(found.upper - found.lower <= 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone)]
 pub struct Tube {
     curve: Curve,
     sections: Vec<Section>,
@@ -61,6 +60,21 @@ pub struct Tube {
     ends: Vec<Vector>,
     radii: Vec<Real>,
     caps: Vec<[Cap; 2]>,
+}
+
+impl Clone for Tube {
+    fn clone(&self) -> Self {
+        let mut tube = Self::empty();
+        tube.clone_from(self);
+        tube
+    }
+
+    /// In the memory that it has. What is kept for the next samples stays.
+    fn clone_from(&mut self, source: &Self) {
+        self.curve.clone_from(&source.curve);
+        self.sections.clone_from(&source.sections);
+        (self.error, self.reach) = (source.error, source.reach);
+    }
 }
 
 impl std::fmt::Debug for Tube {

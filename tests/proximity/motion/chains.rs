@@ -6,7 +6,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, FirstContact, MotionAnswer, Proximity};
-use parry_continuum::{Chain, LinearMotion, RobotError, verify_motion};
+use parry_continuum::{Cap, Chain, LinearMotion, Motion, RobotError, Speed, Tube, verify_motion};
 
 /// The model of a chain: Algorithm 1, or capsules.
 type Model = fn(&[Vector], &[Real]) -> Result<Chain, RobotError>;
@@ -88,4 +88,67 @@ fn no_chain_is_misjudged() {
         "{clear} {contact} {changing} {wide}"
     );
     assert!(undecided < 40, "{undecided}");
+}
+
+/// A short robot with one thick point, which stands still for half of the time and then moves aside. The links behind it
+/// stand still all the time, but the first of them gets a round start when the thick point is a radius away.
+struct ThickPoint;
+
+impl ThickPoint {
+    fn chain(t: Real) -> Result<Chain, RobotError> {
+        let aside = 3.0 * (2.0 * t - 1.0).max(0.0).powi(2);
+        let points = [
+            Vector::ZERO,
+            Vector::new(0.25, -aside, 0.0),
+            Vector::new(0.5, 0.0, 0.0),
+            Vector::new(0.5, 0.0, 0.9),
+        ];
+        Chain::from_vertex_radii(&points, &[1.0, 2.0, 1.0, 1.0])
+    }
+}
+
+impl Motion for ThickPoint {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        tube.set_chain(&Self::chain(t)?);
+        Ok(Pose::IDENTITY)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], _: [Real; 2]) -> Speed {
+        // The derivative of `aside` is at most 12, and a link of 0.25 beside it turns by 12 / 0.25 at most.
+        match section {
+            0 => Speed { point: 12.0 * shares[1], turn: 48.0 },
+            1 => Speed { point: 12.0 * (1.0 - shares[0]), turn: 48.0 },
+            _ => Speed { point: 0.0, turn: 0.0 },
+        }
+    }
+}
+
+/// Caps by vertex radii follow faces that the links' radii don't show.
+#[test]
+fn a_cap_that_becomes_round_behind_a_thick_point_is_seen() {
+    verify_motion(&ThickPoint, 200).unwrap();
+    let [before, behind] = [0.5, 1.0].map(|t| ThickPoint::chain(t).unwrap());
+    assert_eq!([&before, &behind].map(|chain| chain.links()[2].caps()[0]), [Cap::Flat, Cap::Round]);
+    // A speck in the ball at that start, and in nothing else.
+    let speck = Vector::new(0.8, 0.3, -0.8);
+    let corners = [Vector::X, Vector::Y, Vector::Z].map(|off| speck + off * 1e-3);
+    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let distances = (0..=100).map(|step| {
+        let chain = ThickPoint::chain(Real::from(step) / 100.0).unwrap();
+        search.minimum(&chain, &Pose::IDENTITY).unwrap().distance
+    });
+    let distances: Vec<_> = distances.collect();
+    let first = distances.iter().position(|distance| *distance == 0.0).unwrap();
+    assert!(first > 60 && distances[..first].iter().all(|distance| *distance > 0.02), "{distances:?}");
+    let answer = search.clears_motion(&ThickPoint, 0.0, 1e-3).unwrap();
+    assert!(matches!(answer, MotionAnswer::Contact { t, .. } if t > 0.6), "{answer:?}");
+    // The thick point is a radius away when the square of `aside` is 1 - 0.25^2.
+    let jump = 0.5 + 0.5 * ((1.0 - 0.0625_f64).sqrt() / 3.0).sqrt();
+    assert!((first as Real / 100.0 - jump).abs() <= 0.01, "{first} {jump}");
+    match search.time_of_contact(&ThickPoint, 0.0, 1e-3).unwrap() {
+        FirstContact::Within { clear_until, t, .. } => {
+            assert!(clear_until <= jump && jump <= t, "{clear_until} {t}");
+        }
+        other => panic!("{other:?}"),
+    }
 }
