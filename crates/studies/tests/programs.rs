@@ -119,7 +119,7 @@ fn speed_is_measured_drawn_and_quoted() {
         }
     }
     assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
-    let shares = table(&page, "| order | precision | K |");
+    let shares = table(&page, "| order | precision | capsules |");
     assert_eq!(shares.len(), 4);
     for model in shares.iter().flat_map(|row| &row[2..]) {
         let (axes, measured) = model.split_once(',').unwrap();
@@ -130,8 +130,8 @@ fn speed_is_measured_drawn_and_quoted() {
     let head = page.lines().find(|line| line.starts_with("| microseconds |")).unwrap();
     let growth = table(&page, head);
     let names: Vec<_> = growth.iter().map(|row| &*row[0]).collect();
-    for (model, engines) in ["K", "Z*", "Z"].iter().zip(names.chunks(3)) {
-        let expected = ["exhaustive f32", "exhaustive f64", "search, warm"];
+    for (model, engines) in ["capsules", "fitted caps", "cylinders"].iter().zip(names.chunks(3)) {
+        let expected = ["exhaustive f32", "exhaustive f64", "search, again"];
         assert_eq!(engines, expected.map(|engine| format!("{model}, {engine}")));
     }
     let sizes: Vec<u32> =

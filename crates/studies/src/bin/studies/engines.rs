@@ -21,20 +21,21 @@ const ENOUGH: f64 = 1.0;
 
 /// Model, how pairs are taken and the route to a disc, and the engine that takes them alike for capsules.
 const ENGINES: [(&str, &str, usize); 8] = [
-    ("K", "packed, no discs", 0),
-    ("Z*", "packed, convex", 0),
-    ("Z", "packed, convex", 0),
-    ("K", "one by one, no discs", 3),
-    ("Z*", "one by one, convex", 3),
-    ("Z*", "one by one, (18) as printed, companion", 3),
-    ("Z", "one by one, convex", 3),
-    ("Z", "one by one, (18) as printed, closed form", 3),
+    ("capsules", "packed, no discs", 0),
+    ("fitted caps", "packed, convex", 0),
+    ("cylinders", "packed, convex", 0),
+    ("capsules", "one by one, no discs", 3),
+    ("fitted caps", "one by one, convex", 3),
+    ("fitted caps", "one by one, (18) as printed, companion", 3),
+    ("cylinders", "one by one, convex", 3),
+    ("cylinders", "one by one, (18) as printed, closed form", 3),
 ];
 const COUNT: usize = ENGINES.len();
 /// The paper's model of each of them.
 const PAPERS: [usize; COUNT] = [0, 1, 2, 0, 1, 1, 2, 2];
 
-/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for K, Z* and Z in float, then in double.
+/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for capsules, fitted caps and cylinders in
+/// float, then in double.
 const PAPER: [[(f64, f64); 3]; 2] =
     [[(0.016, 11.93), (0.016, 11.93), (0.276, 0.69)], [(0.037, 10.32), (0.037, 10.32), (0.330, 1.16)]];
 /// Seconds and index of the peer that the paper compares itself with.
@@ -50,18 +51,18 @@ fn measure<T: SearchPrecision + Number>(mesh: &TriMesh) -> Result<Measured, Stri
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let (points, radii) = (&line.points, &line.radii);
     let text = |error: parry_continuum::RobotError| error.to_string();
-    let k = Chain::capsules(points, radii).map_err(text)?;
-    let z_star = Chain::from_centreline(points, radii).map_err(text)?;
-    let z = Chain::cylinders(points, radii).map_err(text)?;
+    let capsules = Chain::capsules(points, radii).map_err(text)?;
+    let fitted = Chain::from_centreline(points, radii).map_err(text)?;
+    let flat = Chain::cylinders(points, radii).map_err(text)?;
     let mut engines = [
-        (&k, packed::<T>(mesh)?),
-        (&z_star, packed::<T>(mesh)?),
-        (&z, packed::<T>(mesh)?),
-        (&k, one_by_one::<T, Convex>(mesh)),
-        (&z_star, one_by_one::<T, Convex>(mesh)),
-        (&z_star, one_by_one::<T, QuarticAsPrinted<Companion>>(mesh)),
-        (&z, one_by_one::<T, Convex>(mesh)),
-        (&z, one_by_one::<T, QuarticAsPrinted<ClosedForm>>(mesh)),
+        (&capsules, packed::<T>(mesh)?),
+        (&fitted, packed::<T>(mesh)?),
+        (&flat, packed::<T>(mesh)?),
+        (&capsules, one_by_one::<T, Convex>(mesh)),
+        (&fitted, one_by_one::<T, Convex>(mesh)),
+        (&fitted, one_by_one::<T, QuarticAsPrinted<Companion>>(mesh)),
+        (&flat, one_by_one::<T, Convex>(mesh)),
+        (&flat, one_by_one::<T, QuarticAsPrinted<ClosedForm>>(mesh)),
     ];
     let base = ventricle::entry();
     let mut exact = Exhaustive::<f64>::new(mesh).map_err(|error| error.to_string())?;
@@ -141,17 +142,17 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
     let mut page = String::from(
         "## Figure 9 and Table IV: every triangle against 30 links\n\n\
          The ventricle of 6,000 triangles divided in four again and again, shuffled; one thread, no culling, so that each \
-         pair costs its full distance. K: capsules, Z*: modified cylinders by Algorithm 1, Z: cylinders. Packed is this \
-         crate's exhaustive engine, in the widest instructions of the machine. One by one is a plain loop, the only way \
+         pair costs its full distance. The models are capsules, links whose caps fit (Algorithm 1) and cylinders: K, Z* and Z \
+         in the paper. Packed is this crate's exhaustive engine, in the widest instructions of the machine. One by one is a plain loop, the only way \
          for root finders, because they branch; it solves a disc only where the axis' nearest point is at a flat end. The \
-         paper's choices are the closed form for Z and the companion matrix for Z*. Milliseconds of a query, the least of \
-         up to five. The times are divided by those of K taken alike; the last column is the largest error of a link's \
+         paper's choices are the closed form for cylinders and the companion matrix for fitted caps. Milliseconds of a query, \
+         the least of up to five. The times are divided by those of capsules taken alike; the last column is the largest error of a link's \
          distance, once its nearest triangle is measured in double precision.\n\n| precision | model | pairs and discs |",
     );
     for (triangles, _) in sizes {
         write!(page, " {triangles} |")?;
     }
-    write!(page, " time / K | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
+    write!(page, " time / capsules | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
     let Some((triangles, last)) = sizes.last() else { return Ok(page) };
     for (precision, name) in ["f32", "f64"].into_iter().enumerate() {
         for (engine, (model, route, capsules)) in ENGINES.into_iter().enumerate() {
@@ -171,11 +172,12 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
     let ([p32, p64], [c32, c64]) = (ratio(7), ratio(5));
     writeln!(
         page,
-        "\nFinding: the paper's CPU takes 2.29 times as long for Z as for K, and no longer for Z*. With its solvers that is \
-         {p32:.2} (f32) and {p64:.2} (f64) for Z here, and {c32:.2} and {c64:.2} for Z*; with the convex route {a32:.2} and \
-         {a64:.2} for Z, and {b32:.2} and {b64:.2} for Z*; packed {z32:.2} and {z64:.2} for Z, and {s32:.2} and {s64:.2} \
-         for Z*. So Z* costs less than Z: {}; and no more than K: {} without culling. (Culling, the engine's default, brings \
-         Z near K: docs/SPEED.md.)",
+        "\nFinding: the paper's CPU takes 2.29 times as long for cylinders as for capsules, and no longer for fitted caps. With \
+         its solvers that is {p32:.2} (f32) and {p64:.2} (f64) for cylinders here, and {c32:.2} and {c64:.2} for fitted caps; \
+         with the convex route {a32:.2} and {a64:.2} for cylinders, and {b32:.2} and {b64:.2} for fitted caps; packed {z32:.2} \
+         and {z64:.2} for cylinders, and {s32:.2} and {s64:.2} for fitted caps. So fitted caps cost less than cylinders: {}; \
+         and no more than capsules: {} without culling. (Culling, the engine's default, brings cylinders near capsules: \
+         docs/SPEED.md.)",
         finding(s32 < z32 && s64 < z64 && c32 < p32 && c64 < p64),
         finding([s32, s64, c32, c64].iter().all(|ratio| *ratio < 1.05)),
     )?;
@@ -210,8 +212,8 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
     writeln!(
         page,
         "\nP_comp is the peer of the paper's Table IV, {} s on a GPU of 3.21 TFLOPS, index {}. Finding: that every model, even \
-         Z with its root finding, beats it per TFLOPS is {} on this CPU. Per TFLOPS the convex route reaches {:.1} (f32) and \
-         {:.1} (f64) times the paper's index for Z.",
+         cylinders with their root finding, beats it per TFLOPS is {} on this CPU. Per TFLOPS the convex route reaches {:.1} (f32) \
+         and {:.1} (f64) times the paper's index for cylinders.",
         PEER.0,
         PEER.1,
         finding(ahead),
