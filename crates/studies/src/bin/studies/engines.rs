@@ -5,6 +5,7 @@ use continuum_scene::subdivide::{in_four, shuffled};
 use continuum_scene::{ctr, ventricle};
 use continuum_studies::Number;
 use continuum_studies::every_pair::EveryPair;
+use continuum_studies::long_table;
 use continuum_studies::quartic::QuarticAsPrinted;
 use parry_continuum::Chain;
 use parry_continuum::distance::{Convex, DiscSolver};
@@ -13,6 +14,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use polynomial_roots::{ClosedForm, Companion};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 /// An engine is run at most so often, and not again once it has taken so many seconds.
@@ -31,6 +33,7 @@ const ENGINES: [(&str, &str, usize); 8] = [
     ("cylinders", "one by one, (18) as printed, closed form", 3),
 ];
 const COUNT: usize = ENGINES.len();
+const PRECISIONS: [&str; 2] = ["f32", "f64"];
 /// The paper's model of each of them.
 const PAPERS: [usize; COUNT] = [0, 1, 2, 0, 1, 1, 2, 2];
 
@@ -110,8 +113,8 @@ fn one_by_one<'a, T: Number + 'a, S: DiscSolver<T> + DiscSolver<f64> + 'a>(mesh:
     })
 }
 
-/// The chapter of the page. `largest` is the number of triangles for Table IV.
-pub fn chapter(largest: usize) -> Result<String, String> {
+/// The chapter of the page. `largest` is the number of triangles for Table IV; long tables go to `out`.
+pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
     let mut sizes = Vec::new();
     let mut mesh = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
@@ -131,14 +134,81 @@ pub fn chapter(largest: usize) -> Result<String, String> {
         }
         mesh = in_four(mesh);
     }
-    write_page(&sizes, [peak::single(), peak::double()]).map_err(|error| error.to_string())
+    let peak = [peak::single(), peak::double()];
+    let text = |error: std::fmt::Error| error.to_string();
+    // Double precision goes to the files; the findings speak of it too.
+    let shorten = |table: String, file: &str| {
+        long_table::write(&table, &out.join(file), |cells| cells[0] == PRECISIONS[0])
+    };
+    let times = shorten(times(&sizes).map_err(text)?, "studies_engines.csv")?;
+    let indices = shorten(indices(&sizes, peak).map_err(text)?, "studies_index.csv")?;
+    write_page(&sizes, peak, [&times, &indices]).map_err(text)
 }
 
 fn finding(holds: bool) -> &'static str {
     if holds { "confirmed" } else { "refuted" }
 }
 
-fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String, std::fmt::Error> {
+/// Triangles, and what each engine took in both precisions.
+type Size = (usize, [Measured; 2]);
+
+/// Figure 9 as a table.
+fn times(sizes: &[Size]) -> Result<String, std::fmt::Error> {
+    let mut table = String::from("| precision | model | pairs and discs |");
+    for (triangles, _) in sizes {
+        write!(table, " {triangles} |")?;
+    }
+    write!(table, " time / capsules | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
+    let Some((_, last)) = sizes.last() else { return Ok(table) };
+    for (precision, name) in PRECISIONS.into_iter().enumerate() {
+        for (engine, (model, route, capsules)) in ENGINES.into_iter().enumerate() {
+            write!(table, "| {name} | {model} | {route} |")?;
+            for (_, times) in sizes {
+                write!(table, " {:.1} |", times[precision][engine].0 * 1e3)?;
+            }
+            let ratio = last[precision][engine].0 / last[precision][capsules].0;
+            let error = sizes.iter().map(|size| size.1[precision][engine].1).fold(0.0, f64::max);
+            let error = if error == 0.0 { "0".into() } else { format!("{error:.0e}") };
+            writeln!(table, " {ratio:.2} | {error} |")?;
+        }
+    }
+    Ok(table)
+}
+
+/// 1 / (seconds x TFLOPS).
+fn index(seconds: f64, peak: f64) -> f64 {
+    1e12 / (seconds * peak)
+}
+
+/// Table IV.
+fn indices(sizes: &[Size], peak: [f64; 2]) -> Result<String, std::fmt::Error> {
+    let mut table = String::from(
+        "| precision | model | pairs and discs | s | index | against P_comp | paper's GPU: s | index | against P_comp |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let Some((_, last)) = sizes.last() else { return Ok(table) };
+    for (precision, name) in PRECISIONS.into_iter().enumerate() {
+        for (engine, (model, route, _)) in ENGINES.into_iter().enumerate() {
+            let seconds = last[precision][engine].0;
+            let index = index(seconds, peak[precision]);
+            let (paper_seconds, paper_index) = PAPER[precision][PAPERS[engine]];
+            writeln!(
+                table,
+                "| {name} | {model} | {route} | {seconds:.3} | {index:.2} | {:.1} | {paper_seconds:.3} | {paper_index:.2} | \
+                 {:.1} |",
+                index / PEER.1,
+                paper_index / PEER.1,
+            )?;
+        }
+    }
+    Ok(table)
+}
+
+fn write_page(
+    sizes: &[Size],
+    peak: [f64; 2],
+    [times, indices]: [&str; 2],
+) -> Result<String, std::fmt::Error> {
     let mut page = String::from(
         "## Figure 9 and Table IV: every triangle against 30 links\n\n\
          The ventricle of 6,000 triangles divided in four again and again, shuffled; one thread, no culling, so that each \
@@ -147,25 +217,11 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
          for root finders, because they branch; it solves a disc only where the axis' nearest point is at a flat end. The \
          paper's choices are the closed form for cylinders and the companion matrix for fitted caps. Milliseconds of a query, \
          the least of up to five. The times are divided by those of capsules taken alike; the last column is the largest error of a link's \
-         distance, once its nearest triangle is measured in double precision.\n\n| precision | model | pairs and discs |",
+         distance, once its nearest triangle is measured in double precision. The table is of single precision; \
+         [studies_engines.csv](studies_engines.csv) has double precision too.\n\n",
     );
-    for (triangles, _) in sizes {
-        write!(page, " {triangles} |")?;
-    }
-    write!(page, " time / capsules | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
+    page.push_str(times);
     let Some((triangles, last)) = sizes.last() else { return Ok(page) };
-    for (precision, name) in ["f32", "f64"].into_iter().enumerate() {
-        for (engine, (model, route, capsules)) in ENGINES.into_iter().enumerate() {
-            write!(page, "| {name} | {model} | {route} |")?;
-            for (_, times) in sizes {
-                write!(page, " {:.1} |", times[precision][engine].0 * 1e3)?;
-            }
-            let ratio = last[precision][engine].0 / last[precision][capsules].0;
-            let error = sizes.iter().map(|size| size.1[precision][engine].1).fold(0.0, f64::max);
-            let error = if error == 0.0 { "0".into() } else { format!("{error:.0e}") };
-            writeln!(page, " {ratio:.2} | {error} |")?;
-        }
-    }
     let ratio = |engine: usize| last.map(|times| times[engine].0 / times[ENGINES[engine].2].0);
     let ([z32, z64], [s32, s64]) = (ratio(2), ratio(1));
     let ([a32, a64], [b32, b64]) = (ratio(6), ratio(4));
@@ -187,27 +243,13 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
          The index is 1 / (seconds x TFLOPS), higher is better. The paper divides by its GPU's nominal peak (5.24 TFLOPS in \
          float, 2.62 in double). A CPU's nominal peak depends on a clock that varies, so the peak here is measured: \
          {:.4} TFLOPS (f32) and {:.4} (f64) for this one thread, from independent fused multiply-adds in the widest \
-         vectors, two operations each.\n\n\
-         | precision | model | pairs and discs | s | index | against P_comp | paper's GPU: s | index | against P_comp |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+         vectors, two operations each. The table is of single precision; [studies_index.csv](studies_index.csv) has double precision \
+         too.\n\n",
         peak[0] / 1e12,
         peak[1] / 1e12
     )?;
-    for (precision, name) in ["f32", "f64"].into_iter().enumerate() {
-        for (engine, (model, route, _)) in ENGINES.into_iter().enumerate() {
-            let seconds = last[precision][engine].0;
-            let index = 1e12 / (seconds * peak[precision]);
-            let (paper_seconds, paper_index) = PAPER[precision][PAPERS[engine]];
-            writeln!(
-                page,
-                "| {name} | {model} | {route} | {seconds:.3} | {index:.2} | {:.1} | {paper_seconds:.3} | {paper_index:.2} | \
-                 {:.1} |",
-                index / PEER.1,
-                paper_index / PEER.1,
-            )?;
-        }
-    }
-    let index = |precision: usize, engine: usize| 1e12 / (last[precision][engine].0 * peak[precision]);
+    page.push_str(indices);
+    let index = |precision: usize, engine: usize| index(last[precision][engine].0, peak[precision]);
     let ahead = (0..2).all(|p| (0..COUNT).all(|engine| index(p, engine) > PEER.1));
     writeln!(
         page,
