@@ -22,9 +22,9 @@ fn exhaustive(criterion: &mut Criterion) {
     let base = ventricle::entry();
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let models = [
-        ("K", Chain::capsules(&line.points, &line.radii)),
-        ("Z*", Chain::from_centreline(&line.points, &line.radii)),
-        ("Z", Chain::cylinders(&line.points, &line.radii)),
+        ("capsules", Chain::capsules(&line.points, &line.radii)),
+        ("fitted caps", Chain::from_centreline(&line.points, &line.radii)),
+        ("cylinders", Chain::cylinders(&line.points, &line.radii)),
     ]
     .map(|(name, robot)| (name, robot.expect("a valid robot")));
 
@@ -67,7 +67,7 @@ fn exhaustive(criterion: &mut Criterion) {
         single.set_level(level);
         let mut out = Vec::new();
         let mut query = || single.per_link(&models[0].1, &base, &mut out).expect("a finite pose");
-        group.bench_function(format!("K, every pair, f32, {name}"), |bencher| {
+        group.bench_function(format!("capsules, every pair, f32, {name}"), |bencher| {
             pool.install(|| bencher.iter(&mut query));
         });
     }

@@ -17,13 +17,13 @@ struct Options {
     /// A line for each point of the centreline: x,y,z and optionally the radius of the segment that begins there
     #[arg(long)]
     centreline: PathBuf,
-    /// The radius where the centreline's file has none
+    /// The radius of each segment for which the centreline's file has none
     #[arg(long, allow_negative_numbers = true)]
     radius: Option<f64>,
     /// A file with a 4x4 matrix, row by row: it brings the robot into the frame of the mesh
     #[arg(long)]
     pose: Option<PathBuf>,
-    /// Bound the clearance of the curve through the points too, so closely
+    /// Also bound the clearance of the curve through the points: how far apart the two bounds may be
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 }
@@ -37,7 +37,8 @@ fn clearance(my: &Options) -> Result<(), Box<dyn Error>> {
     let (mut points, mut radii, mut links) = (Vec::new(), Vec::new(), Vec::new());
     for (line, row) in rows(&my.centreline, 3..=4, "x,y,z or x,y,z,radius")? {
         points.push(Vector::new(row[0], row[1], row[2]));
-        radii.push(row.get(3).copied().or(my.radius).ok_or(format!("{line} has no radius; give --radius")));
+        let none = format!("{line} has no radius; write it as a fourth number, or give --radius");
+        radii.push(row.get(3).copied().or(my.radius).ok_or(none));
     }
     let radii = radii.into_iter().take(points.len().max(1) - 1).collect::<Result<Vec<f64>, _>>()?;
     let mut pose = Pose::IDENTITY;
@@ -67,7 +68,7 @@ fn rows(path: &Path, count: RangeInclusive<usize>, what: &str) -> Result<Vec<(St
     let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read {file} ({e}); check it"))?;
     let mut rows = Vec::new();
     for (line, number) in text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty()) {
-        let words = line.split([',', ';', ' ', '\t', '\u{feff}']).filter(|word| !word.is_empty());
+        let words = line.split([',', ';', ' ', '\t', '[', ']', '\u{feff}']).filter(|word| !word.is_empty());
         match words.map(str::parse).collect::<Result<Vec<_>, _>>() {
             Ok(row) if count.contains(&row.len()) => rows.push((format!("line {number} of {file}"), row)),
             Err(_) if number == 1 && !line.contains(char::is_numeric) => {}

@@ -26,20 +26,20 @@ struct Options {
     #[command(flatten)]
     anatomy: Anatomy,
 
-    /// Links with two round caps, with two flat caps, or each cap as Algorithm 1 says
+    /// The ends of each link: all round (capsule), all flat (cylinder), or what fits each joint (modified)
     #[arg(long, value_enum, default_value_t = Model::Modified)]
     model: Model,
 
-    /// Bounds on the clearance of the curve itself that are this close together, in millimetres, and links that stay this
-    /// close to it [default: 30 links, no bounds]
+    /// Take the fewest links within this distance of the curve, in millimetres, and bound the curve's own clearance as
+    /// closely [default: 30 links, no bounds]
     #[arg(long, value_name = "MM", value_parser = command::length, allow_negative_numbers = true)]
     tolerance: Option<Real>,
 
-    /// The engine that looks at every triangle, beside the search: on the CPU, or on the GPU (cargo feature `gpu`)
+    /// Where the second engine, which looks at every triangle, runs: on the CPU, or on the GPU (cargo feature `gpu`)
     #[arg(long, value_enum, default_value_t = Engine::Exhaustive)]
     engine: Engine,
 
-    /// Steps on the way in
+    /// How many steps the way in has
     #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = command::whole(1..=100_000))]
     steps: u32,
 

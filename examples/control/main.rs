@@ -23,11 +23,11 @@ use std::time::{Duration, Instant};
 /// Steer a concentric tube robot towards the wall of a ventricle under a virtual fixture.
 #[derive(Parser)]
 struct Options {
-    /// Ticks of a millisecond
+    /// How many ticks of a millisecond to simulate
     #[arg(long, value_name = "COUNT", default_value_t = 4000, value_parser = command::whole(100..=1_000_000))]
     ticks: u32,
 
-    /// Measure how long a tick takes over 100,000 of them
+    /// Measure how long a tick takes, over 100,000 of them
     #[arg(long)]
     latency: bool,
 

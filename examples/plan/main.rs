@@ -32,11 +32,11 @@ struct Options {
     #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = command::length, allow_negative_numbers = true)]
     margin: Real,
 
-    /// Where the random places come from
+    /// The seed of the random numbers
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
 
-    /// Plans of each kind, with other random places each; the first one is shown
+    /// How many plans to make in each way, with other random numbers each; the first is shown
     #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = command::whole(1..=10_000))]
     plans: u32,
 

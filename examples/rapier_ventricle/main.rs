@@ -33,15 +33,15 @@ struct Options {
     #[command(flatten)]
     anatomy: Anatomy,
 
-    /// How far the base is pushed beyond the plan, in millimetres
+    /// How far the base is pushed on after the planned way, in millimetres
     #[arg(long, value_name = "MM", default_value_t = 3.5, value_parser = distance)]
     push: Real,
 
-    /// Links, about
+    /// About how many links the robot has
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = command::whole(3..=60))]
     links: u32,
 
-    /// Pictures of the film, about; 0 for none
+    /// About how many pictures the film has; 0 for none
     #[arg(long, value_name = "COUNT", default_value_t = 40, value_parser = command::whole(0..=10_000))]
     frames: u32,
 

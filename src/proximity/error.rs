@@ -77,7 +77,7 @@ pub enum ProximityError {
     /// The bounds of a tube cannot come as close as was asked for.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \
-         ask for less"
+         a larger tolerance"
     )]
     ToleranceTooFine {
         /// What was asked for.

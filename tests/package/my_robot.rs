@@ -41,8 +41,18 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     // The files that come with the example.
     let data = |name: &str| format!("{}/examples/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let [wall, shape, pose] = ["wall.stl", "shape.csv", "pose.txt"].map(data);
-    let clearance = minimum(&["--mesh", &wall, "--centreline", &shape, "--pose", &pose]);
+    let readme = ["--mesh", &wall, "--centreline", &shape, "--pose", &pose];
+    let clearance = minimum(&readme);
     assert!(clearance > 0.5, "{clearance}");
+    // As the README goes on.
+    assert_eq!(minimum(&[&readme[..], &["--tolerance", "0.1"]].concat()), clearance);
+    // A matrix as numpy prints it.
+    let printed = &file(
+        "printed.txt",
+        "[[ 1.  0.  0. -21.]\n [ 0.  1.  0.  0.]\n [ 0.  0.  1.  0.]\n [ 0.  0.  0.  1.]]\n",
+    );
+    let printed = ["--mesh", room, "--centreline", plain, "--pose", printed, "--radius", "2"];
+    assert_eq!(minimum(&printed), 7.0);
 }
 
 #[test]
@@ -53,7 +63,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
     };
     refuse_shape("x,y,z\n30,30,20\n30,30,40\n", "line 2 of ");
-    refuse_shape("30,30,20\n30,30,40\n", "no radius; give --radius");
+    refuse_shape("30,30,20\n30,30,40\n", "no radius; write it as a fourth number, or give --radius");
     refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
     refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
     refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");

@@ -59,6 +59,34 @@ pub enum MeshFileError {
         /// The file.
         file: PathBuf,
     },
+    /// A label map has no voxel with the label that was asked for.
+    #[error("{} has no voxel with label {label}, but with {}; choose one of them", file.display(), listed(present))]
+    #[non_exhaustive]
+    NoSuchLabel {
+        /// The file.
+        file: PathBuf,
+        /// The label that was asked for.
+        label: u32,
+        /// All labels that voxels have, 0 among them, in ascending order.
+        present: Vec<u32>,
+    },
+    /// All voxels of a label map are 0.
+    #[error("{} holds no segment, because all its voxels are 0; export the segmentation again", file.display())]
+    #[non_exhaustive]
+    NothingSegmented {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Its voxels are no labels, but those of an image.
+    #[error("{} holds an image, in which a voxel is {number}, and not labels; give the segmentation of the image",
+            file.display())]
+    #[non_exhaustive]
+    NotLabels {
+        /// The file.
+        file: PathBuf,
+        /// What a voxel holds: no whole number, a negative one, or one beyond 32 bits.
+        number: f64,
+    },
     /// A vertex is not finite, in the file or after it was scaled.
     #[error("vertex {index} of {} is not finite ({}, {}, {}; scale {scale}); {advice}",
             file.display(), place[0], place[1], place[2])]
@@ -82,6 +110,13 @@ pub enum MeshFileError {
         /// The scale that was asked for.
         scale: f64,
     },
+}
+
+/// Some labels, as an error shows them.
+fn listed(labels: &[u32]) -> String {
+    const SHOWN: usize = 10;
+    let more = if labels.len() > SHOWN { ", ..." } else { "" };
+    labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
 }
 
 /// What else could be read.

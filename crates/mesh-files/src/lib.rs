@@ -17,6 +17,8 @@ mod stl;
 mod text;
 
 pub use error::MeshFileError;
+#[cfg(feature = "label-maps")]
+use label_map::Fault;
 pub use mesh::{Frame, Mesh};
 use std::path::Path;
 
@@ -105,7 +107,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 ///
 /// # Errors
 /// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not finite; a triangle
-/// names a vertex that is not there; a label map has no voxel of the label; or the scale is not a positive number.
+/// names a vertex that is not there; a label map has no voxel of the label, or holds an image instead; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     // The name and the kind of file first: a device may never end.
@@ -131,25 +133,36 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         return Err(MeshFileError::Scale { scale });
     }
     let file = path.to_owned();
-    let read = match format {
-        Format::Stl => stl::read(bytes),
-        Format::Obj => obj::read(bytes),
-        Format::Ply => ply::read(bytes),
-        #[cfg(feature = "label-maps")]
-        Format::Nifti => label_map::nifti::read(bytes).and_then(|volume| volume.surface(options.label)),
-        #[cfg(feature = "label-maps")]
-        Format::Nrrd => label_map::nrrd::read(bytes).and_then(|volume| volume.surface(options.label)),
-    };
-    let mut mesh = match read {
-        Ok(mesh) => mesh,
-        Err(reason) => {
-            let format = format.name();
-            return Err(match text::looks_like(bytes) {
-                Some(found) if found != format => MeshFileError::Misnamed { file, format, found },
-                _ => MeshFileError::Broken { file, format, reason },
-            });
+    let broken = |reason: String| {
+        let (file, format) = (path.to_owned(), format.name());
+        match text::looks_like(bytes) {
+            Some(found) if found != format => MeshFileError::Misnamed { file, format, found },
+            _ => MeshFileError::Broken { file, format, reason },
         }
     };
+    #[cfg(feature = "label-maps")]
+    let surface = |read: Result<label_map::Volume, Fault>| {
+        read.and_then(|volume| volume.surface(options.label)).map_err(|fault| {
+            let file = path.to_owned();
+            match (fault, options.label) {
+                (Fault::Broken(reason), _) => broken(reason),
+                (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
+                (Fault::NoneOf(present), Some(label)) => {
+                    MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
+                }
+                (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
+            }
+        })
+    };
+    let mut mesh = match format {
+        Format::Stl => stl::read(bytes).map_err(broken),
+        Format::Obj => obj::read(bytes).map_err(broken),
+        Format::Ply => ply::read(bytes).map_err(broken),
+        #[cfg(feature = "label-maps")]
+        Format::Nifti => surface(label_map::nifti::read(bytes)),
+        #[cfg(feature = "label-maps")]
+        Format::Nrrd => surface(label_map::nrrd::read(bytes)),
+    }?;
     if mesh.triangles.is_empty() {
         return Err(MeshFileError::Empty { file });
     }

@@ -14,7 +14,7 @@ pub struct Anatomy {
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
 
-    /// Multiplies the file's coordinates, for example 1000 for metres to millimetres
+    /// Multiply the file's coordinates by this, for example by 1000 from metres to millimetres
     #[arg(
         long,
         value_name = "FACTOR",
@@ -25,11 +25,11 @@ pub struct Anatomy {
     )]
     scale: Real,
 
-    /// The label whose surface is taken from a label map [default: all that are not 0]
+    /// The label of the wall in a label map [default: all that are not 0]
     #[arg(long, value_name = "NUMBER", requires = "mesh", value_parser = whole(0..=u32::MAX))]
     label: Option<u32>,
 
-    /// Triangles of the generated ventricle, about
+    /// About how many triangles the generated ventricle has
     #[arg(long, value_name = "COUNT", default_value_t = ventricle::DEFAULT_TRIANGLES as u32, conflicts_with = "mesh",
           value_parser = whole(ventricle::DEFAULT_TRIANGLES as u32..=20_000_000))]
     triangles: u32,

@@ -7,13 +7,14 @@
 //! | the paper's routes | [`quartic`]: segment to disc by roots; [`every_pair`]: an engine by any route |
 //! | the same on the GPU | `gpu` (feature `gpu`) |
 //! | costs | [`counted`] numbers; [`machine`] |
-//! | pages | [`quote`]: what a program writes between marks |
+//! | pages | [`quote`]: what a program writes between marks; [`long_table`]: rows for the page, the rest for a file |
 
 pub mod accuracy;
 pub mod counted;
 pub mod every_pair;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod long_table;
 pub mod machine;
 mod number;
 pub mod quartic;

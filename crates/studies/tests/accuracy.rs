@@ -24,7 +24,7 @@ fn assert_same(written: &str, measured: &str) {
     let differs = written.lines().zip(measured.lines()).find(|(written, measured)| written != measured);
     if let Some((written, measured)) = differs {
         panic!(
-            "docs/ACCURACY.md says\n{written}\nbut measured is\n{measured}\n\
+            "the docs say\n{written}\nbut measured is\n{measured}\n\
              `cargo run --release -p continuum-studies --bin accuracy` writes the tables again"
         );
     }
@@ -49,11 +49,13 @@ fn the_written_errors_are_the_measured_ones() {
 
 #[test]
 fn the_written_gaps_of_certificates_are_the_measured_ones() {
-    let measured = certificates::table(&distance_cases(), &problems::<f64>(EACH));
-    assert_same(&written("certificates"), &measured);
+    let measured = certificates::measure(&distance_cases(), &problems::<f64>(EACH));
+    assert_same(&written("certificates"), &measured.table());
+    let measured = measured.lines();
+    assert_same(&read("docs/accuracy_certificates.csv"), &measured);
     for link in ["barrel", "round cap", "flat cap", "rim"] {
         for mesh in ["vertex", "edge", "interior"] {
-            assert!(measured.contains(&format!("| {mesh} | {link} |")), "{mesh}, {link}: {measured}");
+            assert!(measured.contains(&format!("\n{mesh},{link},")), "{mesh}, {link}: {measured}");
         }
     }
 }
@@ -88,6 +90,7 @@ fn the_written_extremes_are_the_measured_ones() {
     let (double, single) = (measured::<f64>(), measured::<f32>());
     let ranges = [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])];
     assert_same(&written("extremes"), &tables::tables(&double, &single, ranges));
+    assert_same(&read("docs/accuracy_powers.csv"), &tables::powers(&double, &single));
     let file = read("docs/accuracy.csv");
     let file: Vec<_> = file.lines().collect();
     assert_eq!(file[0], tables::head());

@@ -26,9 +26,9 @@ use std::sync::Arc;
 /// lies very far out, a second hierarchy in double precision takes its place; it is built when first needed.
 ///
 /// The engine remembers its last answers, which bound the next query: any robot and pose may follow, and small motions
-/// are answered fastest. [`BvhSearch::forget`] makes it cold again.
+/// are answered fastest. [`BvhSearch::forget`] drops them.
 ///
-/// A clone shares mesh and hierarchy and has a memory of its own, still cold: one for each thread costs nothing. Where
+/// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread costs nothing. Where
 /// [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others keep theirs.
 ///
 /// ```

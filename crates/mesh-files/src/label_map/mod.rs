@@ -12,6 +12,28 @@ use std::collections::BTreeSet;
 /// The most voxels that are read; their numbers, with room around, fit in 32 bits.
 const MOST_VOXELS: u64 = 1 << 31;
 
+/// Why a label map gave no surface.
+pub enum Fault {
+    /// What its format asks for is not there.
+    Broken(String),
+    /// A voxel holds this, which is no label.
+    NotALabel(f64),
+    /// No voxel is in the surface; the voxels have these labels.
+    NoneOf(BTreeSet<u32>),
+}
+
+impl From<String> for Fault {
+    fn from(reason: String) -> Self {
+        Self::Broken(reason)
+    }
+}
+
+impl From<&str> for Fault {
+    fn from(reason: &str) -> Self {
+        Self::Broken(reason.into())
+    }
+}
+
 /// A label for each voxel, the first axis fastest, and where the voxels are.
 pub struct Volume {
     sizes: [usize; 3],
@@ -77,7 +99,7 @@ impl SignedDistance for Voxel {
 
 impl Volume {
     /// The surface of the voxels with this label, or of all that are not 0.
-    pub fn surface(&self, label: Option<u32>) -> Result<Mesh, String> {
+    pub fn surface(&self, label: Option<u32>) -> Result<Mesh, Fault> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
         let [width, height, _] = self.sizes;
         let mut low = [usize::MAX; 3];
@@ -88,7 +110,7 @@ impl Volume {
             high = [0, 1, 2].map(|axis| high[axis].max(voxel[axis]));
         }
         if low[0] == usize::MAX {
-            return Err(self.no_such_label(label));
+            return Err(Fault::NoneOf(self.labels.iter().copied().collect()));
         }
         // One voxel of outside all around closes the surface at the border; a second one at the far sides, because the
         // faces there belong to a neighbouring block that does not exist.
@@ -116,19 +138,5 @@ impl Volume {
             triangles: net.indices.as_chunks().0.iter().map(turn).collect(),
             frame: self.frame,
         })
-    }
-
-    fn no_such_label(&self, label: Option<u32>) -> String {
-        const SHOWN: usize = 10;
-        let present: BTreeSet<_> = self.labels.iter().collect();
-        let mut list: Vec<_> = present.iter().take(SHOWN).map(|label| label.to_string()).collect();
-        if present.len() > SHOWN {
-            list.push("...".into());
-        }
-        let list = list.join(", ");
-        match label {
-            Some(label) => format!("no voxel has label {label}; there are {list}"),
-            None => "all voxels are 0, so nothing is segmented".into(),
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! NIfTI-1 label maps, packed by gzip or not. Their frame is RAS, in millimetres.
 
 use super::voxels::{Kind, labels, unpack};
-use super::{Place, Volume, count};
+use super::{Fault, Place, Volume, count};
 use crate::mesh::Frame;
 use nifti::{Endianness, NiftiHeader, NiftiType};
 use std::borrow::Cow;
@@ -9,7 +9,7 @@ use std::borrow::Cow;
 /// The header, and the four bytes that tell whether more follows.
 const HEAD: usize = 352;
 
-pub fn read(bytes: &[u8]) -> Result<Volume, String> {
+pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
     let is_packed = bytes.starts_with(b"\x1f\x8b");
     let up_to = |count: usize| -> Result<Cow<'_, [u8]>, String> {
         Ok(if is_packed { unpack(bytes, count)?.into() } else { bytes[..bytes.len().min(count)].into() })
@@ -34,7 +34,9 @@ pub fn read(bytes: &[u8]) -> Result<Volume, String> {
     let offset = header.vox_offset;
     // The whole file is in memory, so that what does not fit in 32 bits is not there.
     if !(offset >= 348.0 && f64::from(offset) < f64::from(u32::MAX)) {
-        return Err(format!("its voxels begin at byte {offset}, which is in the header or past the end"));
+        return Err(
+            format!("its voxels begin at byte {offset}, which is in the header or past the end").into()
+        );
     }
     let start = offset as usize;
     let voxels = up_to(start + size)?;

@@ -1,7 +1,7 @@
 //! NRRD label maps in one file: raw, gzip or ASCII. Their frame is what `space` says, RAS or LPS.
 
 use super::voxels::{Kind, label, labels, unpack};
-use super::{Place, Volume, count};
+use super::{Fault, Place, Volume, count};
 use crate::mesh::Frame;
 use crate::text::shown;
 use std::collections::HashMap;
@@ -48,7 +48,7 @@ impl<'a> File<'a> {
     }
 }
 
-pub fn read(bytes: &[u8]) -> Result<Volume, String> {
+pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
     let file = File::new(bytes)?;
     for name in ["data file", "datafile"] {
         if file.get(name).is_some() {
@@ -57,7 +57,7 @@ pub fn read(bytes: &[u8]) -> Result<Volume, String> {
     }
     for name in ["byte skip", "line skip"] {
         if file.get(name).is_some_and(|skip| skip != "0") {
-            return Err(format!("its '{name}' is not 0; save it again with 3D Slicer or ITK-SNAP"));
+            return Err(format!("its '{name}' is not 0; save it again with 3D Slicer or ITK-SNAP").into());
         }
     }
     if file.need("dimension")? != "3" {
@@ -89,10 +89,10 @@ pub fn read(bytes: &[u8]) -> Result<Volume, String> {
                         .map_err(|_| format!("a voxel holds '{}', which is no number", shown(word)))?,
                 )
             });
-            let labels: Vec<_> = numbers.take(count).collect::<Result<_, String>>()?;
+            let labels: Vec<_> = numbers.take(count).collect::<Result<_, Fault>>()?;
             if labels.len() == count { labels } else { return Err(short.into()) }
         }
-        encoding => return Err(File::unknown("encoding", encoding)),
+        encoding => return Err(File::unknown("encoding", encoding).into()),
     };
     let (place, frame) = place(&file)?;
     Ok(Volume { sizes, labels, place, frame })

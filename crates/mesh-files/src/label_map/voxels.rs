@@ -1,5 +1,6 @@
 //! The numbers of the voxels, of any type, as labels.
 
+use super::Fault;
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 
@@ -34,11 +35,11 @@ impl Kind {
 ///
 /// # Errors
 /// It is none: the file holds an image and not a segmentation.
-pub fn label(number: f64) -> Result<u32, String> {
+pub fn label(number: f64) -> Result<u32, Fault> {
     if number >= 0.0 && number <= f64::from(u32::MAX) && number.fract() == 0.0 {
         Ok(number as u32)
     } else {
-        Err(format!("a voxel holds {number}, which is no label; give the segmentation, not the image"))
+        Err(Fault::NotALabel(number))
     }
 }
 
@@ -48,7 +49,7 @@ pub fn labels(
     kind: Kind,
     is_big_endian: bool,
     scaled: impl Fn(f64) -> f64,
-) -> Result<Vec<u32>, String> {
+) -> Result<Vec<u32>, Fault> {
     let is_big = is_big_endian;
     match kind {
         Kind::I8 => each(bytes, is_big, |b| i8::from_le_bytes(b).into(), scaled),
@@ -69,7 +70,7 @@ fn each<const SIZE: usize>(
     is_big_endian: bool,
     number: impl Fn([u8; SIZE]) -> f64,
     scaled: impl Fn(f64) -> f64,
-) -> Result<Vec<u32>, String> {
+) -> Result<Vec<u32>, Fault> {
     let voxels = bytes.as_chunks().0.iter().copied().map(|mut voxel: [u8; SIZE]| {
         if is_big_endian {
             voxel.reverse();

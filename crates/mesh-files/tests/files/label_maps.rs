@@ -275,7 +275,7 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         (
             "image.nii",
             whole().sform(&matrix).floats(112, &[0.1, 0.0]).bytes(),
-            "no label; give the segmentation",
+            "image.nii holds an image, in which a voxel is 0.70",
         ),
         ("placeless.nii", whole().bytes(), "does not say where its voxels are"),
         ("plane.nii", whole().sform(&[matrix[0], matrix[1], matrix[1]]).bytes(), "into one plane"),
@@ -287,7 +287,11 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         ("unit.nii", whole().sform(&matrix).put(123, &[7]).bytes(), "unknown code 7"),
         ("second.nii", second.bytes(), "second file"),
         ("two.nii", nifti_2.bytes(), "save it as NIfTI-1"),
-        ("zero.nii", Nifti::new(vec![0; voxels.len()]).sform(&matrix).bytes(), "nothing is segmented"),
+        (
+            "zero.nii",
+            Nifti::new(vec![0; voxels.len()]).sform(&matrix).bytes(),
+            "zero.nii holds no segment, because all its voxels are 0",
+        ),
         ("nrrd.nii", header("raw", "raw"), "holds NRRD, not NIfTI"),
         ("nifti.nrrd", good.clone(), "holds NIfTI, not NRRD"),
         ("cut.nrrd", header("raw", "raw")[..1000].to_vec(), "shorter than its header says"),
@@ -308,6 +312,23 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
     // One byte has no order, so its header need not name one.
     assert!(read("plain.nrrd", header("endian: big\n", "")).is_ok());
     refused("order", read("order.nrrd", header("type: uchar\n", "type: short\n").as_slice()), "shorter");
-    refused("label", label("a.nii", &good, 5), "no voxel has label 5; there are 0, 3, 7");
+    // The file is as it should be: only the label is not in it.
+    refused(
+        "label",
+        label("a.nii", &good, 5),
+        "a.nii has no voxel with label 5, but with 0, 3, 7; choose one",
+    );
+    refused(
+        "label",
+        label("a.nrrd", &header("raw", "raw"), 5),
+        "a.nrrd has no voxel with label 5, but with 0, 3, 7;",
+    );
+    let shades: Vec<_> = (0..voxels.len()).map(|index| (index % 200) as u8).collect();
+    let shades = Nifti::new(shades).sform(&matrix).bytes();
+    refused(
+        "label",
+        label("b.nii", &shades, 255),
+        "label 255, but with 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...; choose",
+    );
     refused("second", read("brain.nhdr", ""), "as one file");
 }

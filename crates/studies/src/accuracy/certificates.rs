@@ -98,8 +98,11 @@ impl Pair {
     }
 }
 
-/// The gaps of certificates on the links of the reference cases and of the extreme problems, by feature.
-pub fn table(cases: &[Case], problems: &[Problem<f64>]) -> String {
+/// The gaps of certificates, by the features that are nearest.
+pub struct Gaps(BTreeMap<Features, Vec<f64>>);
+
+/// The gaps on the links of the reference cases and of the extreme problems.
+pub fn measure(cases: &[Case], problems: &[Problem<f64>]) -> Gaps {
     let of_problems = problems.iter().flat_map(|problem| CAPS.map(|flat| Pair::of_problem(problem, flat)));
     let mut gaps: BTreeMap<Features, Vec<f64>> = BTreeMap::new();
     for (features, gap) in
@@ -107,15 +110,43 @@ pub fn table(cases: &[Case], problems: &[Problem<f64>]) -> String {
     {
         gaps.entry(features).or_default().push(gap);
     }
-    let mut text = String::from(
-        "| of the triangle | of the link | certificates | median gap | widest gap | wider than 16 |\n\
-         |---|---|---|---|---|---|\n",
-    );
-    for (features, gaps) in gaps {
-        let (mesh, link) = features.unwrap_or(("(they meet)", ""));
-        let (count, wide) = (gaps.len(), gaps.iter().filter(|&&gap| gap > 16.0).count());
-        let (median, worst) = median_and_worst(gaps).unwrap_or_default();
-        writeln!(text, "| {mesh} | {link} | {count} | {median:.2} | {worst:.2} | {wide} |").ok();
+    Gaps(gaps)
+}
+
+impl Gaps {
+    /// A row for each feature of the link.
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "| of the link | certificates | median gap | widest gap | wider than 16 |\n|---|---|---|---|---|\n",
+        );
+        let mut of_links: BTreeMap<Option<&str>, Vec<f64>> = BTreeMap::new();
+        for (features, gaps) in &self.0 {
+            of_links.entry(features.map(|(_, link)| link)).or_default().extend(gaps);
+        }
+        for (link, gaps) in of_links {
+            writeln!(text, "| {} | {} |", link.unwrap_or(MEETING), summary(gaps).join(" | ")).ok();
+        }
+        text
     }
-    text
+
+    /// A line for each feature of the triangle with each of the link.
+    pub fn lines(&self) -> String {
+        let mut text =
+            String::from("of the triangle,of the link,certificates,median gap,widest gap,wider than 16\n");
+        for (features, gaps) in &self.0 {
+            let (mesh, link) = features.unwrap_or((MEETING, ""));
+            writeln!(text, "{mesh},{link},{}", summary(gaps.clone()).join(",")).ok();
+        }
+        text
+    }
+}
+
+/// What the two shapes are called that have no nearest features.
+const MEETING: &str = "(they meet)";
+
+/// How many there are, the median, the widest, and how many are wider than 16 units.
+fn summary(gaps: Vec<f64>) -> [String; 4] {
+    let (count, wide) = (gaps.len(), gaps.iter().filter(|&&gap| gap > 16.0).count());
+    let (median, worst) = median_and_worst(gaps).unwrap_or_default();
+    [count.to_string(), format!("{median:.2}"), format!("{worst:.2}"), wide.to_string()]
 }

@@ -60,22 +60,6 @@ pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2])
         let of = |measurement| row(measurement, |found| kernels.contains(&found.kernel));
         writeln!(text, "| {name} | {} | {} |", of(double), of(single)).ok();
     }
-    text += "\nThe worst error of any pair at each power of ten, f64 and f32:\n\n| k |";
-    let series: Vec<_> = Extreme::ALL.into_iter().filter(|(extreme, ..)| extreme.powers(16) > 0).collect();
-    series.iter().for_each(|(_, name, _)| text += &format!(" {name} |"));
-    text += &format!("\n|---|{}\n", "---|".repeat(series.len()));
-    for power in 1..=16 {
-        write!(text, "| {power} |").ok();
-        for (extreme, ..) in &series {
-            let worst = |measurement: &Measurement| {
-                let here = |found: &&Found| found.extreme == *extreme && found.power == power;
-                let errors = measurement.found.iter().filter(here).map(|found| found.scalar);
-                errors.reduce(f64::max).map_or("-".into(), |worst| format!("{worst:.1}"))
-            };
-            write!(text, " {}, {} |", worst(double), worst(single)).ok();
-        }
-        text.push('\n');
-    }
     let [[low, high], [single_low, single_high]] = ranges;
     write!(
         text,
@@ -84,6 +68,26 @@ pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2])
         double.gap.max(single.gap)
     )
     .ok();
+    text
+}
+
+/// The worst error of any pair at each power of ten: a line for each power, a column for each category and precision.
+pub fn powers(double: &Measurement, single: &Measurement) -> String {
+    let series: Vec<_> = Extreme::ALL.into_iter().filter(|(extreme, ..)| extreme.powers(16) > 0).collect();
+    let names: Vec<_> = series.iter().map(|(_, name, _)| format!("{name} f64,{name} f32")).collect();
+    let mut text = format!("k,{}\n", names.join(","));
+    for power in 1..=16 {
+        write!(text, "{power}").ok();
+        for (extreme, ..) in &series {
+            for measurement in [double, single] {
+                let here = |found: &&Found| found.extreme == *extreme && found.power == power;
+                let errors = measurement.found.iter().filter(here).map(|found| found.scalar);
+                let worst = errors.reduce(f64::max).map_or("-".into(), |worst| format!("{worst:.1}"));
+                write!(text, ",{worst}").ok();
+            }
+        }
+        text.push('\n');
+    }
     text
 }
 

@@ -115,6 +115,12 @@ impl Peer {
     }
 }
 
+/// Whether the page shows a row of that table: what a robot in its scene meets. The file has all.
+pub fn is_shown(cells: &[&str]) -> bool {
+    ["generic", "parallel", "near parallel", "contact", "crossing", "needle", "sliver", "offset"]
+        .contains(&cells[0])
+}
+
 pub fn comparison(cases: &[Case]) -> String {
     let alike = |case: &&Case, flat| case.is_link() && case.flat() == [flat; 2];
     let capsules: Vec<_> = cases.iter().filter(|case| alike(case, false)).collect();

@@ -18,14 +18,14 @@ use std::hint::black_box;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// The robot of the ventricle with 30 links, as capsules (K), by Algorithm 1 (Z*) and as cylinders (Z).
+/// The robot of the ventricle with 30 links: as capsules, with the caps of Algorithm 1, and as cylinders.
 pub fn models() -> Result<[(&'static str, Chain); 3], String> {
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let (points, radii) = (&line.points, &line.radii);
     Ok([
-        ("K", Chain::capsules(points, radii).map_err(|error| error.to_string())?),
-        ("Z*", Chain::from_centreline(points, radii).map_err(|error| error.to_string())?),
-        ("Z", Chain::cylinders(points, radii).map_err(|error| error.to_string())?),
+        ("capsules", Chain::capsules(points, radii).map_err(|error| error.to_string())?),
+        ("fitted caps", Chain::from_centreline(points, radii).map_err(|error| error.to_string())?),
+        ("cylinders", Chain::cylinders(points, radii).map_err(|error| error.to_string())?),
     ])
 }
 
@@ -51,11 +51,12 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
          `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, but a sphere around \
          it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled, as in the \
          paper; and in the order of subdivision, where neighbours stand together.\n\n\
-         | order | precision | culling | K | Z* | Z | Z* / K | Z / K |\n|---|---|---|---|---|---|---|---|\n",
+         | order | precision | culling | capsules | fitted caps | cylinders | fitted caps / capsules | cylinders / capsules |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     let mut work = String::from(
         "\nShare of the pairs whose axis distance was computed (a pack at a time), and that were measured in double \
-         precision:\n\n| order | precision | K | Z* | Z |\n|---|---|---|---|---|\n",
+         precision:\n\n| order | precision | capsules | fitted caps | cylinders |\n|---|---|---|---|---|\n",
     );
     let models = models()?;
     let sorted = divided(times);
@@ -81,7 +82,7 @@ fn instruction_sets(
 ) -> Result<String, String> {
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
     let mut page = String::from(
-        "\nNanoseconds a pair by instruction set, K without culling, one thread:\n\n\
+        "\nNanoseconds a pair by instruction set, capsules without culling, one thread:\n\n\
          | instruction set | f32 | f64 |\n|---|---|---|\n",
     );
     for (name, level) in levels() {
@@ -136,7 +137,7 @@ fn rows<T: SearchPrecision + Send>(
             engine.set_culling(culling);
             engines.push(engine);
         }
-        let [mut k, mut z_star, mut z] =
+        let [mut capsules, mut fitted, mut flat] =
             <[Exhaustive<T>; 3]>::try_from(engines).map_err(|_| "three models")?;
         let (mut out1, mut out2, mut out3) = (Vec::new(), Vec::new(), Vec::new());
         let times = medians::<String>(
@@ -153,9 +154,9 @@ fn rows<T: SearchPrecision + Send>(
                     }
                     Ok(())
                 },
-                &mut || k.per_link(&models[0].1, &base, &mut out1).map_err(text),
-                &mut || z_star.per_link(&models[1].1, &base, &mut out2).map_err(text),
-                &mut || z.per_link(&models[2].1, &base, &mut out3).map_err(text),
+                &mut || capsules.per_link(&models[0].1, &base, &mut out1).map_err(text),
+                &mut || fitted.per_link(&models[1].1, &base, &mut out2).map_err(text),
+                &mut || flat.per_link(&models[2].1, &base, &mut out3).map_err(text),
             ],
             effort.enough / 2,
         )?;
@@ -173,12 +174,23 @@ fn rows<T: SearchPrecision + Send>(
             (_, false) => 25.0,
             (_, true) => 80.0,
         };
-        let job = format!("exhaustive K, {precision}, {} culling", if culling { "with" } else { "without" });
+        let job = format!(
+            "exhaustive, capsules, {precision}, {} culling",
+            if culling { "with" } else { "without" }
+        );
         goals.note(&job, Goal::AtLeast(least), peer / ours[0]);
         if culling {
-            goals.note("exhaustive Z* against K, with culling", Goal::AtMost(1.05), ours[1] / ours[0]);
-            goals.note("exhaustive Z against K, with culling", Goal::AtMost(1.2), ours[2] / ours[0]);
-            for work in [k.work(), z_star.work(), z.work()] {
+            goals.note(
+                "exhaustive, fitted caps against capsules, with culling",
+                Goal::AtMost(1.05),
+                ours[1] / ours[0],
+            );
+            goals.note(
+                "exhaustive, cylinders against capsules, with culling",
+                Goal::AtMost(1.2),
+                ours[2] / ours[0],
+            );
+            for work in [capsules.work(), fitted.work(), flat.work()] {
                 let share = |count: u64| 100.0 * count as f64 / work.visited as f64;
                 let _ =
                     write!(shares, " {:.2} %, {:.4} % |", share(work.axis_distances), share(work.measured));

@@ -25,17 +25,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+/// Measure how fast every engine answers, beside parry.
 #[derive(Parser)]
 struct Options {
     /// Where to write SPEED.md and speed.svg
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 
-    /// How often the ventricle of 10,000 triangles is divided in four for the largest mesh; no other is larger
+    /// How often the ventricle of 10,000 triangles is divided in four; other meshes stay smaller
     #[arg(long, value_name = "TIMES", default_value_t = 5, value_parser = command::whole(1..=6))]
     largest: u32,
 
-    /// Seconds for each group of jobs that take turns; groups of a few jobs take less
+    /// Seconds for each group of jobs that are compared; small groups take less
     #[arg(long, value_name = "SECONDS", default_value_t = 4.0, value_parser = seconds)]
     enough: f64,
 }
@@ -90,8 +91,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let table: String = rows.iter().filter(|row| !row.contains("| 327680 |")).map(String::as_str).collect();
     let quote = format!(
         "{written}: a robot of 30 links in a cavity of about 100 mm, near the wall (2 mm away) and far from it (19 mm). \
-         Microseconds a query, and how many times faster than parry, which is bounded as fairly as this crate; the first time, \
-         and again in a control loop.\n\n{}{table}\n\
+         Microseconds a query, and how many times faster than parry, which is given the same bounds. The first time the engine has \
+         no answers to start from; again it has those of the query before, as in a control loop.\n\n{}{table}\n\
          A planner throws random shapes and asks whether they touch, each for the first time. Microseconds a shape:\n\n{shapes}\n\
          [docs/SPEED.md](docs/SPEED.md) has the rest.\n",
         search::HEAD,

@@ -13,8 +13,8 @@ use std::fmt::Write;
 pub fn chapter(effort: Effort) -> Result<String, String> {
     let mut page = String::from(
         "## Moving anatomy\n\n\
-         A pulsating ventricle: every vertex moves in every frame, then one per-link query of 30 links (Z*), on all \
-         cores. Milliseconds a frame; a search that is built anew includes neither parry's mesh nor its hierarchy.\n\n\
+         A pulsating ventricle: every vertex moves in every frame, then one per-link query of 30 links with fitted \
+         caps, on all cores. Milliseconds a frame; a search that is built anew includes neither parry's mesh nor its hierarchy.\n\n\
          | triangles | refit and search | exhaustive f32 | exhaustive f64 | build and search |\n|---|---|---|---|---|\n",
     );
     let [_, (_, robot), _] = models()?;

@@ -68,9 +68,10 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
         "## Planner\n\n\
          Random shapes of three tubes, 30 links each, from a fixed entry: does the shape touch the wall? `clears` with \
          margin 0, and the minimum, each without any memory of the last shape. The peer is parry's \
-         `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. Microseconds a shape.\n\n\
-         | scene | triangles | shapes | how many | parry | clears | times faster | minimum |\n\
-         |---|---|---|---|---|---|---|---|\n",
+         `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. Microseconds a shape, of those that \
+         touch and of those that are free, and how many of each there are.\n\n\
+         | scene | triangles | touching | parry | clears | minimum | free | parry | clears | minimum |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut quote = String::from(
         "| wall | triangles | touching: parry | this crate | free: parry | this crate |\n|---|---|---|---|---|---|\n",
@@ -84,7 +85,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
         let mut search = BvhSearch::new(&mesh).map_err(|error| error.to_string())?;
         let clear = |shape: &Shape| search.clears(&shape.chain, &base, 0.0).map_err(text);
         let clear: Vec<_> = shapes.iter().map(clear).collect::<Result<_, _>>()?;
-        let _ = write!(quote, "| {scene} | {} |", mesh.num_triangles());
+        for table in [&mut page, &mut quote] {
+            let _ = write!(table, "| {scene} | {} |", mesh.num_triangles());
+        }
         for (kind, is_clear) in [("colliding", false), ("free", true)] {
             let group: Vec<_> = shapes
                 .iter()
@@ -94,10 +97,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
                 .collect();
             let timed = &group[..group.len().min(TIMED)];
             let [parry, clears, minimum] = times(&mesh, &search, timed, &base, effort.enough / 4)?;
-            let _ = writeln!(
+            let _ = write!(
                 page,
-                "| {scene} | {} | {kind} | {} | {parry:.2} | {clears:.2} | {:.1} x | {minimum:.2} |",
-                mesh.num_triangles(),
+                " {} | {parry:.2} | {clears:.2} ({:.1} x) | {minimum:.2} |",
                 group.len(),
                 parry / clears,
             );
@@ -105,6 +107,7 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
             let goal = if is_clear { 20.0 } else { 10.0 };
             goals.note(&format!("clears, random shapes, {kind}"), Goal::AtLeast(goal), parry / clears);
         }
+        page.push('\n');
         quote.push('\n');
         let _ = write!(batches, "| {scene} | {} |", mesh.num_triangles());
         let robots: Vec<_> = shapes.iter().cycle().take(BATCH).map(|shape| (&shape.chain, base)).collect();

@@ -3,6 +3,7 @@
 use super::turns::in_turns;
 use continuum_studies::Number;
 use continuum_studies::counted::{Counted, Counts, count};
+use continuum_studies::long_table;
 use continuum_studies::quartic::{QuarticAsPrinted, RecentredQuartic};
 use continuum_testing::Random;
 use continuum_testing::disc_problems::{DiscProblem, Kind};
@@ -13,6 +14,7 @@ use polynomial_roots::*;
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::hint::black_box;
+use std::path::Path;
 
 /// Problems that are timed, and how often.
 const TIMED: usize = 1000;
@@ -158,8 +160,8 @@ fn in_packs<T: Scalar, S>(_: S, rows: &[Vec<T>; 10], out: &mut [T]) {
     }
 }
 
-/// The chapter of the page.
-pub fn chapter(count: usize) -> Result<String, String> {
+/// The chapter of the page; its long table goes to `out`.
+pub fn chapter(count: usize, out: &Path) -> Result<String, String> {
     let mut random = Random::new(1);
     let problems: Vec<_> =
         (0..count).map(|i| DiscProblem::new(&mut random, Kind::ALL[i % Kind::ALL.len()])).collect();
@@ -171,25 +173,19 @@ pub fn chapter(count: usize) -> Result<String, String> {
     };
     let sample: Vec<_> = (0..TIMED).map(|_| DiscProblem::new(&mut random, Kind::Random)).collect();
     let tables = [rows::<f32>(&usable(single), &sample), rows::<f64>(&usable(double), &sample)];
-    write_page(count, &tables, [wide::<f32>(&sample), wide::<f64>(&sample)])
-        .map_err(|error| error.to_string())
+    let text = |error: std::fmt::Error| error.to_string();
+    // A polish does the same for every finder.
+    let is_shown = |cells: &[&str]| !cells[0].ends_with("polish") || cells[0].contains("closed form");
+    let table = table(&tables).map_err(text)?;
+    let routes = long_table::write(&table, &out.join("studies_discs.csv"), is_shown)?;
+    write_page(count, &tables, [wide::<f32>(&sample), wide::<f64>(&sample)], &routes).map_err(text)
 }
 
-fn write_page(count: usize, tables: &[Vec<Row>; 2], wide: [f64; 2]) -> Result<String, std::fmt::Error> {
-    let mut page = format!(
-        "## Table I: root finders as routes to a disc\n\n\
-         The distance between a segment and a solid disc, on {count} problems, as many of each of {} kinds, most of them \
-         nasty (`crates/testing/src/disc_problems.rs`): parallel, tangent, touching or ending on the rim, near the axis, \
-         sizes of any ratio. The reference has twice the digits of f64. The error is in units of u x extent (u = 2^-24 \
-         or 2^-53, extent = the largest coordinate difference, or the radius); gross is an error above 1e-4 extent. \
-         Nanoseconds on one thread, one problem at a time, on {TIMED} random problems. Operations in f64, on average: \
-         additions and multiplications / divisions / square roots / cube roots and cosines.\n\n\
-         \"As printed\" takes the real roots of (18) about the segment's middle. \"Recentred\" counts from the foot of \
-         the disc's centre and takes the real parts of all roots; a polish is a Newton step on the distance's \
-         derivative.\n\n\
-         | route | f32: worst | > 8 | gross | ns | f64: worst | > 8 | gross | ns | operations |\n\
+/// Every route, in both precisions.
+fn table(tables: &[Vec<Row>; 2]) -> Result<String, std::fmt::Error> {
+    let mut page = String::from(
+        "| route | f32: worst | > 8 | gross | ns | f64: worst | > 8 | gross | ns | operations |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
-        Kind::ALL.len()
     );
     for (single, double) in tables[0].iter().zip(&tables[1]) {
         write!(page, "| {} |", single.name)?;
@@ -200,6 +196,29 @@ fn write_page(count: usize, tables: &[Vec<Row>; 2], wide: [f64; 2]) -> Result<St
         let Counts { simple, divisions, roots, functions } = double.counts;
         writeln!(page, " {simple:.0} / {divisions:.1} / {roots:.1} / {functions:.1} |")?;
     }
+    Ok(page)
+}
+
+fn write_page(
+    count: usize,
+    tables: &[Vec<Row>; 2],
+    wide: [f64; 2],
+    routes: &str,
+) -> Result<String, std::fmt::Error> {
+    let mut page = format!(
+        "## Table I: root finders as routes to a disc\n\n\
+         The distance between a segment and a solid disc, on {count} problems, as many of each of {} kinds, most of them \
+         nasty (`crates/testing/src/disc_problems.rs`): parallel, tangent, touching or ending on the rim, near the axis, \
+         sizes of any ratio. The reference has twice the digits of f64. The error is in units of u x extent (u = 2^-24 \
+         or 2^-53, extent = the largest coordinate difference, or the radius); gross is an error above 1e-4 extent. \
+         Nanoseconds on one thread, one problem at a time, on {TIMED} random problems. Operations in f64, on average: \
+         additions and multiplications / divisions / square roots / cube roots and cosines.\n\n\
+         \"As printed\" takes the real roots of (18) about the segment's middle. \"Recentred\" counts from the foot of \
+         the disc's centre and takes the real parts of all roots; a polish is a Newton step on the distance's \
+         derivative. [studies_discs.csv](studies_discs.csv) has every finder with and without polish.\n\n",
+        Kind::ALL.len()
+    );
+    page.push_str(routes);
     for ((precision, table), wide) in ["f32", "f64"].into_iter().zip(tables).zip(wide) {
         let convex = &table[0];
         let is_polished = |row: &&Row| row.name == "recentred, closed form, 1 polish";

@@ -5,6 +5,7 @@ use continuum_scene::subdivide::{in_four, shuffled};
 use continuum_scene::{ctr, ventricle};
 use continuum_studies::Number;
 use continuum_studies::every_pair::EveryPair;
+use continuum_studies::long_table;
 use continuum_studies::quartic::QuarticAsPrinted;
 use parry_continuum::Chain;
 use parry_continuum::distance::{Convex, DiscSolver};
@@ -13,6 +14,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use polynomial_roots::{ClosedForm, Companion};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 /// An engine is run at most so often, and not again once it has taken so many seconds.
@@ -21,20 +23,22 @@ const ENOUGH: f64 = 1.0;
 
 /// Model, how pairs are taken and the route to a disc, and the engine that takes them alike for capsules.
 const ENGINES: [(&str, &str, usize); 8] = [
-    ("K", "packed, no discs", 0),
-    ("Z*", "packed, convex", 0),
-    ("Z", "packed, convex", 0),
-    ("K", "one by one, no discs", 3),
-    ("Z*", "one by one, convex", 3),
-    ("Z*", "one by one, (18) as printed, companion", 3),
-    ("Z", "one by one, convex", 3),
-    ("Z", "one by one, (18) as printed, closed form", 3),
+    ("capsules", "packed, no discs", 0),
+    ("fitted caps", "packed, convex", 0),
+    ("cylinders", "packed, convex", 0),
+    ("capsules", "one by one, no discs", 3),
+    ("fitted caps", "one by one, convex", 3),
+    ("fitted caps", "one by one, (18) as printed, companion", 3),
+    ("cylinders", "one by one, convex", 3),
+    ("cylinders", "one by one, (18) as printed, closed form", 3),
 ];
 const COUNT: usize = ENGINES.len();
+const PRECISIONS: [&str; 2] = ["f32", "f64"];
 /// The paper's model of each of them.
 const PAPERS: [usize; COUNT] = [0, 1, 2, 0, 1, 1, 2, 2];
 
-/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for K, Z* and Z in float, then in double.
+/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for capsules, fitted caps and cylinders in
+/// float, then in double.
 const PAPER: [[(f64, f64); 3]; 2] =
     [[(0.016, 11.93), (0.016, 11.93), (0.276, 0.69)], [(0.037, 10.32), (0.037, 10.32), (0.330, 1.16)]];
 /// Seconds and index of the peer that the paper compares itself with.
@@ -50,18 +54,18 @@ fn measure<T: SearchPrecision + Number>(mesh: &TriMesh) -> Result<Measured, Stri
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let (points, radii) = (&line.points, &line.radii);
     let text = |error: parry_continuum::RobotError| error.to_string();
-    let k = Chain::capsules(points, radii).map_err(text)?;
-    let z_star = Chain::from_centreline(points, radii).map_err(text)?;
-    let z = Chain::cylinders(points, radii).map_err(text)?;
+    let capsules = Chain::capsules(points, radii).map_err(text)?;
+    let fitted = Chain::from_centreline(points, radii).map_err(text)?;
+    let flat = Chain::cylinders(points, radii).map_err(text)?;
     let mut engines = [
-        (&k, packed::<T>(mesh)?),
-        (&z_star, packed::<T>(mesh)?),
-        (&z, packed::<T>(mesh)?),
-        (&k, one_by_one::<T, Convex>(mesh)),
-        (&z_star, one_by_one::<T, Convex>(mesh)),
-        (&z_star, one_by_one::<T, QuarticAsPrinted<Companion>>(mesh)),
-        (&z, one_by_one::<T, Convex>(mesh)),
-        (&z, one_by_one::<T, QuarticAsPrinted<ClosedForm>>(mesh)),
+        (&capsules, packed::<T>(mesh)?),
+        (&fitted, packed::<T>(mesh)?),
+        (&flat, packed::<T>(mesh)?),
+        (&capsules, one_by_one::<T, Convex>(mesh)),
+        (&fitted, one_by_one::<T, Convex>(mesh)),
+        (&fitted, one_by_one::<T, QuarticAsPrinted<Companion>>(mesh)),
+        (&flat, one_by_one::<T, Convex>(mesh)),
+        (&flat, one_by_one::<T, QuarticAsPrinted<ClosedForm>>(mesh)),
     ];
     let base = ventricle::entry();
     let mut exact = Exhaustive::<f64>::new(mesh).map_err(|error| error.to_string())?;
@@ -109,8 +113,8 @@ fn one_by_one<'a, T: Number + 'a, S: DiscSolver<T> + DiscSolver<f64> + 'a>(mesh:
     })
 }
 
-/// The chapter of the page. `largest` is the number of triangles for Table IV.
-pub fn chapter(largest: usize) -> Result<String, String> {
+/// The chapter of the page. `largest` is the number of triangles for Table IV; long tables go to `out`.
+pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
     let mut sizes = Vec::new();
     let mut mesh = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
@@ -130,52 +134,106 @@ pub fn chapter(largest: usize) -> Result<String, String> {
         }
         mesh = in_four(mesh);
     }
-    write_page(&sizes, [peak::single(), peak::double()]).map_err(|error| error.to_string())
+    let peak = [peak::single(), peak::double()];
+    let text = |error: std::fmt::Error| error.to_string();
+    // Double precision goes to the files; the findings speak of it too.
+    let shorten = |table: String, file: &str| {
+        long_table::write(&table, &out.join(file), |cells| cells[0] == PRECISIONS[0])
+    };
+    let times = shorten(times(&sizes).map_err(text)?, "studies_engines.csv")?;
+    let indices = shorten(indices(&sizes, peak).map_err(text)?, "studies_index.csv")?;
+    write_page(&sizes, peak, [&times, &indices]).map_err(text)
 }
 
 fn finding(holds: bool) -> &'static str {
     if holds { "confirmed" } else { "refuted" }
 }
 
-fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String, std::fmt::Error> {
-    let mut page = String::from(
-        "## Figure 9 and Table IV: every triangle against 30 links\n\n\
-         The ventricle of 6,000 triangles divided in four again and again, shuffled; one thread, no culling, so that each \
-         pair costs its full distance. K: capsules, Z*: modified cylinders by Algorithm 1, Z: cylinders. Packed is this \
-         crate's exhaustive engine, in the widest instructions of the machine. One by one is a plain loop, the only way \
-         for root finders, because they branch; it solves a disc only where the axis' nearest point is at a flat end. The \
-         paper's choices are the closed form for Z and the companion matrix for Z*. Milliseconds of a query, the least of \
-         up to five. The times are divided by those of K taken alike; the last column is the largest error of a link's \
-         distance, once its nearest triangle is measured in double precision.\n\n| precision | model | pairs and discs |",
-    );
+/// Triangles, and what each engine took in both precisions.
+type Size = (usize, [Measured; 2]);
+
+/// Figure 9 as a table.
+fn times(sizes: &[Size]) -> Result<String, std::fmt::Error> {
+    let mut table = String::from("| precision | model | pairs and discs |");
     for (triangles, _) in sizes {
-        write!(page, " {triangles} |")?;
+        write!(table, " {triangles} |")?;
     }
-    write!(page, " time / K | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
-    let Some((triangles, last)) = sizes.last() else { return Ok(page) };
-    for (precision, name) in ["f32", "f64"].into_iter().enumerate() {
+    write!(table, " time / capsules | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
+    let Some((_, last)) = sizes.last() else { return Ok(table) };
+    for (precision, name) in PRECISIONS.into_iter().enumerate() {
         for (engine, (model, route, capsules)) in ENGINES.into_iter().enumerate() {
-            write!(page, "| {name} | {model} | {route} |")?;
+            write!(table, "| {name} | {model} | {route} |")?;
             for (_, times) in sizes {
-                write!(page, " {:.1} |", times[precision][engine].0 * 1e3)?;
+                write!(table, " {:.1} |", times[precision][engine].0 * 1e3)?;
             }
             let ratio = last[precision][engine].0 / last[precision][capsules].0;
             let error = sizes.iter().map(|size| size.1[precision][engine].1).fold(0.0, f64::max);
             let error = if error == 0.0 { "0".into() } else { format!("{error:.0e}") };
-            writeln!(page, " {ratio:.2} | {error} |")?;
+            writeln!(table, " {ratio:.2} | {error} |")?;
         }
     }
+    Ok(table)
+}
+
+/// 1 / (seconds x TFLOPS).
+fn index(seconds: f64, peak: f64) -> f64 {
+    1e12 / (seconds * peak)
+}
+
+/// Table IV.
+fn indices(sizes: &[Size], peak: [f64; 2]) -> Result<String, std::fmt::Error> {
+    let mut table = String::from(
+        "| precision | model | pairs and discs | s | index | against P_comp | paper's GPU: s | index | against P_comp |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let Some((_, last)) = sizes.last() else { return Ok(table) };
+    for (precision, name) in PRECISIONS.into_iter().enumerate() {
+        for (engine, (model, route, _)) in ENGINES.into_iter().enumerate() {
+            let seconds = last[precision][engine].0;
+            let index = index(seconds, peak[precision]);
+            let (paper_seconds, paper_index) = PAPER[precision][PAPERS[engine]];
+            writeln!(
+                table,
+                "| {name} | {model} | {route} | {seconds:.3} | {index:.2} | {:.1} | {paper_seconds:.3} | {paper_index:.2} | \
+                 {:.1} |",
+                index / PEER.1,
+                paper_index / PEER.1,
+            )?;
+        }
+    }
+    Ok(table)
+}
+
+fn write_page(
+    sizes: &[Size],
+    peak: [f64; 2],
+    [times, indices]: [&str; 2],
+) -> Result<String, std::fmt::Error> {
+    let mut page = String::from(
+        "## Figure 9 and Table IV: every triangle against 30 links\n\n\
+         The ventricle of 6,000 triangles divided in four again and again, shuffled; one thread, no culling, so that each \
+         pair costs its full distance. The models are capsules, links whose caps fit (Algorithm 1) and cylinders: K, Z* and Z \
+         in the paper. Packed is this crate's exhaustive engine, in the widest instructions of the machine. One by one is a plain loop, the only way \
+         for root finders, because they branch; it solves a disc only where the axis' nearest point is at a flat end. The \
+         paper's choices are the closed form for cylinders and the companion matrix for fitted caps. Milliseconds of a query, \
+         the least of up to five. The times are divided by those of capsules taken alike; the last column is the largest error of a link's \
+         distance, once its nearest triangle is measured in double precision. The table is of single precision; \
+         [studies_engines.csv](studies_engines.csv) has double precision too.\n\n",
+    );
+    page.push_str(times);
+    let Some((triangles, last)) = sizes.last() else { return Ok(page) };
     let ratio = |engine: usize| last.map(|times| times[engine].0 / times[ENGINES[engine].2].0);
     let ([z32, z64], [s32, s64]) = (ratio(2), ratio(1));
     let ([a32, a64], [b32, b64]) = (ratio(6), ratio(4));
     let ([p32, p64], [c32, c64]) = (ratio(7), ratio(5));
     writeln!(
         page,
-        "\nFinding: the paper's CPU takes 2.29 times as long for Z as for K, and no longer for Z*. With its solvers that is \
-         {p32:.2} (f32) and {p64:.2} (f64) for Z here, and {c32:.2} and {c64:.2} for Z*; with the convex route {a32:.2} and \
-         {a64:.2} for Z, and {b32:.2} and {b64:.2} for Z*; packed {z32:.2} and {z64:.2} for Z, and {s32:.2} and {s64:.2} \
-         for Z*. So Z* costs less than Z: {}; and no more than K: {} without culling. (Culling, the engine's default, brings \
-         Z near K: docs/SPEED.md.)",
+        "\nFinding: the paper's CPU takes 2.29 times as long for cylinders as for capsules, and no longer for fitted caps. With \
+         its solvers that is {p32:.2} (f32) and {p64:.2} (f64) for cylinders here, and {c32:.2} and {c64:.2} for fitted caps; \
+         with the convex route {a32:.2} and {a64:.2} for cylinders, and {b32:.2} and {b64:.2} for fitted caps; packed {z32:.2} \
+         and {z64:.2} for cylinders, and {s32:.2} and {s64:.2} for fitted caps. So fitted caps cost less than cylinders: {}; \
+         and no more than capsules: {} without culling. (Culling, the engine's default, brings cylinders near capsules: \
+         docs/SPEED.md.)",
         finding(s32 < z32 && s64 < z64 && c32 < p32 && c64 < p64),
         finding([s32, s64, c32, c64].iter().all(|ratio| *ratio < 1.05)),
     )?;
@@ -185,33 +243,19 @@ fn write_page(sizes: &[(usize, [Measured; 2])], peak: [f64; 2]) -> Result<String
          The index is 1 / (seconds x TFLOPS), higher is better. The paper divides by its GPU's nominal peak (5.24 TFLOPS in \
          float, 2.62 in double). A CPU's nominal peak depends on a clock that varies, so the peak here is measured: \
          {:.4} TFLOPS (f32) and {:.4} (f64) for this one thread, from independent fused multiply-adds in the widest \
-         vectors, two operations each.\n\n\
-         | precision | model | pairs and discs | s | index | against P_comp | paper's GPU: s | index | against P_comp |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+         vectors, two operations each. The table is of single precision; [studies_index.csv](studies_index.csv) has double precision \
+         too.\n\n",
         peak[0] / 1e12,
         peak[1] / 1e12
     )?;
-    for (precision, name) in ["f32", "f64"].into_iter().enumerate() {
-        for (engine, (model, route, _)) in ENGINES.into_iter().enumerate() {
-            let seconds = last[precision][engine].0;
-            let index = 1e12 / (seconds * peak[precision]);
-            let (paper_seconds, paper_index) = PAPER[precision][PAPERS[engine]];
-            writeln!(
-                page,
-                "| {name} | {model} | {route} | {seconds:.3} | {index:.2} | {:.1} | {paper_seconds:.3} | {paper_index:.2} | \
-                 {:.1} |",
-                index / PEER.1,
-                paper_index / PEER.1,
-            )?;
-        }
-    }
-    let index = |precision: usize, engine: usize| 1e12 / (last[precision][engine].0 * peak[precision]);
+    page.push_str(indices);
+    let index = |precision: usize, engine: usize| index(last[precision][engine].0, peak[precision]);
     let ahead = (0..2).all(|p| (0..COUNT).all(|engine| index(p, engine) > PEER.1));
     writeln!(
         page,
         "\nP_comp is the peer of the paper's Table IV, {} s on a GPU of 3.21 TFLOPS, index {}. Finding: that every model, even \
-         Z with its root finding, beats it per TFLOPS is {} on this CPU. Per TFLOPS the convex route reaches {:.1} (f32) and \
-         {:.1} (f64) times the paper's index for Z.",
+         cylinders with their root finding, beats it per TFLOPS is {} on this CPU. Per TFLOPS the convex route reaches {:.1} (f32) \
+         and {:.1} (f64) times the paper's index for cylinders.",
         PEER.0,
         PEER.1,
         finding(ahead),

@@ -24,9 +24,10 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Repeat the paper's studies on this processor: branching, root finders and exhaustive engines.
 #[derive(Parser)]
 struct Options {
-    /// Where to write STUDIES.md
+    /// Where to write STUDIES.md, and its long tables as studies_*.csv
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 
@@ -38,7 +39,7 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = at_least_20)]
     problems: usize,
 
-    /// The larger number of queries of Tables II and III
+    /// Queries for Tables II and III, which have 10,000 too
     #[arg(long, value_name = "COUNT", default_value_t = 100_000_000, value_parser = at_least_20)]
     queries: usize,
 
@@ -46,7 +47,7 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = at_least_20)]
     triangles: usize,
 
-    /// Polynomials of each degree for Table V, and ten times as many as for the companion matrix
+    /// Polynomials of each degree for Table V; the companion matrix gets a tenth of them
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = at_least_20)]
     polynomials: usize,
 }
@@ -98,10 +99,10 @@ fn measure(options: &Options) -> Result<(), String> {
         rest = old.map_or(rest, |(_, after)| after.trim_start_matches("\n## "));
         if options.only.is_none_or(|only| only == chapter) {
             page.push_str(&match chapter {
-                Chapter::Discs => discs::chapter(options.problems)?,
+                Chapter::Discs => discs::chapter(options.problems, &options.out)?,
                 Chapter::Branching => pairs::chapters(options.queries)?.join("\n"),
-                Chapter::Engines => engines::chapter(options.triangles)?,
-                Chapter::Polynomials => polynomials::chapter(options.polynomials)?,
+                Chapter::Engines => engines::chapter(options.triangles, &options.out)?,
+                Chapter::Polynomials => polynomials::chapter(options.polynomials, &options.out)?,
                 Chapter::Schur => schur::chapter(options.polynomials.div_ceil(10))?,
             });
         } else if let Some((text, _)) = old {

@@ -1,15 +1,19 @@
 //! Table V: roots of random polynomials by the four finders.
 
 use super::turns::in_turns;
+use continuum_studies::long_table;
 use continuum_testing::Random;
 use polynomial_roots::*;
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::hint::black_box;
+use std::path::Path;
 
 /// On one thread the finders take turns with so many parts of the polynomials, each so small a share of all.
 const TURNS: usize = 20;
 const SHARE: usize = 200;
+/// The degrees of the page: the quartics that discs lead to, and larger ones.
+const SHOWN: [&str; 3] = ["4", "8", "15"];
 const FINDERS: [&str; 4] = ["closed form", "Bairstow", "companion", "Jenkins-Traub"];
 
 /// The paper's milliseconds for 1e6 polynomials: degree, finder, then CPU float, CPU double, GPU float, GPU double.
@@ -96,8 +100,8 @@ fn outcomes<T: Real + Send + Sync, const M: usize>(count: usize) -> [Outcome; 4]
     })
 }
 
-/// The chapter of the page.
-pub fn chapter(count: usize) -> Result<String, String> {
+/// The chapter of the page; its long table goes to `out`.
+pub fn chapter(count: usize, out: &Path) -> Result<String, String> {
     let both = |degree: usize| -> [[Outcome; 4]; 2] {
         match degree {
             2 => [outcomes::<f32, 3>(count), outcomes::<f64, 3>(count)],
@@ -110,22 +114,33 @@ pub fn chapter(count: usize) -> Result<String, String> {
         }
     };
     let measured: Vec<_> = [2, 3, 4, 6, 8, 10, 15].map(|degree| (degree, both(degree))).into();
-    write_page(count, &measured).map_err(|error| error.to_string())
+    let table = table(&measured).map_err(|error| error.to_string())?;
+    let is_shown = |cells: &[&str]| SHOWN.contains(&cells[0]);
+    let table = long_table::write(&table, &out.join("studies_roots.csv"), is_shown)?;
+    Ok(page(count, &table) + &findings(&measured))
 }
 
 type Measured = (usize, [[Outcome; 4]; 2]);
 
-fn write_page(count: usize, measured: &[Measured]) -> Result<String, std::fmt::Error> {
+fn page(count: usize, table: &str) -> String {
     let threads = rayon::current_num_threads();
-    let mut page = format!(
+    let [low, middle, high] = SHOWN;
+    format!(
         "## Table V: roots of random polynomials\n\n\
          {count} polynomials of each degree, coefficients uniform in [-100, 100], one polynomial at a time: milliseconds on \
          one thread (from the median of {TURNS} parts of 1/{SHARE} each), and on all {threads} (in one go); and the share of the roots that were found. Every root is tested, in the time \
          given: one that does not solve the polynomial to rounding counts as not found. (The finders branch at every step, \
          so lanes of one pack would wait for each other; there is no packed version.) The last columns are multiples of \
-         the closed form's time at degree 4: ours on one thread, and the paper's on its CPU and its GPU.\n\n\
-         | degree | finder | f32 ms | all threads | found | f64 ms | all threads | found | f32 ratio | paper CPU | GPU | f64 \
-         ratio | paper CPU | GPU |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+         the closed form's time at degree 4: ours on one thread, and the paper's on its CPU and its GPU. Degrees {low}, \
+         {middle} and {high}; [studies_roots.csv](studies_roots.csv) has all from 2 to 15.\n\n{table}"
+    )
+}
+
+/// Every finder at every degree.
+fn table(measured: &[Measured]) -> Result<String, std::fmt::Error> {
+    let mut page = String::from(
+        "| degree | finder | f32: ms | all threads | found | f64: ms | all threads | found | f32 ratio: ours | paper CPU | GPU | \
+         f64 ratio: ours | paper CPU | GPU |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let at = |degree: usize| measured.iter().find(|m| m.0 == degree).map(|m| m.1);
     let Some(unit) = at(4).map(|both| both.map(|finders| finders[0].one)) else { return Ok(page) };
@@ -143,7 +158,6 @@ fn write_page(count: usize, measured: &[Measured]) -> Result<String, std::fmt::E
         }
         writeln!(page)?;
     }
-    page.push_str(&findings(measured));
     Ok(page)
 }
 

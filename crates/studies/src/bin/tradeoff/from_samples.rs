@@ -4,12 +4,14 @@ use crate::statistics::quantile;
 use crate::ways::text;
 use continuum_scene::ctr::{Centreline, Curve, Joints, Robot};
 use continuum_scene::subdivide::in_four;
+use continuum_studies::long_table;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Chain, Tube, TubeSection, simplify, stations};
 use std::fmt::Write;
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Instant;
 
 /// Tolerances that are compared, mm.
@@ -77,13 +79,14 @@ pub struct FromSamples {
 type Way<'a> = Box<dyn FnMut(&Shape) -> Result<(), String> + 'a>;
 
 /// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in four twice. And what it
-/// says of the mesh as it is.
+/// says of the mesh as it is. Its long table goes to `out`.
 pub fn chapter(
     robot: &Robot,
     [free, touching]: [&[Joints]; 2],
     mesh: &TriMesh,
     base: &Pose,
     spacing: Real,
+    out: &Path,
 ) -> Result<(String, Vec<FromSamples>), String> {
     let mut page = format!(
         "## From samples to the answer\n\n\
@@ -96,8 +99,11 @@ pub fn chapter(
          than the tolerance after `simplify`.\n\
          - *Fixed*: links of the length sqrt(8 tolerance / curvature), taken from the curve and not from samples. Nothing \
          checks their error, and the faces are off as well.\n\n\
-         | triangles | shapes | tolerance | tube | tube, again | tube, function | stations | simplify | fixed | fixed, again |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n"
+         [tradeoff_samples.csv](tradeoff_samples.csv) has the same for the mesh with each triangle divided in sixteen.\n\n"
+    );
+    let mut table = String::from(
+        "| triangles | shapes | tolerance | tube | tube, again | tube, function | stations | simplify | fixed | fixed, again |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut clears = format!(
         "\nThe same for the question whether the shape keeps {MARGIN} mm: `tube_clears` with a resolution of {RESOLUTION} mm, \
@@ -121,7 +127,7 @@ pub fn chapter(
                 let cells: Vec<_> = times.iter().map(|time| format!("{:.1} us", time * 1e6)).collect();
                 // Writing to a string cannot fail.
                 let _ = writeln!(
-                    page,
+                    table,
                     "| {} | {name} | {tolerance} mm | {} |",
                     mesh.num_triangles(),
                     cells.join(" | ")
@@ -132,6 +138,10 @@ pub fn chapter(
             let _ = writeln!(clears, "| {} | {name} | {} |", mesh.num_triangles(), cells.join(" | "));
         }
     }
+    let triangles = mesh.num_triangles().to_string();
+    page += &long_table::write(&table, &out.join("tradeoff_samples.csv"), |cells| {
+        cells[0] == triangles.as_str()
+    })?;
     Ok((page + &clears, rows))
 }
 

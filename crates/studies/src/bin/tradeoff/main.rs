@@ -30,7 +30,7 @@ use clap::Parser;
 use continuum_scene::anatomy::Anatomy;
 use continuum_scene::steer::Random;
 use continuum_scene::{command, ctr};
-use continuum_studies::quote;
+use continuum_studies::{long_table, quote};
 use outcome::outcomes;
 use std::fs;
 use std::path::PathBuf;
@@ -43,23 +43,23 @@ struct Options {
     #[command(flatten)]
     anatomy: Anatomy,
 
-    /// Shapes whose clearance is compared
+    /// How many shapes are compared
     #[arg(long, value_name = "COUNT", default_value_t = SHAPES, value_parser = command::whole(10..=u32::MAX))]
     shapes: u32,
 
-    /// Shapes that are timed: the first that are free of the wall
+    /// How many of the shapes that touch no wall are timed
     #[arg(long, value_name = "COUNT", default_value_t = TIMED, value_parser = command::whole(1..=u32::MAX))]
     timed: u32,
 
     /// Edges of each length whose motion is checked
-    #[arg(long, value_name = "COUNT", default_value_t = EDGES, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "COUNT", default_value_t = EDGES, value_parser = command::whole(1..=u32::MAX))]
     edges: u32,
 
-    /// Write this chapter alone into the page that is there
+    /// Measure this chapter alone, and leave the rest of the page as it is
     #[arg(long, value_enum)]
     only: Option<Chapter>,
 
-    /// Where to write TRADEOFF.md and tradeoff.svg [default: docs, or target/tradeoff with other options]
+    /// Where to write TRADEOFF.md, its long tables as tradeoff_*.csv, and tradeoff.svg [default: docs, or target/tradeoff with other options]
     #[arg(long, value_name = "DIRECTORY")]
     out: Option<PathBuf>,
 }
@@ -146,7 +146,7 @@ fn measure(options: &Options) -> Result<(), String> {
 
     stage("from samples");
     let (from_samples, rows) =
-        from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING)?;
+        from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING, &out)?;
 
     stage("motions");
     let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
@@ -156,6 +156,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let all = front::combinations(&times, &errors);
     let command = command::line("-p continuum-studies --bin tradeoff");
     let widest = robot.sections.iter().map(|section| section.radius).fold(0.0, f64::max);
+    let trade =
+        long_table::write(&page::table(&times, &errors), &out.join("tradeoff_links.csv"), page::is_shown)?;
     let page = page::page(&page::Facts {
         command: &command,
         triangles: mesh.num_triangles(),
@@ -164,12 +166,13 @@ fn measure(options: &Options) -> Result<(), String> {
         checked: &checked,
         times: &times,
         errors: &errors,
+        trade: &trade,
         all: &all,
         widest,
         device: devices.first().map(|device| device.name.as_str()),
     });
     fs::create_dir_all(&out).map_err(|error| unwritable(&out, error))?;
-    let shares = shares::chapter(&outcomes);
+    let shares = shares::chapter(&outcomes, &out)?;
     let mark = motions::MARK;
     let motions = format!("<!-- {mark} -->\n{motions}<!-- /{mark} -->\n");
     fs::write(&file, [page, from_samples, motions, shares, kinematics].join("\n"))

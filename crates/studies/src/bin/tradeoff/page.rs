@@ -22,6 +22,8 @@ pub struct Facts<'a> {
     pub checked: &'a Checked,
     pub times: &'a Times,
     pub errors: &'a [[Errors; Model::ALL.len()]],
+    /// What the page shows of the table of models.
+    pub trade: &'a str,
     pub all: &'a [Combination],
     /// The largest radius of the robot.
     pub widest: f64,
@@ -31,16 +33,17 @@ pub struct Facts<'a> {
 
 /// The page, without the chapters of the shares and of torsion.
 pub fn page(facts: &Facts) -> String {
-    let Facts { command, triangles, timed, outcomes, checked, times, errors, all, widest, device } = *facts;
+    let Facts { command, triangles, timed, outcomes, checked, times, errors, trade, all, widest, device } =
+        *facts;
     format!(
         "# What accuracy costs\n\n\
          Written by `{command}` on {}{}.\n\n\
-         A concentric tube robot comes out into a mesh of {triangles} triangles, in random shapes. Some may use 15 %, some \
-         30 % and some 60 % of its length. {}.\n\n\
-         Errors are counted from the *true* clearance: that of the curved tube with flat faces. It comes from a very fine \
-         chain, with links of at most {REFERENCE_SPACING} mm, and of a hundredth of that at the faces. Twice as many links \
-         change it by at most {} mm, four times as many by {} mm. {}. A round cap behind a face can stick out of the face by at \
-         most {} mm.\n\n\
+         A concentric tube robot takes random shapes in a mesh of {triangles} triangles. Some may come out by up to 15 % of \
+         the robot's length, some by up to 30 %, the others by up to 60 %. {}.\n\n\
+         An error is the difference from the *true* clearance, that of the curved tube with flat end faces. A very fine chain \
+         stands for it: its links are at most {REFERENCE_SPACING} mm long, and at the end faces a hundredth of that. Twice as \
+         many links change its clearance by at most {} mm, four times as many by at most {} mm. {}. A round cap next to an end \
+         face can stick out of the face by at most {} mm.\n\n\
          ## The trade\n\n\
          The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
          thread. Times are medians over the shapes, the chain already built. *First time*: the engine has no answers \
@@ -49,7 +52,8 @@ pub fn page(facts: &Facts) -> String {
          in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
          that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
          sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
-         less the true one, over all free shapes: positive is over, the unsafe side.\n\n{}\n{}\n\n\
+         less the true one, over all free shapes: positive is over, the unsafe side. The links stay within {SHOWN} mm; \
+         [tradeoff_links.csv](tradeoff_links.csv) has all tolerances from {} to {} mm.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
          For an error that you can bear, the fastest of these links that stays within it:\n\n{}\n\
@@ -59,9 +63,9 @@ pub fn page(facts: &Facts) -> String {
          which a chord of sagitta t turns by sqrt(2 t kappa) from the curve's: at a radius r the rim is out of place by r \
          sqrt(2 t kappa), here at most with r = {widest} mm and kappa = {CURVATURE} / mm. A capsule's end reaches r beyond a \
          flat face: its clearance falls short by up to r, at any tolerance.\n\n\
-         *Faces fixed*: two more links, that end 0.3 and 0.01 mm before each face. The last one is so short that the \
-         face has the curve's direction, and the one before ends so near that its tilted end stays behind the face. What \
-         is left is the tolerance and a few micrometres.\n\n{}\n\
+         *Short ends*: at each face two links more, whose ends are 0.3 and 0.01 mm before it. The last link is so short that \
+         the face has the curve's direction. The link before it ends so near the face that its tilted end does not stick \
+         out. What is left is the tolerance and a few micrometres.\n\n{}\n\
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),
@@ -72,7 +76,9 @@ pub fn page(facts: &Facts) -> String {
         by_algorithm_1(checked.algorithm_1),
         length(widest - (widest * widest - (0.5 * widest * widest * CURVATURE).powi(2)).sqrt()),
         agreement(times.apart),
-        table(times, errors),
+        TOLERANCES[0],
+        TOLERANCES[TOLERANCES.len() - 1],
+        trade,
         base_cap(outcomes),
         front_table(all),
         guide::table(all),
@@ -81,8 +87,16 @@ pub fn page(facts: &Facts) -> String {
     )
 }
 
-/// The trade's table.
-fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
+/// The tolerance whose models the page compares; a file has all of them.
+const SHOWN: f64 = 0.1;
+
+/// Whether the page shows a row of the table of models.
+pub fn is_shown(cells: &[&str]) -> bool {
+    cells[1] == format!("{SHOWN} mm")
+}
+
+/// The table of all models at all tolerances.
+pub fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
     let of_model =
         |index: usize, model| times.queries[index].iter().filter(move |timed| timed.model == model);
     let ways: Vec<_> = of_model(0, Model::ALL[0]).map(|timed| timed.way).collect();
@@ -134,7 +148,7 @@ fn front_table(all: &[Combination]) -> String {
 /// What geometry predicts, beside what was measured.
 fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], widest: f64) -> String {
     let mut page = String::from(
-        "| within | face out of place: predicted | found | fitted caps: worst over | worst under | faces fixed: over | under | capsules: over | under |\n\
+        "| within | face out of place: predicted | found | fitted caps: worst over | worst under | short ends: over | under | capsules: over | under |\n\
          |---|---|---|---|---|---|---|---|---|\n",
     );
     for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
@@ -212,8 +226,8 @@ fn clearances(outcomes: &[Outcome]) -> String {
     let free: Vec<_> = outcomes.iter().map(|shape| shape.truth).filter(|&truth| truth > 0.0).collect();
     let base = outcomes.iter().filter(|shape| shape.truth > 0.0 && shape.at_base).count();
     format!(
-        "{} of the {} shapes are free of the wall; their clearances are {} mm in the median and at most {} mm, and in \
-         {} of them the base's face is what is nearest",
+        "{} of the {} shapes do not touch the wall. Their clearance is {} mm in the median and at most {} mm; in {} of \
+         them it is the face at the base that is nearest to the wall",
         free.len(),
         outcomes.len(),
         length(quantile(free.clone(), 0.5).unwrap_or(0.0)),

@@ -72,9 +72,7 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
     let mut labels: Vec<(i32, i32)> = Vec::new();
     for one in &line {
         let style = ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
-        let (name, extra) = one.model.name().split_once(',').unwrap_or_default();
-        let name = if one.model == Model::Faced { format!("{name}{extra}") } else { name.into() };
-        let label = format!("{name}, {} mm", one.tolerance);
+        let label = format!("{}, {} mm", one.model.name().replace(',', ""), one.tolerance);
         let at = (one.time * 1e6, one.error);
         let (x, y) = chart.backend_coord(&at);
         let is_taken = |down: &i32| {

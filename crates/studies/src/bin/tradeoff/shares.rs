@@ -3,7 +3,9 @@
 use crate::outcome::{METRES_AT, Outcome, TOLERANCES};
 use crate::statistics::{Share, length};
 use crate::subject::Model;
+use continuum_studies::long_table;
 use std::fmt::Write;
+use std::path::Path;
 
 /// The margins at which a shape is accepted, mm: its clearance must be larger.
 const MARGINS: [f64; 2] = [0.0, 0.5];
@@ -17,15 +19,20 @@ pub fn forbidden(outcomes: &[Outcome], model: Model) -> Share {
     Share::of(free, |shape| shape.each[SHOWN[1]].clearances[model.index()] <= 0.0)
 }
 
-/// The chapter of the page.
-pub fn chapter(outcomes: &[Outcome]) -> String {
-    let mut page = format!(
+/// The chapter of the page; its long table goes to `out`.
+pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
+    let page = format!(
         "## What a model forbids and allows\n\n\
          A model *accepts* a shape if its clearance is larger than a margin. It wrongly *forbids* a shape that the true \
          clearance accepts, and wrongly *allows* one that the true clearance does not. Margin 0: free, or touching the \
-         wall. Shares of the {} shapes that are truly accepted or not, with 95 % confidence (Wilson).\n\n\
-         | model | within | margin | accepted shapes wrongly forbidden | others wrongly allowed |\n|---|---|---|---|---|\n",
-        outcomes.len()
+         wall. Shares of the {} shapes that are truly accepted or not, with 95 % confidence (Wilson). The links stay within \
+         {} mm; [tradeoff_decisions.csv](tradeoff_decisions.csv) has finer and coarser ones, and the margin of {} mm.\n\n",
+        outcomes.len(),
+        TOLERANCES[SHOWN[1]],
+        MARGINS[1]
+    );
+    let mut table = String::from(
+        "| model | within | margin | accepted shapes wrongly forbidden | others wrongly allowed |\n|---|---|---|---|---|\n",
     );
     for margin in MARGINS {
         for model in Model::ALL {
@@ -41,7 +48,7 @@ pub fn chapter(outcomes: &[Outcome]) -> String {
                 });
                 // Writing to a string cannot fail.
                 let _ = writeln!(
-                    page,
+                    table,
                     "| {} | {} mm | {margin} mm | {forbids} | {allows} |",
                     model.name(),
                     TOLERANCES[tolerance]
@@ -49,7 +56,11 @@ pub fn chapter(outcomes: &[Outcome]) -> String {
             }
         }
     }
-    page + &alone(outcomes)
+    let [within, margin] = [TOLERANCES[SHOWN[1]], MARGINS[0]].map(|mm| format!("{mm} mm"));
+    let table = long_table::write(&table, &out.join("tradeoff_decisions.csv"), |cells| {
+        [cells[1], cells[2]] == [within.as_str(), margin.as_str()]
+    })?;
+    Ok(page + &table + &alone(outcomes))
 }
 
 /// What the gaps of cylinders do alone, and the iterations of GJK: against the same links without them.
@@ -88,7 +99,7 @@ fn alone(outcomes: &[Outcome]) -> String {
             &pair(Model::Cylinder, Model::Modified, tolerance),
         );
     }
-    for tolerance in SHOWN {
+    for tolerance in [SHOWN[0], SHOWN[1]] {
         row(
             "GJK: parry's Capsule beside capsules",
             tolerance,

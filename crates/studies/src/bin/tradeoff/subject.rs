@@ -12,7 +12,7 @@ pub enum Model {
     Capsule,
     Cylinder,
     Modified,
-    /// With two more links at each face, so that the face has the curve's direction.
+    /// With two short links more at each face, so that the face has the curve's direction.
     Faced,
     ParryCapsule,
     ParryCylinder,
@@ -43,7 +43,7 @@ impl Model {
             Self::Capsule => "capsules",
             Self::Cylinder => "cylinders",
             Self::Modified => "fitted caps",
-            Self::Faced => "fitted caps, faces fixed",
+            Self::Faced => "fitted caps, short ends",
             Self::ParryCapsule => "parry's Capsule",
             Self::ParryCylinder => "parry's Cylinder",
             Self::Spheres => "7 spheres a link",
