@@ -24,11 +24,15 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
         ("| triangles | precision | capsules, device |", precisions),
         ("| triangles | precision | discs |", 3 * precisions),
         ("| distance | precision | clamps, device |", 2 * precisions),
-        // Four finders, of which the closed form ends at degree 4, at seven degrees.
-        ("| degree | finder |", 4 * 7 - 4),
+        // Four finders at three degrees, of which the closed form solves the first.
+        ("| degree | finder |", 4 + 3 + 3),
     ] {
         assert_eq!(table(&page, head).len(), rows, "{head}: {page}");
     }
+    let rows = |file: &str| read(file).lines().count() - 1;
+    assert_eq!(rows("gpu_speed/gpu_every_pair.csv"), 3 * precisions);
+    // Of seven degrees.
+    assert_eq!(rows("gpu_speed/gpu_roots.csv"), 4 * 7 - 4);
     // The distances are those of the search.
     let check = page.lines().filter(|line| line.starts_with("- 1000 triangles,"));
     let errors: Vec<f64> = check

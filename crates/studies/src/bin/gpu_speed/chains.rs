@@ -5,20 +5,23 @@ use crate::timed::{Timed, medians, milliseconds};
 use crate::{Opened, text};
 use continuum_scene::ventricle;
 use continuum_studies::gpu::Discs;
+use continuum_studies::long_table;
 use parry_continuum::Chain;
 use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Duration;
 
-/// The chapter of the page.
+/// The chapter of the page, and a table beside it in `out`.
 pub fn chapter(
     opened: &[Opened],
     meshes: &[TriMesh],
     most_every_pair: u32,
     models: &[Chain; 3],
     enough: Duration,
+    out: &Path,
 ) -> Result<String, String> {
     let [mut culling, mut every_pair, mut checks] = [String::new(), String::new(), String::new()];
     for mesh in meshes {
@@ -52,10 +55,10 @@ pub fn chapter(
             }
         }
     }
-    Ok(page(&culling, &every_pair, &checks))
+    page(&culling, &every_pair, &checks, out)
 }
 
-fn page(culling: &str, every_pair: &str, checks: &str) -> String {
+fn page(culling: &str, every_pair: &str, checks: &str, out: &Path) -> Result<String, String> {
     let table = |head: &str| {
         format!(
             "| {head} | capsules, device | end to end | index | fitted caps, device | end to end | index | cylinders, device \
@@ -63,17 +66,21 @@ fn page(culling: &str, every_pair: &str, checks: &str) -> String {
             "---|".repeat(head.split('|').count() + 12)
         )
     };
-    format!(
+    let every_pair = table("triangles | precision | discs") + every_pair;
+    let largest = every_pair.lines().last().and_then(|row| row.split('|').nth(1)).unwrap_or_default();
+    let shown =
+        long_table::write(&every_pair, &out.join("gpu_every_pair.csv"), |cells| cells[0] == largest.trim())?;
+    Ok(format!(
         "## Figure 9 and Table IV: {LINKS} links against a mesh\n\n\
          Milliseconds. Index: 1 / (seconds x TFLOPS) by the device's time, for the peak that the command gives. The paper's \
          for 1e6 triangles is 11.93 (f32) and 10.32 (f64) for capsules and fitted caps, 0.69 and 1.16 for cylinders. Ratios \
          are of device times.\n\n\
          With culling, every triangle visited:\n\n{}{culling}\n\
-         Without, every pair in full, as in the paper, by three routes to the disc of a flat cap:\n\n{}{every_pair}\n\
+         Without, every pair in full, as in the paper, by three routes to the disc of a flat cap \
+         ([gpu_every_pair.csv](gpu_every_pair.csv) has all sizes):\n\n{shown}\n\
          Checks:\n\n{checks}",
         table("triangles | precision"),
-        table("triangles | precision | discs"),
-    )
+    ))
 }
 
 fn answers(engine: &mut dyn Proximity, models: &[Chain; 3]) -> Result<Vec<LinkProximity>, String> {

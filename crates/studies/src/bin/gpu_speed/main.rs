@@ -124,9 +124,9 @@ fn measure(options: &Options) -> Result<(), String> {
     let [_, robot, _] = &models;
     add("engines", engines::chapter(&opened, &meshes, robot, enough)?);
     add("moving", moving::chapter(&opened, &meshes, robot, enough)?);
-    add("chains", chains::chapter(&opened, &meshes, options.every_pair, &models, enough)?);
+    add("chains", chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &options.out)?);
     add("forms", forms::chapter(&opened, options.problems as usize, enough)?);
-    add("roots", roots::chapter(&opened, options.problems as usize, enough / 4)?);
+    add("roots", roots::chapter(&opened, options.problems as usize, enough / 4, &options.out)?);
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
