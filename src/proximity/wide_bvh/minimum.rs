@@ -38,17 +38,21 @@ impl<'a> MinimumSearch<'a> {
     /// The closest link and triangle, if there are any. `last` are those to start with.
     pub(super) fn nearest(mut self, last: Option<(usize, u32)>) -> Option<OfLink> {
         let (robot, reach) = (self.robot, self.search.hierarchy.reach);
+        let count = robot.links().len();
+        self.kept.recall(robot);
+        if self.kept.in_question(0..count, self.bound) == 0 {
+            return None;
+        }
         let (first, triangle) = match last {
-            Some((link, triangle)) if link < robot.links().len() => (link, triangle),
+            Some((link, triangle)) if link < count => (link, triangle),
             _ => self.likely(),
         };
-        self.kept.recall(robot);
         if self.kept.in_question(first..first + 1, self.bound) > 0 {
             let wanted = Best::within(self.bound);
             let nearest = self.search.nearest(&robot.link(first), wanted, [Some(triangle), None]).nearest();
             self.take(first, nearest);
         }
-        self.kept.judge(robot.links().len(), self.bound);
+        self.kept.judge(count, self.bound);
         self.wider = self.kept.wider(robot, self.bound, reach);
         if self.wider.is_some()
             && let Some((_, nearest)) = self.best

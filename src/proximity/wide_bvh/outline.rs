@@ -57,7 +57,8 @@ impl Outline {
             0.0
         } else {
             let [long, longer] = [then, self].map(|link| length(link.ends[1] - link.ends[0]));
-            2.0 * self.radius * length(end - start) / (long + longer)
+            // The quotient first: a product of two lengths may vanish.
+            2.0 * self.radius * (length(end - start) / (long + longer))
         };
         length(start).max(length(end)) + turned + grown
     }

@@ -10,8 +10,10 @@ use parry3d_f64::math::Real;
 
 /// How many queries a wider search is to speak for at the most.
 const QUERIES: Real = 8.0;
-/// A search that did not pay is tried again after so many queries at the latest.
-const LONGEST_REST: u32 = 63;
+/// A search that met something is tried again after so many queries at the latest, one that did not pay after so many: it
+/// takes as long as several others.
+const REST_AFTER_MEETING: u32 = 63;
+const REST_WITHOUT_PAY: u32 = 255;
 
 #[derive(Clone)]
 pub(super) struct Widening {
@@ -52,13 +54,17 @@ impl Widening {
 
     /// Takes over that it did not.
     pub(super) fn failed(&mut self) {
-        self.last_rest = (2 * self.last_rest + 1).min(LONGEST_REST);
-        self.rest = self.last_rest;
+        self.rest_longer(REST_WITHOUT_PAY);
     }
 
     /// Takes over that it met what a search less wide may not meet.
     pub(super) fn too_wide(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
-        self.failed();
+        self.rest_longer(REST_AFTER_MEETING);
+    }
+
+    fn rest_longer(&mut self, longest: u32) {
+        self.last_rest = (2 * self.last_rest + 1).min(longest);
+        self.rest = self.last_rest;
     }
 }
