@@ -150,7 +150,6 @@ impl<E: Lane> SearchLink<E> {
 
     /// What a triangle is at least from the link, if its axis distance (beyond a flat cap: its distance and the radius)
     /// was computed as `axis_distance`.
-    #[cfg(feature = "gpu")]
     pub(crate) fn at_least(&self, axis_distance: Real) -> Real {
         let (radius, error): (Real, Real) = (self.radius.into(), self.error.into());
         (axis_distance - radius - error).max(0.0) / self.scale

@@ -21,6 +21,17 @@ pub(crate) enum LinkNode {
     Leaf(usize),
 }
 
+impl LinkNode {
+    /// How many links it stands for.
+    pub(crate) fn links(&self) -> usize {
+        match self {
+            // A binary tree has one more leaf than it has nodes with children.
+            Self::Inner { below, .. } => below / 2 + 1,
+            Self::Leaf(_) => 1,
+        }
+    }
+}
+
 /// A capsule around links.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundingCapsule {

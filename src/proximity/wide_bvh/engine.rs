@@ -1,7 +1,8 @@
 //! Proximity by a bounding volume hierarchy.
 
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
-use super::last_clear::LastClear;
+use super::kept_distances::KeptDistances;
+use super::minimum::{MinimumSearch, OfLink};
 use super::motion_queries::MotionMemory;
 use super::queries::RobotSearch;
 use super::tube_queries::TubeMemory;
@@ -65,17 +66,24 @@ pub(super) struct Memory {
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
     last_minimum: Option<(usize, u32)>,
-    /// What the last robot that kept away has proven.
-    last_clear: LastClear,
+    /// What the links kept when it was last asked for the minimum, and whether they keep away.
+    kept_by_minimum: KeptDistances,
+    kept_by_clears: KeptDistances,
 }
 
 impl Memory {
     pub(super) fn forget(&mut self) {
-        self.last_clear.forget();
+        self.forget_distances();
         self.tube.forget();
         self.scratch.forget();
         self.last.clear();
         self.last_minimum = None;
+    }
+
+    /// Forgets what only holds as long as the mesh is still.
+    fn forget_distances(&mut self) {
+        self.kept_by_minimum.forget();
+        self.kept_by_clears.forget();
     }
 }
 
@@ -180,30 +188,39 @@ impl<'a> Query<'a> {
     }
 
     fn minimum(&mut self) -> LinkProximity {
-        let last = self.context.memory.last_minimum;
-        let (link, nearest) = self.search().minimum(last);
-        self.context.memory.last_minimum = Some((link, nearest.triangle));
+        let any = (0, self.robot.link(0));
+        let (link, nearest) =
+            self.nearest_link(Real::INFINITY).unwrap_or_else(|| (any.0, self.search().search.any(&any.1)));
         nearest.report(link)
     }
 
     fn minimum_within(&mut self, bound: Real) -> Option<LinkProximity> {
-        let last = self.context.memory.last_minimum;
-        let (link, nearest) = self.search().minimum_within(last, bound)?;
-        self.context.memory.last_minimum = Some((link, nearest.triangle));
-        Some(nearest.report(link))
+        self.nearest_link(bound).map(|(link, nearest)| nearest.report(link))
+    }
+
+    fn nearest_link(&mut self, bound: Real) -> Option<OfLink> {
+        let Context { level, hierarchy, ref mut memory } = self.context;
+        let Memory { scratch, last_minimum, kept_by_minimum, .. } = &mut **memory;
+        let search = MeshSearch { level, hierarchy, scratch };
+        let found = MinimumSearch::within(bound, search, self.robot, kept_by_minimum).nearest(*last_minimum);
+        if let Some((link, nearest)) = found {
+            *last_minimum = Some((link, nearest.triangle));
+        }
+        found
     }
 
     fn clears(&mut self, margin: Real) -> bool {
         let (robot, reach) = (self.robot, self.context.hierarchy.reach);
-        if self.context.memory.last_clear.still_keeps(robot, margin, reach) {
+        let kept = &mut self.context.memory.kept_by_clears;
+        if kept.all_keep(robot, margin) {
             return true;
         }
-        if let Some(wider) = self.context.memory.last_clear.wider(robot, margin, reach) {
-            if self.search().clears(wider) {
-                self.context.memory.last_clear.keep(robot, wider);
+        if let Some(wider) = kept.wider(robot, margin, reach) {
+            if self.search().clears(margin + wider) {
+                self.context.memory.kept_by_clears.keep_all(robot, margin + wider, reach);
                 return true;
             }
-            self.context.memory.last_clear.miss();
+            self.context.memory.kept_by_clears.miss();
         }
         self.search().clears(margin)
     }
@@ -315,7 +332,7 @@ impl Proximity for BvhSearch {
         hierarchy.mesh.set_vertices(vertices);
         hierarchy.refit(self.level);
         // It spoke of the mesh as it was.
-        self.memory.last_clear.forget();
+        self.memory.forget_distances();
         Ok(())
     }
 }

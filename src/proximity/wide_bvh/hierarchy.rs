@@ -119,6 +119,22 @@ impl MeshSearch<'_> {
         }
     }
 
+    /// The same, and what the link keeps from all triangles at the least, with a triangle about as near if one was met.
+    /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
+    pub(super) fn nearest_and_kept(
+        &mut self,
+        link: &PlacedLink,
+        best: Best,
+        far: Real,
+        start: [Option<u32>; 2],
+    ) -> (Best, Real, Option<u32>) {
+        match self.hierarchy.searched(self.level, link) {
+            Searched::Single(searched) => self.single().nearest_and_kept(link, &searched, best, far, start),
+            Searched::Double(searched) => self.double().nearest_and_kept(link, &searched, best, far, start),
+            Searched::OutOfReach => (self.nearest(link, best, start), 0.0, None),
+        }
+    }
+
     /// About the triangle nearest to a capsule around links, if any is within reach.
     pub(super) fn about_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
         match self.hierarchy.searched(self.level, capsule) {

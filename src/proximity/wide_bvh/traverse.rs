@@ -100,6 +100,34 @@ impl<E: Lane> Traversal<'_, E> {
         if let Aim::Nearest(_, best) = target.aim { best } else { best }
     }
 
+    /// The same, and what the link keeps from all triangles at the least, with the triangle that seemed as near if one was
+    /// met. Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
+    ///
+    /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So nothing is nearer than
+    /// the nearest candidate and the limit that is left.
+    pub(super) fn nearest_and_kept(
+        &mut self,
+        link: &PlacedLink,
+        searched: &SearchLink<E>,
+        best: Best,
+        far: f64,
+        start: [Option<u32>; 2],
+    ) -> (Best, f64, Option<u32>) {
+        let (limit, below) = (searched.axis_limit(far), best.wanted_below());
+        let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, start));
+        let mut least = (target.limit, None);
+        for &(lower, triangle) in &self.stack.candidates {
+            if lower < least.0 {
+                least = (lower, Some(triangle));
+            }
+        }
+        target.limit = target.limit.min(searched.axis_limit(best.bound()));
+        self.settle(&mut target);
+        let best = if let Aim::Nearest(_, best) = target.aim { best } else { best };
+        (best, searched.at_least(least.0.into()), least.1)
+    }
+
     /// A triangle nearly as near as the nearest, or any that overlaps the link.
     pub(super) fn about_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
         let limit = searched.axis_limit(f64::INFINITY);

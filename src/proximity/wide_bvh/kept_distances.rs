@@ -1,0 +1,143 @@
+//! What each link is known to keep from the mesh when the robot has moved a little, without a search.
+//!
+//! Once a link kept more than a distance, or exactly it. No point of the link now is farther from all points of the link
+//! then than [`Outline::moved_from`] tells, so the link keeps what is left. What it keeps does not depend on the robot that
+//! it is a part of: any may follow.
+
+use super::outline::{Outline, ROUNDING};
+use super::widening::Widening;
+use crate::proximity::placed::PlacedRobot;
+use parry3d_f64::math::Real;
+use std::ops::Range;
+
+/// A wider search pays if it spares the next query the search of one link in so many.
+const SHARE_THAT_PAYS: usize = 4;
+
+/// Distances that the links of a robot kept.
+#[derive(Clone, Default)]
+pub(super) struct KeptDistances {
+    /// Link by link; none where nothing is known.
+    links: Vec<Kept>,
+    /// What each link of the robot now asked about keeps by that; none where nothing is known.
+    now: Vec<Real>,
+    widening: Widening,
+    /// Whether the last query has widened its search.
+    is_new: bool,
+}
+
+/// A link where it was, and what it kept at the least, less what rounding can do.
+#[derive(Clone, Copy)]
+struct Kept {
+    link: Outline,
+    apart: Real,
+    /// A triangle about as near as that, if one was met.
+    triangle: Option<u32>,
+}
+
+impl KeptDistances {
+    pub(super) fn forget(&mut self) {
+        self.links.clear();
+        self.now.clear();
+        self.widening = Widening::default();
+        self.is_new = false;
+    }
+
+    /// Whether every link certainly keeps more than `margin`.
+    pub(super) fn all_keep(&self, robot: PlacedRobot, margin: Real) -> bool {
+        if self.links.is_empty() || self.links.len() != robot.links().len() {
+            return false;
+        }
+        // The tip moves most, so it comes first.
+        self.links.iter().rev().zip(Outline::of_all(robot)).all(|(kept, link)| kept.still(&link) > margin)
+    }
+
+    /// Makes out what each link keeps.
+    pub(super) fn recall(&mut self, robot: PlacedRobot) {
+        self.now.clear();
+        if self.links.len() == robot.links().len() {
+            let known = self.links.iter().rev().zip(Outline::of_all(robot));
+            self.now.extend(known.map(|(kept, link)| kept.still(&link)));
+            self.now.reverse();
+        }
+    }
+
+    /// How many of these links do not certainly keep more than `bound`, by what was recalled.
+    pub(super) fn in_question(&self, links: Range<usize>, bound: Real) -> usize {
+        let count = links.len();
+        let kept = self.now.get(links).unwrap_or_default();
+        count - kept.iter().filter(|&&kept| kept > bound).count()
+    }
+
+    /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too. None where it is better
+    /// not to be. `reach` is the largest coordinate of the mesh.
+    pub(super) fn wider(&mut self, robot: PlacedRobot, bound: Real, reach: Real) -> Option<Real> {
+        let wider = self.widening.next(robot, reach).filter(|wider| bound + wider < Real::INFINITY);
+        self.is_new = wider.is_some();
+        wider
+    }
+
+    /// Takes over whether what the last query kept, if anything, speaks for this one about so many links.
+    pub(super) fn judge(&mut self, count: usize, bound: Real) {
+        if !self.is_new {
+            return;
+        }
+        if SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count {
+            self.links.clear();
+            self.widening.failed();
+        } else {
+            self.widening.paid();
+        }
+    }
+
+    /// A triangle about as near to a link as any was, if one was met.
+    pub(super) fn about_nearest(&self, link: usize) -> Option<u32> {
+        self.links.get(link)?.triangle
+    }
+
+    /// Takes over that all of these links keep `apart` or more.
+    pub(super) fn keep(
+        &mut self,
+        robot: PlacedRobot,
+        links: Range<usize>,
+        apart: Real,
+        triangle: Option<u32>,
+        reach: Real,
+    ) {
+        let count = robot.links().len();
+        if self.links.len() != count {
+            let unknown = Kept { link: Outline::of(robot, 0), apart: Real::NEG_INFINITY, triangle: None };
+            self.links.clear();
+            self.links.resize(count, unknown);
+        }
+        for link in links {
+            let triangle = triangle.or(self.links[link].triangle);
+            self.links[link] = Kept::new(Outline::of(robot, link), apart, triangle, reach);
+        }
+    }
+
+    /// Takes over that all links keep `apart` or more.
+    pub(super) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, reach: Real) {
+        self.links.clear();
+        self.links.extend(Outline::of_all(robot).map(|link| Kept::new(link, apart, None, reach)));
+        self.links.reverse();
+        self.widening.paid();
+    }
+
+    /// Takes over that a wider search met something.
+    pub(super) fn miss(&mut self) {
+        self.links.clear();
+        self.widening.too_wide();
+    }
+}
+
+impl Kept {
+    /// `reach` is the largest coordinate of the mesh. The link later reaches no farther than now and what it has moved.
+    fn new(link: Outline, apart: Real, triangle: Option<u32>, reach: Real) -> Self {
+        Self { link, apart: apart - ROUNDING * (reach + 2.0 * link.extent()), triangle }
+    }
+
+    /// What the link keeps at least when it has become `now`. Not a number where that can't be told.
+    fn still(&self, now: &Outline) -> Real {
+        self.apart - (1.0 + ROUNDING) * now.moved_from(&self.link)
+    }
+}

@@ -1,0 +1,70 @@
+//! How much farther than asked a search is to look, so that its answer speaks for the next queries too.
+//!
+//! A search for a little more costs little more. How much more pays follows from how far the robot moves from one query to
+//! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
+//! more rarely.
+
+use super::outline::{Outline, ROUNDING};
+use crate::proximity::placed::PlacedRobot;
+use parry3d_f64::math::Real;
+
+/// How many queries a wider search is to speak for at the most.
+const QUERIES: Real = 8.0;
+/// A search that met something is tried again after so many queries at the latest, one that did not pay after so many: it
+/// takes as long as several others.
+const REST_AFTER_MEETING: u32 = 63;
+const REST_WITHOUT_PAY: u32 = 255;
+
+#[derive(Clone)]
+pub(super) struct Widening {
+    /// The first and the last link of the last query.
+    before: Option<[Outline; 2]>,
+    /// How many queries the next wider search is to speak for.
+    queries: Real,
+    /// How many queries are not to try one, and how many it was after the last that did not pay.
+    rest: u32,
+    last_rest: u32,
+}
+
+impl Default for Widening {
+    fn default() -> Self {
+        Self { before: None, queries: QUERIES, rest: 0, last_rest: 0 }
+    }
+}
+
+impl Widening {
+    /// By how much a query about this robot is to widen its search. `reach` is the largest coordinate of the mesh. None
+    /// where it is better not to.
+    pub(super) fn next(&mut self, robot: PlacedRobot, reach: Real) -> Option<Real> {
+        let ends = [0, robot.links().len() - 1].map(|link| Outline::of(robot, link));
+        let before = self.before.replace(ends)?;
+        if self.rest > 0 {
+            self.rest -= 1;
+            return None;
+        }
+        let moved = ends[0].moved_from(&before[0]).max(ends[1].moved_from(&before[1]));
+        let rounding = ROUNDING * (reach + 2.0 * ends[0].extent().max(ends[1].extent()));
+        Some(self.queries * moved + 4.0 * rounding)
+    }
+
+    /// Takes over that the last wider search paid.
+    pub(super) fn paid(&mut self) {
+        self.last_rest = 0;
+    }
+
+    /// Takes over that it did not.
+    pub(super) fn failed(&mut self) {
+        self.rest_longer(REST_WITHOUT_PAY);
+    }
+
+    /// Takes over that it met what a search less wide may not meet.
+    pub(super) fn too_wide(&mut self) {
+        self.queries = (0.5 * self.queries).max(1.0);
+        self.rest_longer(REST_AFTER_MEETING);
+    }
+
+    fn rest_longer(&mut self, longest: u32) {
+        self.last_rest = (2 * self.last_rest + 1).min(longest);
+        self.rest = self.last_rest;
+    }
+}
