@@ -4,8 +4,8 @@
 //! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
 //! there are a table, the time per query, and a picture. `--tolerance 0.01` also bounds the clearance of the curve itself,
 //! and the picture then shows the pieces that it took: long where the wall is far, short where it is near. With
-//! `--features gpu` and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in millimetres, or with
-//! `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
+//! `--features gpu` and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in millimetres,
+//! or with `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
 use clap::{Parser, ValueEnum};
 use continuum_scene::anatomy::{Anatomy, no_goal, show};
