@@ -36,8 +36,7 @@ use parry3d_f64::shape::Shape;
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
 /// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond
-/// 2^200 or below 2^-200, are refused in the last column, and so are links whose length or radius is lost in the rounding
-/// of the largest coordinate.
+/// 2^50 or below 2^-200, are refused in the last column.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
 /// `Intersecting`, and a margin is kept only by what is further away than it. A nonlinear cast that does not stop at
@@ -331,9 +330,7 @@ impl<L> ContinuumDispatcher<L> {
     /// # Errors
     /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or answer NaN.
     pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
-        let robots = [g1, g2].map(links_of);
-        let is_robot = robots.iter().any(Option::is_some);
-        let links = robots.into_iter().flatten().flatten();
-        if is_robot && !range::is_iterated(pos12, g1, g2, links) { Err(Unsupported) } else { Ok(&self.0) }
+        let is_robot = links_of(g1).or(links_of(g2)).is_some();
+        if is_robot && !range::is_iterated(pos12, g1, g2) { Err(Unsupported) } else { Ok(&self.0) }
     }
 }
