@@ -2,8 +2,10 @@
 
 use super::MeshError;
 use super::checks::check_vertices;
+use super::shared_parts::SharedParts;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::sync::OnceLock;
 
 /// Vertices and triangles.
 #[derive(Clone)]
@@ -12,6 +14,8 @@ pub(crate) struct Mesh {
     indices: Vec<[u32; 3]>,
     /// The vertices that triangles use, unless all are used.
     used: Option<Vec<u32>>,
+    /// For those who ask which triangles are joined, counted at the first question.
+    parts: OnceLock<SharedParts>,
 }
 
 impl Mesh {
@@ -33,7 +37,7 @@ impl Mesh {
         let used = (!is_used.iter().all(|&is_used| is_used)).then(|| {
             (0..).zip(&is_used).filter(|(_, is_used)| **is_used).map(|(vertex, _)| vertex).collect()
         });
-        Self { vertices, indices, used }
+        Self { vertices, indices, used, parts: OnceLock::new() }
     }
 
     /// Whether the vertices can move there.
@@ -50,6 +54,7 @@ impl Mesh {
     /// Takes over vertices that were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         self.vertices.copy_from_slice(vertices);
+        self.parts.take();
     }
 
     #[cfg(feature = "gpu")]
@@ -71,6 +76,11 @@ impl Mesh {
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
         self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+
+    /// The corners and edges that triangles share.
+    pub(super) fn parts(&self) -> &SharedParts {
+        self.parts.get_or_init(|| SharedParts::new(&self.vertices, &self.indices))
     }
 
     /// The largest coordinate of a triangle.
