@@ -111,3 +111,107 @@ impl<L: Scalar> Slope<L> {
         [is_known & zero.lt(rise), is_known & rise.lt(zero)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::lanes::{Lane, tests::levels};
+    use crate::proximity::mesh::Mesh;
+    use crate::proximity::placed::PlacedLink;
+    use crate::proximity::search_frame::{SearchFrame, SearchLink};
+    use crate::proximity::shared_parts::{PART_WITHOUT, ends_of};
+    use crate::proximity::triangle_block::{BLOCK, load_vertices, place_triangle};
+    use crate::{Cap, ModifiedCylinder};
+    use continuum_testing::Random;
+    use fearless_simd::{Level, dispatch};
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// The feet of a block of triangles.
+    fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[E]) -> [Feet; BLOCK] {
+        let mut feet = [(); BLOCK].map(|()| Feet { away: [0; 3], inside: 0 });
+        dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
+        feet
+    }
+
+    /// Each lane's feet in the lowest bits.
+    #[inline(always)]
+    fn fill<L: Pack>(
+        token: L::Token,
+        searched: &SearchLink<L::Element>,
+        rows: &[L::Element],
+        feet: &mut [Feet; BLOCK],
+    ) where
+        L::Element: Lane,
+    {
+        let lanes = LinkLanes::<L>::new(token, searched);
+        let (far, error) = (L::splat(token, L::Element::round(1e9)), L::splat(token, searched.error));
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let (_, pack) = lanes.nearer_and_feet(load_vertices(token, rows, lane), far, error);
+            for place in 0..L::LANES {
+                feet[lane + place] =
+                    Feet { away: pack.away.map(|away| away >> place & 1), inside: pack.inside >> place & 1 };
+            }
+        }
+    }
+
+    /// What was certain: that the nearest point lies on an edge, on a corner, or on none of the edges.
+    #[derive(Debug, Default)]
+    struct Census([usize; 3]);
+
+    fn judge<E: Lane>(seed: u64, census: &mut Census) {
+        let mut random = Random::new(seed);
+        // Nearly level triangles below a link, so that what is uphill hangs on small tilts.
+        let tilt = 10.0_f64.powi(-(random.below(10) as i32));
+        let size = [0.02, 0.3, 1.0][random.below(3) as usize];
+        let corners: Vec<_> = (0..3 * BLOCK)
+            .map(|_| Vector::new(random.point().x * size, random.point().x * size, random.point().x * tilt))
+            .collect();
+        let caps = [Cap::Flat, Cap::Round];
+        let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
+        let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0)) + random.point() * size;
+        let way = if random.below(3) == 0 { random.point() } else { Vector::X + random.point() * tilt };
+        let radius = random.between(0.0, 0.2);
+        let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { return };
+        let link = PlacedLink::new(&link, &Pose::IDENTITY);
+        let triangles = (0..BLOCK as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let mesh = Mesh::of(corners, triangles);
+        let frame = SearchFrame::new(&mesh);
+        let Some(searched) = SearchLink::<E>::new(&link, &frame) else { return };
+        let mut rows = vec![E::default(); 9 * BLOCK];
+        (0..BLOCK).for_each(|lane| place_triangle(&frame, &mesh, lane as u32, &mut rows, lane));
+        for level in levels() {
+            for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {
+                let corners = mesh.corners(lane as u32);
+                let distance = link.measure(0, corners).distance;
+                let to_part = |part: usize| {
+                    let [from, to] = ends_of(corners, part);
+                    link.measure(0, [from, to, to]).distance
+                };
+                let rounding = 32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
+                let [a, b, c] = feet.away;
+                if let Some(part) = PART_WITHOUT[(a | b << 1 | c << 2) as usize] {
+                    let (part, beyond) = (usize::from(part), to_part(usize::from(part)) - distance);
+                    assert!(beyond <= rounding, "{seed}, {level:?}, {lane}: {beyond} at {part}");
+                    census.0[usize::from(part < 3)] += 1;
+                }
+                if feet.inside == 1 {
+                    let edges = to_part(3).min(to_part(4)).min(to_part(5));
+                    assert!(edges > distance + 4.0 * rounding, "{seed}, {level:?}, {lane}: {edges} {distance}");
+                    census.0[2] += 1;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_nearest_point_lies_where_it_certainly_lies() {
+        let (mut single, mut double) = (Census::default(), Census::default());
+        for seed in 0..4000 {
+            judge::<f32>(seed, &mut single);
+            judge::<f64>(seed, &mut double);
+        }
+        for Census(seen) in [single, double] {
+            assert!(seen.iter().all(|&count| count > 5000), "{seen:?}");
+        }
+    }
+}

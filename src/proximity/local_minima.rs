@@ -55,7 +55,6 @@ use super::mesh::Mesh;
 use super::near_triangle::NearTriangle;
 use super::placed::{Nearest, PlacedLink, PlacedRobot};
 use super::shared_parts::ends_of;
-use crate::ModifiedCylinder;
 use crate::distance::Scalar;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -88,11 +87,10 @@ pub(super) struct LocalMinima {
 struct Ranked {
     /// The distance, or where it is 0 the axis distance less the radius.
     rank: Real,
-    /// Whether it joins nothing that is nearer.
-    is_inside: bool,
     nearest: Nearest,
     /// What rounding can do to the distance.
     rounding: Real,
+    known: NearTriangle,
 }
 
 /// A corner or an edge of triangles that may be within the margin of a link.
@@ -101,8 +99,8 @@ struct Part {
     turn: u64,
     /// The least upper bound of their distances, as the search counts them.
     upper: Real,
-    /// How many of them are left out.
-    left_out: u32,
+    /// The least lower bound of those that are left out.
+    left_out: Real,
     /// The nearest of the others so far.
     first: u32,
 }
@@ -115,9 +113,6 @@ pub(super) struct RobotContacts<'a> {
     margin: Real,
     minima: &'a mut LocalMinima,
     out: &'a mut Vec<Contact>,
-    /// The last link, and how long those before it are.
-    last: usize,
-    before: Real,
 }
 
 impl<'a> RobotContacts<'a> {
@@ -130,19 +125,16 @@ impl<'a> RobotContacts<'a> {
         minima: &'a mut LocalMinima,
         out: &'a mut Vec<Contact>,
     ) -> Self {
-        Self { level, mesh, robot, margin, minima, out, last: 0, before: 0.0 }
+        Self { level, mesh, robot, margin, minima, out }
     }
 
     /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
     /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
     pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut Vec<NearTriangle>)) -> u64 {
-        let between = &self.robot.links()[self.last..number];
-        self.before += between.iter().map(ModifiedCylinder::length).sum::<Real>();
-        self.last = number;
         let link = self.robot.link(number);
         self.minima.triangles.clear();
         near(&link, &mut self.minima.triangles);
-        let (mesh, before) = (self.mesh, self.before);
+        let (mesh, before) = (self.mesh, self.robot.length_before(number));
         self.out.extend(self.minima.find(self.level, &link, mesh, self.margin).map(|nearest| {
             Contact::new(number as u32, &link, mesh.corners(nearest.triangle), nearest, before)
         }));
@@ -163,12 +155,13 @@ impl LocalMinima {
         self.near.clear();
         let mut known = self.triangles.iter();
         measure_each(level, link, mesh, &self.measured, |nearest| {
-            let is_inside = known.next().is_some_and(|known| known.is_inside);
+            let Some(known) = known.next() else { return };
             if nearest.distance <= margin {
                 let corners = mesh.corners(nearest.triangle);
                 let touches = nearest.distance <= 0.0;
                 let rank = if touches { link.axis_depth(corners).min(0.0) } else { nearest.distance };
-                self.near.push(Ranked { rank, is_inside, nearest, rounding: rounding(link, corners) });
+                let rounding = rounding(link, corners);
+                self.near.push(Ranked { rank, nearest, rounding, known: *known });
             }
         });
         let order = |a: &Ranked, b: &Ranked| {
@@ -192,7 +185,7 @@ impl LocalMinima {
         }
         self.turn += 1;
         let (shared, turn) = (mesh.parts(), self.turn);
-        let unknown = Part { turn: 0, upper: Real::INFINITY, left_out: 0, first: NONE };
+        let unknown = Part { turn: 0, upper: Real::INFINITY, left_out: Real::INFINITY, first: NONE };
         self.parts.resize(shared.count(), unknown);
         for known in &self.triangles {
             for &part in shared.of(known.triangle) {
@@ -201,7 +194,6 @@ impl LocalMinima {
                     *part = Part { turn, ..unknown };
                 }
                 part.upper = part.upper.min(known.upper);
-                part.left_out += 1;
             }
         }
         let (parts, measured) = (&mut self.parts, &mut self.measured);
@@ -209,8 +201,12 @@ impl LocalMinima {
             let shared = shared.of(known.triangle);
             let nearest_at = |foot: usize| parts[shared[foot] as usize].upper;
             let is_left_out = known.foot().is_some_and(|foot| nearest_at(foot) < known.lower);
-            if !is_left_out {
-                shared.iter().for_each(|&part| parts[part as usize].left_out -= 1);
+            if is_left_out {
+                for &part in shared {
+                    let least = &mut parts[part as usize].left_out;
+                    *least = least.min(known.lower);
+                }
+            } else {
                 measured.push(known.triangle);
             }
             !is_left_out
@@ -219,16 +215,18 @@ impl LocalMinima {
 
     /// Joins a triangle with the pieces that nearer ones have made.
     fn join(&mut self, link: &PlacedLink, mesh: &Mesh, place: u32) {
-        let Ranked { nearest, is_inside, rounding: own_rounding, .. } = self.near[place as usize - 1];
+        let Ranked { nearest, rounding: own_rounding, known, .. } = self.near[place as usize - 1];
         self.piece.push(place);
         let corners = mesh.corners(nearest.triangle);
         // The corners and edges that nearer triangles have, each by its two ends, and whether it holds the least point.
         let (mut met, mut count) = ([([Vector::ZERO; 2], LEFT_OUT, false); 12], 0);
         for (number, &part) in mesh.parts().of(nearest.triangle).iter().enumerate() {
             let part = &mut self.parts[part as usize];
-            let others = [(part.left_out > 0).then_some(LEFT_OUT), (part.first != NONE).then_some(part.first)];
+            // An edge or a corner of what is certainly farther is itself farther.
+            let meets_left_out = part.left_out < known.upper;
+            let others = [meets_left_out.then_some(LEFT_OUT), (part.first != NONE).then_some(part.first)];
             part.first = part.first.min(place);
-            if is_inside || others == [None; 2] {
+            if known.is_inside || others == [None; 2] {
                 continue;
             }
             let ends = ends_of(corners, number);
