@@ -61,8 +61,10 @@ impl<L: Pack> LinkLanes<L> {
         let nearer = self.nearer(&axial, &face, limit);
         let certain = error * error.lit(CERTAIN);
         let away = self.corners_away(corners, &axial, error);
-        let inside = L::bits((nearer.upper + certain).lt(axial.edges_squared.sqrt()));
-        (nearer, Feet { away, inside })
+        // Of what may touch, all is equally near.
+        let is_apart = (self.link.radius + certain).lt(nearer.lower);
+        let is_inside = is_apart & (nearer.upper + certain).lt(axial.edges_squared.sqrt());
+        (nearer, Feet { away, inside: L::bits(is_inside) })
     }
 
     #[inline(always)]
@@ -196,7 +198,10 @@ mod tests {
                 }
                 if feet.inside == 1 {
                     let edges = to_part(3).min(to_part(4)).min(to_part(5));
-                    assert!(edges > distance + 4.0 * rounding, "{seed}, {level:?}, {lane}: {edges} {distance}");
+                    assert!(
+                        edges > distance + 4.0 * rounding,
+                        "{seed}, {level:?}, {lane}: {edges} {distance}"
+                    );
                     census.0[2] += 1;
                 }
             }
@@ -211,7 +216,7 @@ mod tests {
             judge::<f64>(seed, &mut double);
         }
         for Census(seen) in [single, double] {
-            assert!(seen.iter().all(|&count| count > 5000), "{seen:?}");
+            assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
         }
     }
 }

@@ -130,7 +130,11 @@ impl<'a> RobotContacts<'a> {
 
     /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
     /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
-    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut Vec<NearTriangle>)) -> u64 {
+    pub(super) fn add(
+        &mut self,
+        number: usize,
+        near: impl FnOnce(&PlacedLink, &mut Vec<NearTriangle>),
+    ) -> u64 {
         let link = self.robot.link(number);
         self.minima.triangles.clear();
         near(&link, &mut self.minima.triangles);
@@ -155,7 +159,7 @@ impl LocalMinima {
         self.near.clear();
         let mut known = self.triangles.iter();
         measure_each(level, link, mesh, &self.measured, |nearest| {
-            let Some(known) = known.next() else { return };
+            let Some(known) = known.find(|known| known.triangle == nearest.triangle) else { return };
             if nearest.distance <= margin {
                 let corners = mesh.corners(nearest.triangle);
                 let touches = nearest.distance <= 0.0;

@@ -54,7 +54,9 @@ impl Mesh {
     /// Takes over vertices that were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         self.vertices.copy_from_slice(vertices);
-        self.parts.take();
+        if self.parts.get().is_some_and(|parts| !parts.stay(vertices)) {
+            self.parts.take();
+        }
     }
 
     #[cfg(feature = "gpu")]

@@ -16,21 +16,28 @@ pub(super) const PART_WITHOUT: [Option<u8>; 8] =
 /// The parts of all triangles.
 #[derive(Clone)]
 pub(super) struct SharedParts {
+    /// The number of each vertex.
+    corners: Vec<u32>,
     of: Vec<Parts>,
     count: u32,
 }
 
 impl SharedParts {
     pub(super) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
-        let mut numbers = Numbers::default();
-        let corners: Vec<_> = vertices.iter().map(|&corner| numbers.of(place(corner))).collect();
-        let mut edges = Numbers { known: HashMap::default(), count: numbers.count };
+        let (corners, count) = number_corners(vertices);
+        let mut edges = Numbers { known: HashMap::default(), count };
         let of = indices.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|vertex| corners[vertex as usize]);
             let mut edge = |from: u32, to: u32| edges.of((from.min(to), from.max(to)));
             [a, b, c, edge(a, b), edge(b, c), edge(c, a)]
         });
-        Self { of: of.collect(), count: edges.count }
+        let of = of.collect();
+        Self { corners, of, count: edges.count }
+    }
+
+    /// Whether they are the same with the vertices at these places.
+    pub(super) fn stay(&self, vertices: &[Vector]) -> bool {
+        number_corners(vertices).0 == self.corners
     }
 
     /// The parts of a triangle.
@@ -58,16 +65,17 @@ pub(super) fn ends_of([a, b, c]: [Vector; 3], part: usize) -> [Vector; 2] {
     }
 }
 
+/// A number for each vertex, the same for those at the same place, and how many there are.
+fn number_corners(vertices: &[Vector]) -> (Vec<u32>, u32) {
+    let mut places = Numbers { known: HashMap::default(), count: 0 };
+    let corners = vertices.iter().map(|&corner| places.of(place(corner))).collect();
+    (corners, places.count)
+}
+
 /// Numbers in the order in which they are asked for.
 struct Numbers<K> {
     known: HashMap<K, u32, BuildHasherDefault<Mix>>,
     count: u32,
-}
-
-impl<K> Default for Numbers<K> {
-    fn default() -> Self {
-        Self { known: HashMap::default(), count: 0 }
-    }
 }
 
 impl<K: Hash + Eq> Numbers<K> {

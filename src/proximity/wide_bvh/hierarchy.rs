@@ -167,7 +167,9 @@ impl MeshSearch<'_> {
         match self.hierarchy.searched(self.level, link) {
             Searched::Single(searched) => self.single().within(&searched, bound, found),
             Searched::Double(searched) => self.double().within(&searched, bound, found),
-            Searched::OutOfReach => found.extend((0..self.hierarchy.mesh.len() as u32).map(NearTriangle::unknown)),
+            Searched::OutOfReach => {
+                found.extend((0..self.hierarchy.mesh.len() as u32).map(NearTriangle::unknown))
+            }
         }
     }
 

@@ -261,7 +261,7 @@ impl<E: Lane> Traversal<'_, E> {
                 lower: lower - certain,
                 upper,
                 away: if is_apart { away } else { 0 },
-                is_inside: is_apart && bit(feet.inside) == 1,
+                is_inside: bit(feet.inside) == 1,
             });
         }
     }
