@@ -32,6 +32,8 @@ pub(crate) struct AxisTriangle<T> {
     pub s: T,
     /// The closest point of the triangle.
     pub on_triangle: Vec3<T>,
+    /// The squared distance of the triangle's edges alone.
+    pub edges_squared: T,
 }
 
 impl<T: Scalar> AxisTriangle<T> {
@@ -45,13 +47,14 @@ impl<T: Scalar> AxisTriangle<T> {
         other.select(mask & other.squared.lt(self.squared), self)
     }
 
-    /// `self` where the mask is true, `no` elsewhere.
+    /// `self` where the mask is true, `no` elsewhere, which has met the edges.
     #[inline(always)]
     fn select(self, take: T::Mask, no: Self) -> Self {
         Self {
             squared: take.select(self.squared, no.squared),
             s: take.select(self.s, no.s),
             on_triangle: Vec3::select(take, self.on_triangle, no.on_triangle),
+            edges_squared: no.edges_squared,
         }
     }
 }
@@ -63,6 +66,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let [a, b, c] = face.vertices;
     // Case 3.
     let nearest = edge(end, a, b).nearer(edge(end, b, c)).nearer(edge(end, c, a));
+    let nearest = AxisTriangle { edges_squared: nearest.squared, ..nearest };
     // Case 2.
     let (low, high) = (face.project(Vec3::zero(zero)), face.project(end));
     let nearest = nearest
@@ -72,7 +76,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let (from, to) = (-face.across.dot(a), face.across.dot(end - a));
     let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
-    let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s };
+    let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: zero };
     nearest.nearer_where(opposite & face.holds_point(end * s), pierced)
 }
 
@@ -84,11 +88,13 @@ fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> 
         squared: found.gap.norm_squared(),
         s: found.s,
         on_triangle: from.along(to - from, found.t),
+        edges_squared: found.gap.norm_squared(),
     }
 }
 
 /// Case 2, for the end at `s`.
 #[inline(always)]
 fn above<T: Scalar>(face: &Face<T>, s: T, foot: &Projection<T>) -> AxisTriangle<T> {
-    AxisTriangle { squared: foot.residual.norm_squared(), s, on_triangle: face.at(foot.alpha, foot.beta) }
+    let squared = foot.residual.norm_squared();
+    AxisTriangle { squared, s, on_triangle: face.at(foot.alpha, foot.beta), edges_squared: squared }
 }

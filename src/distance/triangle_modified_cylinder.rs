@@ -78,6 +78,8 @@ pub(crate) struct Axial<T: Scalar> {
     pub s: T,
     /// p*, the triangle's point.
     pub on_triangle: Vec3<T>,
+    /// The squared distance between the axis and the triangle's edges.
+    pub edges_squared: T,
     /// Whether the disc at the start, or at the end, decides (case 2).
     pub at_flat: [T::Mask; 2],
 }
@@ -97,6 +99,7 @@ impl<T: Scalar> Axial<T> {
             axis_squared: axis.squared,
             s: axis.s,
             on_triangle: axis.on_triangle,
+            edges_squared: axis.edges_squared,
             at_flat: [link.flat[0] & has_axis & at_start, link.flat[1] & has_axis & at_end],
         }
     }

@@ -73,10 +73,9 @@ impl LinkProximity {
     /// ```
     pub fn contact(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Contact, ProximityError> {
         let (link, corners) = (self.placed_link(robot, pose)?, self.corners(mesh)?);
-        let before = robot.links()[..self.link as usize].iter().map(|link| link.length()).sum();
         let Self { triangle, distance, on_robot, on_mesh, .. } = *self;
         let nearest = Nearest { triangle, distance, on_robot, on_mesh };
-        Ok(Contact::new(self.link, &link, corners, &nearest, before))
+        Ok(Contact::new(self.link, &link, corners, &nearest, robot.length_before(self.link as usize)))
     }
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Nearer<L> {
 #[derive(Clone, Copy)]
 pub(super) struct LinkLanes<L: Scalar> {
     pub start: Vec3<L>,
-    length: L,
+    pub length: L,
     /// Seen from its start.
     pub link: Link<L>,
     has_flat_cap: bool,
@@ -81,13 +81,18 @@ impl<L: Pack> LinkLanes<L> {
     #[inline(always)]
     pub(super) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);
-        let axial = Axial::new(&self.link, &face);
+        self.nearer(&Axial::new(&self.link, &face), &face, limit)
+    }
+
+    /// The same, for a face seen from the link's start.
+    #[inline(always)]
+    pub(super) fn nearer(&self, axial: &Axial<L>, face: &Face<L>, limit: L) -> Nearer<L> {
         let axis = axial.axis_squared.sqrt();
         let nearer = L::bits(axis.lt(limit));
         if nearer == 0 || !self.has_flat_cap {
             return Nearer { nearer, lower: axis, upper: axis };
         }
-        let (lower, upper) = axial.cap_bounds(&self.link, &face);
+        let (lower, upper) = axial.cap_bounds(&self.link, face);
         let beyond_cap = axial.beyond_flat_cap();
         let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
         let upper = beyond_cap.select(upper + self.link.radius, axis);

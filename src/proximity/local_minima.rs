@@ -9,11 +9,13 @@
 //! nearer neighbour. Of the two the one that is farther ends, so that the nearest point of each connected piece of wall
 //! within the margin is always among the minima.
 //!
-//! Let t be the rounding of a distance, 64 u extent, far above what a measurement errs by. Then of the minima found
+//! Let t be the rounding of a distance, 32 u extent of link and triangle, edge or corner: far above what a measurement
+//! errs by. A piece has grown by more than rounding where d exceeds its minimum by t of the triangle at which it appeared
+//! and t of the edge or corner at which it joins another. Of the minima found
 //!
 //! 1. *none is missed*: from every point x of the wall a way on the wall leads to one of them, along which d never
-//!    exceeds d(x) + t;
-//! 2. *none is found twice*: a way from one to another exceeds the farther of the two by more than t;
+//!    exceeds d(x) + 2 t;
+//! 2. *none is found twice*: a way from one to another exceeds the farther of the two by more than 2 t;
 //! 3. *each is one*: no point of a triangle that contains it is nearer, but for rounding.
 //!
 //! # Why it is enough to look at triangles, edges and corners
@@ -24,14 +26,24 @@
 //! an edge for each shared f, from d(f) >= max(d(T), d(T')) on.
 //!
 //! The triangles are taken nearest first. T starts a piece of its own. It meets a piece at each f that an earlier, nearer
-//! triangle has. If d(f) is at most t above the farther of the two pieces' minima, that one ends there (the elder rule of
-//! persistent homology). No pair is overlooked for being met too early: the minimum of a piece that could end is at least
-//! d(f) - t >= d(T) - t, and all that is nearer than T has been seen. That is 2. For 1, follow the pieces: from x
+//! triangle has. If d(f) is at most 2 t above the farther of the two pieces' minima, that one ends there (the elder rule
+//! of persistent homology). No pair is overlooked for being met too early: the minimum of a piece that could end is at
+//! least d(f) - 2 t >= d(T) - 2 t, and all that is nearer than T has been seen. That is 2. For 1, follow the pieces: from x
 //! straight to the least point of its triangle, and whenever a piece has ended, through its f to the one that it joined,
-//! whose minimum is nearer. For 3, a triangle that contains the minimum of T shares there an f with d(f) <= d(T) + t, so
+//! whose minimum is nearer. For 3, a triangle that contains the minimum of T shares there an f with d(f) <= d(T) + 2 t, so
 //! that one of the two pieces ended, T's if the other is nearer.
 //!
 //! Where T's least point lies on f, d(f) is d(T) and need not be computed; that spares nearly all of them.
+//!
+//! # What need not be measured
+//! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and that
+//! one is nearer by far more than 2 t. The search can tell so (`feet`). Such a triangle D is *left out*: at d(D) it joins
+//! a piece whose minimum is nearer by far more than 2 t, so that no piece ever ends for being that of D. For the
+//! others it still counts where they join it. A piece that has an f with D, and d(f) at most 2 t above its own minimum,
+//! ends there: d(f) >= d(D), so that the minimum of D's piece is the nearer one. Which piece D is part of
+//! makes no difference, and all that are left out are taken for one, nearer than any.
+//!
+//! A triangle whose edges are certainly all farther than its nearest point joins nothing that is nearer.
 //!
 //! # Where link and wall overlap
 //! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its triangles the one
@@ -40,28 +52,34 @@
 use super::contact::Contact;
 use super::measure_lanes::measure_each;
 use super::mesh::Mesh;
+use super::near_triangle::NearTriangle;
 use super::placed::{Nearest, PlacedLink, PlacedRobot};
-use crate::ModifiedCylinder;
+use super::shared_parts::ends_of;
 use crate::distance::Scalar;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-use std::hash::{BuildHasherDefault, Hasher};
+
+/// The place of all that are left out.
+const LEFT_OUT: u32 = 0;
+
+/// The place of no triangle.
+const NONE: u32 = u32::MAX;
 
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct LocalMinima {
-    /// The triangles within the margin.
-    near: Vec<Ranked>,
-    /// For each of them, nearest first, an earlier one of the same piece, or itself.
-    piece: Vec<u32>,
-    /// For each place of a corner its number, and the first triangle that has it.
-    corners: HashMap<(u64, u64, u64), (u32, u32), BuildHasherDefault<Mix>>,
-    /// For each edge, by the numbers of its corners, the first triangle that has it.
-    edges: HashMap<(u32, u32), u32, BuildHasherDefault<Mix>>,
     /// The triangles that may be within the margin of one link.
-    triangles: Vec<u32>,
+    triangles: Vec<NearTriangle>,
+    /// Those that are measured.
+    measured: Vec<u32>,
+    /// Those within the margin, nearest first.
+    near: Vec<Ranked>,
+    /// For each of them, counted from 1, an earlier one of the same piece, or itself.
+    piece: Vec<u32>,
+    /// What is known of each corner and edge.
+    parts: Vec<Part>,
+    /// The link for which it is known, counted through all queries.
+    turn: u64,
 }
 
 /// A triangle within the margin.
@@ -70,6 +88,21 @@ struct Ranked {
     /// The distance, or where it is 0 the axis distance less the radius.
     rank: Real,
     nearest: Nearest,
+    /// What rounding can do to the distance.
+    rounding: Real,
+    known: NearTriangle,
+}
+
+/// A corner or an edge of triangles that may be within the margin of a link.
+#[derive(Clone, Copy)]
+struct Part {
+    turn: u64,
+    /// The least upper bound of their distances, as the search counts them.
+    upper: Real,
+    /// The least lower bound of those that are left out.
+    left_out: Real,
+    /// The nearest of the others so far.
+    first: u32,
 }
 
 /// The contacts of a robot, link by link.
@@ -80,9 +113,6 @@ pub(super) struct RobotContacts<'a> {
     margin: Real,
     minima: &'a mut LocalMinima,
     out: &'a mut Vec<Contact>,
-    /// The last link, and how long those before it are.
-    last: usize,
-    before: Real,
 }
 
 impl<'a> RobotContacts<'a> {
@@ -95,27 +125,24 @@ impl<'a> RobotContacts<'a> {
         minima: &'a mut LocalMinima,
         out: &'a mut Vec<Contact>,
     ) -> Self {
-        Self { level, mesh, robot, margin, minima, out, last: 0, before: 0.0 }
+        Self { level, mesh, robot, margin, minima, out }
     }
 
     /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
-    /// margin; some may be farther away, and none may stand there twice. Returns how many they are.
-    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut Vec<u32>)) -> u64 {
-        let between = &self.robot.links()[self.last..number];
-        self.before += between.iter().map(ModifiedCylinder::length).sum::<Real>();
-        self.last = number;
+    /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
+    pub(super) fn add(
+        &mut self,
+        number: usize,
+        near: impl FnOnce(&PlacedLink, &mut Vec<NearTriangle>),
+    ) -> u64 {
         let link = self.robot.link(number);
-        let mut triangles = std::mem::take(&mut self.minima.triangles);
-        triangles.clear();
-        near(&link, &mut triangles);
-        let places = self.minima.find(self.level, &link, self.mesh, self.margin, &triangles);
-        let (mesh, before) = (self.mesh, self.before);
-        self.out.extend(places.map(|nearest| {
+        self.minima.triangles.clear();
+        near(&link, &mut self.minima.triangles);
+        let (mesh, before) = (self.mesh, self.robot.length_before(number));
+        self.out.extend(self.minima.find(self.level, &link, mesh, self.margin).map(|nearest| {
             Contact::new(number as u32, &link, mesh.corners(nearest.triangle), nearest, before)
         }));
-        let count = triangles.len() as u64;
-        self.minima.triangles = triangles;
-        count
+        self.minima.measured.len() as u64
     }
 }
 
@@ -127,18 +154,18 @@ impl LocalMinima {
         link: &PlacedLink,
         mesh: &Mesh,
         margin: Real,
-        triangles: &[u32],
     ) -> impl Iterator<Item = &Nearest> {
+        self.leave_out(mesh);
         self.near.clear();
-        measure_each(level, link, mesh, triangles, |nearest| {
+        let mut known = self.triangles.iter();
+        measure_each(level, link, mesh, &self.measured, |nearest| {
+            let Some(known) = known.find(|known| known.triangle == nearest.triangle) else { return };
             if nearest.distance <= margin {
+                let corners = mesh.corners(nearest.triangle);
                 let touches = nearest.distance <= 0.0;
-                let rank = if touches {
-                    link.axis_depth(mesh.corners(nearest.triangle)).min(0.0)
-                } else {
-                    nearest.distance
-                };
-                self.near.push(Ranked { rank, nearest });
+                let rank = if touches { link.axis_depth(corners).min(0.0) } else { nearest.distance };
+                let rounding = rounding(link, corners);
+                self.near.push(Ranked { rank, nearest, rounding, known: *known });
             }
         });
         let order = |a: &Ranked, b: &Ranked| {
@@ -146,62 +173,85 @@ impl LocalMinima {
         };
         self.near.sort_unstable_by(order);
         self.piece.clear();
-        self.corners.clear();
-        self.edges.clear();
-        for place in 0..self.near.len() {
+        self.piece.push(LEFT_OUT);
+        for place in 1..=self.near.len() {
             self.join(link, mesh, place as u32);
         }
-        let places = self.near.iter().zip(&self.piece).enumerate();
-        places.filter(|(place, (_, piece))| *place as u32 == **piece).map(|(_, (ranked, _))| &ranked.nearest)
+        let places = self.near.iter().zip(&self.piece[1..]).zip(1..);
+        places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
+    }
+
+    /// Leaves out the triangles that certainly lie on a slope towards a nearer one.
+    fn leave_out(&mut self, mesh: &Mesh) {
+        self.measured.clear();
+        if self.triangles.is_empty() {
+            return;
+        }
+        self.turn += 1;
+        let (shared, turn) = (mesh.parts(), self.turn);
+        let unknown = Part { turn: 0, upper: Real::INFINITY, left_out: Real::INFINITY, first: NONE };
+        self.parts.resize(shared.count(), unknown);
+        for known in &self.triangles {
+            for &part in shared.of(known.triangle) {
+                let part = &mut self.parts[part as usize];
+                if part.turn != turn {
+                    *part = Part { turn, ..unknown };
+                }
+                part.upper = part.upper.min(known.upper);
+            }
+        }
+        let (parts, measured) = (&mut self.parts, &mut self.measured);
+        self.triangles.retain(|known| {
+            let shared = shared.of(known.triangle);
+            let nearest_at = |foot: usize| parts[shared[foot] as usize].upper;
+            let is_left_out = known.foot().is_some_and(|foot| nearest_at(foot) < known.lower);
+            if is_left_out {
+                for &part in shared {
+                    let least = &mut parts[part as usize].left_out;
+                    *least = least.min(known.lower);
+                }
+            } else {
+                measured.push(known.triangle);
+            }
+            !is_left_out
+        });
     }
 
     /// Joins a triangle with the pieces that nearer ones have made.
     fn join(&mut self, link: &PlacedLink, mesh: &Mesh, place: u32) {
-        let Ranked { nearest, .. } = self.near[place as usize];
-        let corners = mesh.corners(nearest.triangle);
+        let Ranked { nearest, rounding: own_rounding, known, .. } = self.near[place as usize - 1];
         self.piece.push(place);
-        let tie = 64.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
+        let corners = mesh.corners(nearest.triangle);
         // The corners and edges that nearer triangles have, each by its two ends, and whether it holds the least point.
-        let (mut shared, mut count) = ([(corners[0], corners[0], 0, false); 6], 0);
-        let mut share = |from: Vector, to: Vector, with: u32| {
-            shared[count] = (from, to, with, is_on(nearest.on_mesh, from, to, tie));
-            count += 1;
-        };
-        let mut numbers = [0; 3];
-        for (number, corner) in numbers.iter_mut().zip(corners) {
-            let known = self.corners.len() as u32;
-            match self.corners.entry(key(corner)) {
-                Entry::Vacant(entry) => {
-                    entry.insert((known, place));
-                    *number = known;
-                }
-                Entry::Occupied(entry) => {
-                    *number = entry.get().0;
-                    share(corner, corner, entry.get().1);
-                }
+        let (mut met, mut count) = ([([Vector::ZERO; 2], LEFT_OUT, false); 12], 0);
+        for (number, &part) in mesh.parts().of(nearest.triangle).iter().enumerate() {
+            let part = &mut self.parts[part as usize];
+            // An edge or a corner of what is certainly farther is itself farther.
+            let meets_left_out = part.left_out < known.upper;
+            let others = [meets_left_out.then_some(LEFT_OUT), (part.first != NONE).then_some(part.first)];
+            part.first = part.first.min(place);
+            if known.is_inside || others == [None; 2] {
+                continue;
             }
-        }
-        for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-            let ends = (numbers[from].min(numbers[to]), numbers[from].max(numbers[to]));
-            match self.edges.entry(ends) {
-                Entry::Vacant(entry) => {
-                    entry.insert(place);
-                }
-                Entry::Occupied(entry) => share(corners[from], corners[to], *entry.get()),
+            let ends = ends_of(corners, number);
+            let holds_least_point = is_on(nearest.on_mesh, ends, own_rounding);
+            for with in others.into_iter().flatten() {
+                met[count] = (ends, with, holds_least_point);
+                count += 1;
             }
         }
         // Those that hold its least point come first: they are met at its own distance.
         for met_there in [true, false] {
-            for &(from, to, with, holds_least_point) in &shared[..count] {
+            for &([from, to], with, holds_least_point) in &met[..count] {
                 if holds_least_point != met_there {
                     continue;
                 }
                 let (mine, other) = (self.first_of(place), self.first_of(with));
-                let farther = self.distance(mine).max(self.distance(other)) + tie;
-                if mine != other
-                    && nearest.distance <= farther
-                    && (met_there || link.comes_within(farther, from, to))
-                {
+                if mine == other {
+                    continue;
+                }
+                let farther = self.grown(mine).max(self.grown(other)) + rounding(link, [from, to, to]);
+                if nearest.distance <= farther && (met_there || link.comes_within(farther, from, to)) {
                     // The piece appeared where the nearer one did.
                     self.piece[mine.max(other) as usize] = mine.min(other);
                 }
@@ -209,8 +259,10 @@ impl LocalMinima {
         }
     }
 
-    fn distance(&self, place: u32) -> Real {
-        self.near[place as usize].nearest.distance
+    /// How far the wall can rise from where a piece appeared before it has grown.
+    fn grown(&self, place: u32) -> Real {
+        let ranked = (place as usize).checked_sub(1).map(|place| &self.near[place]);
+        ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
     }
 
     /// The triangle at which a piece appeared.
@@ -237,45 +289,21 @@ pub(crate) fn contacts_by_all_triangles(
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
-            near.extend((0..mesh.len() as u32).filter(may_meet));
+            near.extend((0..mesh.len() as u32).filter(may_meet).map(NearTriangle::unknown));
         });
     }
 }
 
-/// Whether a point lies on the segment between two, but for `tie`.
-fn is_on(point: Vector, from: Vector, to: Vector, tie: Real) -> bool {
+/// What rounding can do to the distance between a link and a triangle.
+fn rounding(link: &PlacedLink, corners: [Vector; 3]) -> Real {
+    32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners)
+}
+
+/// Whether a point lies on the segment between two, as far as rounding can tell.
+fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
     let (edge, relative) = (to - from, point - from);
     let share = relative.dot(edge) / edge.length_squared();
     // 0 / 0 where the segment is a point: the comparison turns it into 0.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    (relative - edge * share).abs().max_element() <= tie
-}
-
-/// A place; 0 and -0 are the same.
-fn key(point: Vector) -> (u64, u64, u64) {
-    let [x, y, z] = (point + Vector::ZERO).to_array().map(Real::to_bits);
-    (x, y, z)
-}
-
-/// A quick hash for places and numbers: nobody chooses them to collide.
-#[derive(Clone, Copy, Default)]
-struct Mix(u64);
-
-impl Hasher for Mix {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|&byte| self.write_u64(byte.into()));
-    }
-
-    fn write_u32(&mut self, number: u32) {
-        self.write_u64(number.into());
-    }
-
-    fn write_u64(&mut self, number: u64) {
-        let mixed = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        self.0 = mixed ^ (mixed >> 32);
-    }
+    (relative - edge * share).abs().max_element() <= 0.5 * rounding
 }

@@ -3,8 +3,10 @@
 use super::MeshError;
 use super::checks::check_vertices;
 use super::parallel::each;
+use super::shared_parts::SharedParts;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::sync::OnceLock;
 
 /// Vertices and triangles.
 #[derive(Clone)]
@@ -13,6 +15,8 @@ pub(crate) struct Mesh {
     indices: Vec<[u32; 3]>,
     /// The vertices that triangles use, unless all are used.
     used: Option<Vec<u32>>,
+    /// For those who ask which triangles are joined, counted at the first question.
+    parts: OnceLock<SharedParts>,
 }
 
 impl Mesh {
@@ -34,7 +38,7 @@ impl Mesh {
         let used = (!is_used.iter().all(|&is_used| is_used)).then(|| {
             (0..).zip(&is_used).filter(|(_, is_used)| **is_used).map(|(vertex, _)| vertex).collect()
         });
-        Self { vertices, indices, used }
+        Self { vertices, indices, used, parts: OnceLock::new() }
     }
 
     /// Whether the vertices can move there.
@@ -52,6 +56,9 @@ impl Mesh {
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         let shares = self.vertices.chunks_mut(SHARE).zip(vertices.chunks(SHARE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
+        if self.parts.get().is_some_and(|parts| !parts.stay(vertices)) {
+            self.parts.take();
+        }
     }
 
     #[cfg(feature = "gpu")]
@@ -73,6 +80,11 @@ impl Mesh {
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
         self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+
+    /// The corners and edges that triangles share.
+    pub(super) fn parts(&self) -> &SharedParts {
+        self.parts.get_or_init(|| SharedParts::new(&self.vertices, &self.indices))
     }
 
     /// The largest coordinate of a triangle.

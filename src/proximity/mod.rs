@@ -9,6 +9,7 @@
 //! | `tube/` | a tube in the mesh's frame: its pieces, convex bodies around them, points that are in it |
 //! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `pass` goes through a query's links, `engine` is [`Exhaustive`] |
 //! | `link_lanes` | a link against a pack of triangles, in the precision of the search |
+//! | `feet` | where on a pack of triangles the nearest points can lie, in the precision of the search |
 //! | `search_frame` | mesh and links near one, in the precision of the search, and what rounding can do there |
 //! | `triangle_block` | how triangles stand in memory, to be loaded in packs |
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
@@ -18,6 +19,7 @@
 //! | `certificate` | proofs of an answer |
 //! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
 //! | `local_minima` | the local minima of a link's distance: one contact for each |
+//! | `near_triangle`, `shared_parts` | what the search tells of a triangle within the margin, and which corners and edges triangles share |
 //! | `derivative` | how it changes with the points that link and triangle are made of |
 //! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
 //! | `motion` | what an answer about a motion is |
@@ -31,6 +33,7 @@ mod engine;
 mod error;
 mod exhaustive;
 mod feature;
+mod feet;
 mod link_lanes;
 mod local_minima;
 mod measure_lanes;
@@ -38,6 +41,7 @@ mod mesh;
 mod motion;
 #[cfg(feature = "serde-serialize")]
 mod motion_serialised;
+mod near_triangle;
 mod nearest_features;
 mod parallel;
 mod placed;
@@ -45,6 +49,7 @@ mod report;
 mod search_frame;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
+mod shared_parts;
 mod triangle_block;
 mod tube;
 mod wide_bvh;

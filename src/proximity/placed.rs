@@ -47,6 +47,11 @@ impl<'a> PlacedRobot<'a> {
         self.robot.links().iter().map(|link| PlacedLink::new(link, self.pose))
     }
 
+    /// How long the links before a link are, together.
+    pub(super) fn length_before(&self, link: usize) -> Real {
+        self.robot.length_before(link)
+    }
+
     pub(super) fn link_tree(&self) -> &'a [LinkNode] {
         self.robot.link_tree()
     }

@@ -54,6 +54,8 @@ pub struct Chain {
     segments: Vec<Range<usize>>,
     /// Capsules around halves, quarters ... of the links.
     link_tree: Vec<LinkNode>,
+    /// How long the links before each one are, together.
+    lengths_before: Vec<Real>,
     /// Over the links' boxes, for parry's composite queries; leaf i is link i. Built when first asked for.
     bvh: OnceLock<Bvh>,
     /// The caps of the input's segments: memory for the next centreline.
@@ -162,6 +164,11 @@ impl Chain {
         &self.link_tree
     }
 
+    /// How long the links before a link are, together.
+    pub(crate) fn length_before(&self, link: usize) -> Real {
+        self.lengths_before.get(link).copied().unwrap_or_default()
+    }
+
     /// The chain whose links are the images of this one's, or nothing if a link has none.
     pub(crate) fn try_map(
         &self,
@@ -173,7 +180,7 @@ impl Chain {
 
     pub(super) fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
         let mut chain = Self { links, segments, ..Self::empty() };
-        link_tree::build(&chain.links, &mut chain.link_tree);
+        chain.follow_links();
         chain
     }
 
@@ -183,6 +190,7 @@ impl Chain {
             links: Vec::new(),
             segments: Vec::new(),
             link_tree: Vec::new(),
+            lengths_before: Vec::new(),
             bvh: OnceLock::new(),
             caps: Vec::new(),
         }
@@ -213,9 +221,21 @@ impl Chain {
             self.segments.push(if self.links.is_empty() { 0 } else { k }..radii.len());
             self.links.push(ModifiedCylinder::unchecked(points[k], points[k + 1], radii[k], caps));
         }
-        link_tree::build(&self.links, &mut self.link_tree);
-        self.bvh = OnceLock::new();
+        self.follow_links();
         Ok(())
+    }
+
+    /// Computes anew what follows from the links.
+    fn follow_links(&mut self) {
+        link_tree::build(&self.links, &mut self.link_tree);
+        self.lengths_before.clear();
+        let mut length = 0.0;
+        self.lengths_before.extend(self.links.iter().map(|link| {
+            let before = length;
+            length += link.length();
+            before
+        }));
+        self.bvh = OnceLock::new();
     }
 }
 

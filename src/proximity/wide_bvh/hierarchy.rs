@@ -6,6 +6,7 @@ use super::traverse::{Stack, Traversal};
 use super::winding::FarFields;
 use crate::proximity::Work;
 use crate::proximity::mesh::Mesh;
+use crate::proximity::near_triangle::NearTriangle;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
@@ -178,11 +179,13 @@ impl MeshSearch<'_> {
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.
-    pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut Vec<u32>) {
+    pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut Vec<NearTriangle>) {
         match self.hierarchy.searched(self.level, link) {
             Searched::Single(searched) => self.single().within(&searched, bound, found),
             Searched::Double(searched) => self.double().within(&searched, bound, found),
-            Searched::OutOfReach => found.extend(0..self.hierarchy.mesh.len() as u32),
+            Searched::OutOfReach => {
+                found.extend((0..self.hierarchy.mesh.len() as u32).map(NearTriangle::unknown))
+            }
         }
     }
 

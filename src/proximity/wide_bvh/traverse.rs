@@ -11,9 +11,11 @@ use super::node::{Child, WIDTH};
 use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::Work;
+use crate::proximity::feet::{CERTAIN, Feet};
 use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
+use crate::proximity::near_triangle::NearTriangle;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
@@ -59,7 +61,7 @@ enum Aim<'a> {
     /// Whether any triangle may be within the limit.
     Any(bool),
     /// Every triangle that may be within the limit.
-    Every,
+    Every(&'a mut Vec<NearTriangle>),
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -77,7 +79,7 @@ impl<E: Lane> Target<'_, E> {
             // Once a triangle overlaps, the limit is 0 and nothing is below it.
             Aim::About(_, leaves) => *leaves == 0,
             Aim::Any(found) => *found,
-            Aim::Every => false,
+            Aim::Every(_) => false,
         }
     }
 }
@@ -147,11 +149,10 @@ impl<E: Lane> Traversal<'_, E> {
     }
 
     /// Adds to `found` every triangle that may be at most `bound` from the link.
-    pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<u32>) {
+    pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<NearTriangle>) {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every };
+        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every(found) };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
-        found.extend(self.stack.candidates.iter().map(|candidate| candidate.1));
     }
 
     #[inline(always)]
@@ -185,7 +186,12 @@ impl<E: Lane> Traversal<'_, E> {
             match Child::unpack(child) {
                 Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
-                Child::Leaf(leaf) => self.visit_leaf(token, &lanes, leaf, target),
+                Child::Leaf(leaf) => match &mut target.aim {
+                    Aim::Every(found) => {
+                        self.gather_leaf(token, &lanes, leaf, target.searched, target.limit, found);
+                    }
+                    _ => self.visit_leaf(token, &lanes, leaf, target),
+                },
             }
         }
     }
@@ -235,6 +241,59 @@ impl<E: Lane> Traversal<'_, E> {
         }
     }
 
+    /// Gathers the leaf's triangles that may be within the limit.
+    #[inline(always)]
+    fn gather_leaf<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        lanes: &LinkLanes<L>,
+        leaf: u32,
+        searched: &SearchLink<E>,
+        limit: E,
+        found: &mut Vec<NearTriangle>,
+    ) {
+        self.work.visited += BLOCK as u64;
+        let leaf = &self.tree.leaves[leaf as usize];
+        let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
+        let (mut near, mut feet) = (0, Feet { away: [0; 3], inside: 0 });
+        let (limit, error) = (L::splat(token, limit), L::splat(token, searched.error));
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
+            if lanes.not_behind_plane(vertices, limit) == 0 {
+                continue;
+            }
+            self.work.axis_distances += L::LANES as u64;
+            let (bounds, pack) = lanes.nearer_and_feet(vertices, limit, error);
+            bounds.lower.store(&mut lower[lane..]);
+            bounds.upper.store(&mut upper[lane..]);
+            near |= bounds.nearer << lane;
+            for (away, pack) in feet.away.iter_mut().zip(pack.away) {
+                *away |= pack << lane;
+            }
+            feet.inside |= pack.inside << lane;
+        }
+        let certain = CERTAIN * searched.error.into();
+        while near != 0 {
+            let lane = near.trailing_zeros() as usize;
+            near &= near - 1;
+            let (triangle, bit) = (leaf.triangles[lane], |lanes: u64| (lanes >> lane & 1) as u8);
+            // A leaf that is not full repeats its last triangle.
+            if lane > 0 && leaf.triangles[lane - 1] == triangle {
+                continue;
+            }
+            let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
+            let away = bit(feet.away[0]) | bit(feet.away[1]) << 1 | bit(feet.away[2]) << 2;
+            let is_apart = searched.radius.into() + certain < lower;
+            found.push(NearTriangle {
+                triangle,
+                lower: lower - certain,
+                upper,
+                away: if is_apart { away } else { 0 },
+                is_inside: bit(feet.inside) == 1,
+            });
+        }
+    }
+
     /// Makes candidates of the leaf's triangles that may be nearest.
     #[inline(always)]
     fn visit_leaf<L: Pack<Element = E>>(
@@ -267,18 +326,7 @@ impl<E: Lane> Traversal<'_, E> {
                 return;
             }
             Aim::About(_, leaves) => *leaves -= 1,
-            Aim::Every => {
-                while near != 0 {
-                    let lane = near.trailing_zeros() as usize;
-                    near &= near - 1;
-                    let triangle = leaf.triangles[lane];
-                    // A leaf that is not full repeats its last triangle.
-                    if self.stack.candidates.last().is_none_or(|last| last.1 != triangle) {
-                        self.stack.candidates.push((lower[lane], triangle));
-                    }
-                }
-                return;
-            }
+            Aim::Every(_) => return,
             Aim::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);

@@ -1,0 +1,222 @@
+//! Where on a triangle the point nearest to a link can lie, a pack of triangles at a time, in the precision of the
+//! search.
+//!
+//! # What is certain although the nearest points are not
+//! Link and triangle are convex, and so is the set of the differences w = x - y of their points x and y. Let v be the
+//! shortest of them and d its length, the distance. Every other one has <v, w> >= d^2, so
+//!
+//! ```text
+//! |w - v|^2 <= |w|^2 - d^2 <= g (2 d + g)   if |w| <= d + g:
+//! ```
+//!
+//! what is nearly as short points nearly the same way, even where the nearest points are anywhere along two parallels.
+//! Now let A and B be corners of the triangle with <v, A - B> > 0. If A had a share in the nearest point, the point would
+//! come nearer as that share went over to B. So A has none: the nearest point lies on the edge opposite to A. Where that
+//! is known of two corners it is the third.
+//!
+//! # Rounding
+//! Let e be the link's `error`, 64 u reach. Let p be the triangle's point nearest to the axis and q that of the axis, as
+//! they were computed, and p - q longer than the radius r. The link's point is taken at y = q + r (p - q) / |p - q|. Beside
+//! a round cap and along the side it lies in the link, and beyond a flat cap if it does not stick out of it, which is
+//! looked up; but for the rounding of p, q and the link, which is below e each. So w = p - y is within 2 e of a true
+//! difference. Its length |p - q| - r exceeds d by less than 2 e: the link lies in its capsule. With g = 4 e and
+//! d <= |w| + 2 e it is
+//!
+//! ```text
+//! |w - v| <= 2 e + sqrt(8 e (|w| + 4 e)) < t = 4 e + sqrt(9 e (|w| + 4 e)),
+//! ```
+//!
+//! and the corners, each rounded by less than e / 16, have <v, A - B> > 0 if
+//!
+//! ```text
+//! <w, A - B> > t |A - B| + (|w| + t) e / 8.
+//! ```
+//!
+//! The ninth e under the root leaves 6 % of it for the rounding of what is computed here: 8 u |w| |A - B| at most, while
+//! the root is above 1000 u |w|.
+
+use super::link_lanes::{LinkLanes, Nearer};
+use crate::distance::lanes::Pack;
+use crate::distance::{Axial, Face, Scalar, Vec3};
+
+/// Where on a pack of triangles their nearest points can lie, one bit per lane.
+pub(super) struct Feet {
+    /// Where each corner certainly has no share in the nearest point.
+    pub away: [u64; 3],
+    /// Where all edges are certainly farther than the nearest point, by more than the rounding of measured distances.
+    pub inside: u64,
+}
+
+/// How many times the link's `error` two computed axis distances differ if the measured distances certainly differ, by
+/// more than their own rounding: once for each of the two, and as much for what double precision does, ties included.
+pub(super) const CERTAIN: f64 = 4.0;
+
+impl<L: Pack> LinkLanes<L> {
+    /// Which triangles may be nearer than the bound whose axis limit is `limit`, and where on them the nearest points
+    /// are. `error` is the link's.
+    #[inline(always)]
+    pub(super) fn nearer_and_feet(&self, corners: [Vec3<L>; 3], limit: L, error: L) -> (Nearer<L>, Feet) {
+        let face = Face::new(corners).seen_from(self.start);
+        let axial = Axial::new(&self.link, &face);
+        let nearer = self.nearer(&axial, &face, limit);
+        let certain = error * error.lit(CERTAIN);
+        let away = self.corners_away(corners, &axial, error);
+        // Of what may touch, all is equally near.
+        let is_apart = (self.link.radius + certain).lt(nearer.lower);
+        let is_inside = is_apart & (nearer.upper + certain).lt(axial.edges_squared.sqrt());
+        (nearer, Feet { away, inside: L::bits(is_inside) })
+    }
+
+    #[inline(always)]
+    fn corners_away(&self, [a, b, c]: [Vec3<L>; 3], axial: &Axial<L>, error: L) -> [u64; 3] {
+        let (zero, radius, four) = (self.length.zero(), self.link.radius, error * error.lit(4.0));
+        let from_axis = axial.on_triangle - self.link.end * axial.s;
+        let norm = from_axis.norm();
+        let share = radius.over(norm);
+        // Of the link's point, along the axis.
+        let height = axial.s * self.length + from_axis.dot(self.link.axis) * share;
+        let [start, end] = self.link.flat;
+        let is_in_link = (!start | zero.le(height)) & (!end | height.le(self.length));
+        let apart = norm - radius;
+        let turn = four + ((apart + four) * error * error.lit(9.0)).sqrt();
+        let slope = Slope {
+            way: from_axis * (norm.one() - share),
+            turn_squared: turn * turn,
+            rest: (apart + turn) * error * error.lit(0.125),
+            is_known: is_in_link & zero.lt(apart),
+        };
+        let ([a_b, b_a], [b_c, c_b], [c_a, a_c]) = (slope.of(a, b), slope.of(b, c), slope.of(c, a));
+        [a_b | a_c, b_a | b_c, c_a | c_b].map(L::bits)
+    }
+}
+
+/// A way w from link to triangle.
+struct Slope<L: Scalar> {
+    way: Vec3<L>,
+    /// t^2.
+    turn_squared: L,
+    /// (|w| + t) e / 8.
+    rest: L,
+    is_known: L::Mask,
+}
+
+impl<L: Scalar> Slope<L> {
+    /// Whether `a` is certainly uphill from `b`, and `b` from `a`.
+    #[inline(always)]
+    fn of(&self, a: Vec3<L>, b: Vec3<L>) -> [L::Mask; 2] {
+        let edge = a - b;
+        let rise = self.way.dot(edge);
+        let steep = rise.abs() - self.rest;
+        let zero = rise.zero();
+        let is_steep = zero.lt(steep) & (self.turn_squared * edge.norm_squared()).lt(steep * steep);
+        let is_known = self.is_known & is_steep;
+        [is_known & zero.lt(rise), is_known & rise.lt(zero)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::lanes::{Lane, tests::levels};
+    use crate::proximity::mesh::Mesh;
+    use crate::proximity::placed::PlacedLink;
+    use crate::proximity::search_frame::{SearchFrame, SearchLink};
+    use crate::proximity::shared_parts::{PART_WITHOUT, ends_of};
+    use crate::proximity::triangle_block::{BLOCK, load_vertices, place_triangle};
+    use crate::{Cap, ModifiedCylinder};
+    use continuum_testing::Random;
+    use fearless_simd::{Level, dispatch};
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// The feet of a block of triangles.
+    fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[E]) -> [Feet; BLOCK] {
+        let mut feet = [(); BLOCK].map(|()| Feet { away: [0; 3], inside: 0 });
+        dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
+        feet
+    }
+
+    /// Each lane's feet in the lowest bits.
+    #[inline(always)]
+    fn fill<L: Pack>(
+        token: L::Token,
+        searched: &SearchLink<L::Element>,
+        rows: &[L::Element],
+        feet: &mut [Feet; BLOCK],
+    ) where
+        L::Element: Lane,
+    {
+        let lanes = LinkLanes::<L>::new(token, searched);
+        let (far, error) = (L::splat(token, L::Element::round(1e9)), L::splat(token, searched.error));
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let (_, pack) = lanes.nearer_and_feet(load_vertices(token, rows, lane), far, error);
+            for place in 0..L::LANES {
+                feet[lane + place] =
+                    Feet { away: pack.away.map(|away| away >> place & 1), inside: pack.inside >> place & 1 };
+            }
+        }
+    }
+
+    /// What was certain: that the nearest point lies on an edge, on a corner, or on none of the edges.
+    #[derive(Debug, Default)]
+    struct Census([usize; 3]);
+
+    fn judge<E: Lane>(seed: u64, census: &mut Census) {
+        let mut random = Random::new(seed);
+        // Nearly level triangles below a link, so that what is uphill hangs on small tilts.
+        let tilt = 10.0_f64.powi(-(random.below(10) as i32));
+        let size = [0.02, 0.3, 1.0][random.below(3) as usize];
+        let corners: Vec<_> = (0..3 * BLOCK)
+            .map(|_| Vector::new(random.point().x * size, random.point().x * size, random.point().x * tilt))
+            .collect();
+        let caps = [Cap::Flat, Cap::Round];
+        let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
+        let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0)) + random.point() * size;
+        let way = if random.below(3) == 0 { random.point() } else { Vector::X + random.point() * tilt };
+        let radius = random.between(0.0, 0.2);
+        let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { return };
+        let link = PlacedLink::new(&link, &Pose::IDENTITY);
+        let triangles = (0..BLOCK as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let mesh = Mesh::of(corners, triangles);
+        let frame = SearchFrame::new(&mesh);
+        let Some(searched) = SearchLink::<E>::new(&link, &frame) else { return };
+        let mut rows = vec![E::default(); 9 * BLOCK];
+        (0..BLOCK).for_each(|lane| place_triangle(&frame, &mesh, lane as u32, &mut rows, lane));
+        for level in levels() {
+            for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {
+                let corners = mesh.corners(lane as u32);
+                let distance = link.measure(0, corners).distance;
+                let to_part = |part: usize| {
+                    let [from, to] = ends_of(corners, part);
+                    link.measure(0, [from, to, to]).distance
+                };
+                let rounding = 32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
+                let [a, b, c] = feet.away;
+                if let Some(part) = PART_WITHOUT[(a | b << 1 | c << 2) as usize] {
+                    let (part, beyond) = (usize::from(part), to_part(usize::from(part)) - distance);
+                    assert!(beyond <= rounding, "{seed}, {level:?}, {lane}: {beyond} at {part}");
+                    census.0[usize::from(part < 3)] += 1;
+                }
+                if feet.inside == 1 {
+                    let edges = to_part(3).min(to_part(4)).min(to_part(5));
+                    assert!(
+                        edges > distance + 4.0 * rounding,
+                        "{seed}, {level:?}, {lane}: {edges} {distance}"
+                    );
+                    census.0[2] += 1;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_nearest_point_lies_where_it_certainly_lies() {
+        let (mut single, mut double) = (Census::default(), Census::default());
+        for seed in 0..4000 {
+            judge::<f32>(seed, &mut single);
+            judge::<f64>(seed, &mut double);
+        }
+        for Census(seen) in [single, double] {
+            assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
+        }
+    }
+}
