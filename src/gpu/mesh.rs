@@ -12,9 +12,6 @@ use wgpu::{BindGroup, Buffer, BufferUsages};
 const SPHERE: u64 = 4;
 const FACE: u64 = 4 * FACE_VECTORS as u64;
 
-/// Vertices that one thread writes at a time.
-const SHARE: usize = 1 << 14;
-
 /// The mesh, moved to its centre and near one.
 #[derive(Debug)]
 pub(super) struct DeviceMesh {
@@ -130,7 +127,8 @@ impl Part {
         to: &mut Vec<u8>,
     ) {
         to.resize(self.vertices.len() * 3 * SIZE, 0);
-        let mut shares: Vec<_> = to.chunks_mut(SHARE * 3 * SIZE).zip(self.vertices.chunks(SHARE)).collect();
+        let mut shares: Vec<_> =
+            to.chunks_mut(Mesh::SHARE * 3 * SIZE).zip(self.vertices.chunks(Mesh::SHARE)).collect();
         each(&mut shares, |_, (bytes, vertices)| {
             for (bytes, &vertex) in bytes.chunks_exact_mut(3 * SIZE).zip(*vertices) {
                 let Vec3 { x, y, z } = frame.point::<E>(mesh.vertices()[vertex as usize]);

@@ -105,29 +105,17 @@ struct Part {
     first: u32,
 }
 
-/// The contacts of a robot, link by link.
+/// The contacts of a robot, link by link, in `out`.
 pub(super) struct RobotContacts<'a> {
-    level: Level,
-    mesh: &'a Mesh,
-    robot: PlacedRobot<'a>,
-    margin: Real,
-    minima: &'a mut LocalMinima,
-    out: &'a mut Vec<Contact>,
+    pub level: Level,
+    pub mesh: &'a Mesh,
+    pub robot: PlacedRobot<'a>,
+    pub margin: Real,
+    pub minima: &'a mut LocalMinima,
+    pub out: &'a mut Vec<Contact>,
 }
 
-impl<'a> RobotContacts<'a> {
-    /// `out` gets the contacts.
-    pub(super) fn new(
-        level: Level,
-        mesh: &'a Mesh,
-        robot: PlacedRobot<'a>,
-        margin: Real,
-        minima: &'a mut LocalMinima,
-        out: &'a mut Vec<Contact>,
-    ) -> Self {
-        Self { level, mesh, robot, margin, minima, out }
-    }
-
+impl RobotContacts<'_> {
     /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
     /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
     pub(super) fn add(
@@ -284,8 +272,8 @@ pub(crate) fn contacts_by_all_triangles(
     margin: Real,
     out: &mut Vec<Contact>,
 ) {
-    let mut minima = LocalMinima::default();
-    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima, out);
+    let (level, minima) = (Level::new(), &mut LocalMinima::default());
+    let mut contacts = RobotContacts { level, mesh, robot, margin, minima, out };
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;

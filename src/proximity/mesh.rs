@@ -20,6 +20,9 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
+    /// Vertices that one thread goes through at a time.
+    pub(crate) const SHARE: usize = 1 << 14;
+
     /// A copy of `mesh`.
     ///
     /// # Errors
@@ -54,7 +57,7 @@ impl Mesh {
 
     /// Takes over vertices that were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
-        let shares = self.vertices.chunks_mut(SHARE).zip(vertices.chunks(SHARE));
+        let shares = self.vertices.chunks_mut(Mesh::SHARE).zip(vertices.chunks(Mesh::SHARE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
         if self.parts.get().is_some_and(|parts| !parts.stay(vertices)) {
             self.parts.take();
@@ -102,12 +105,9 @@ impl Mesh {
     }
 }
 
-/// Vertices that one thread goes through at a time.
-const SHARE: usize = 1 << 14;
-
 /// [`check_vertices`], on all cores.
 fn check_all(vertices: &[Vector]) -> Result<(), MeshError> {
-    let mut shares: Vec<_> = vertices.chunks(SHARE).map(|share| (share, true)).collect();
+    let mut shares: Vec<_> = vertices.chunks(Mesh::SHARE).map(|share| (share, true)).collect();
     each(&mut shares, |_, (share, is_right)| *is_right = check_vertices(share).is_ok());
     // The error names the vertex by its place among all.
     if shares.iter().all(|(_, is_right)| *is_right) { Ok(()) } else { check_vertices(vertices) }
@@ -116,7 +116,7 @@ fn check_all(vertices: &[Vector]) -> Result<(), MeshError> {
 /// The corners of the box around the points of all items.
 fn box_around<T: Sync>(items: &[T], point: impl Fn(&T) -> Vector + Sync + Send) -> [Vector; 2] {
     let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
-    let mut shares: Vec<_> = items.chunks(SHARE).map(|share| (share, nothing)).collect();
+    let mut shares: Vec<_> = items.chunks(Mesh::SHARE).map(|share| (share, nothing)).collect();
     each(&mut shares, |_, (share, corners)| {
         *corners =
             share.iter().map(&point).fold(nothing, |[low, high], point| [low.min(point), high.max(point)]);

@@ -1,5 +1,6 @@
 //! Answers about motions as data (feature `serde-serialize`), points as `[x, y, z]`.
 
+use super::tube::check_place;
 use super::{FirstContact, MotionAnswer};
 use parry3d_f64::math::{Real, Vector};
 use serde::{Deserialize, Serialize};
@@ -37,14 +38,12 @@ pub(super) struct Touch {
 impl Touch {
     /// No query names a time outside of the motion, a distance that is negative or not finite, nor such a place.
     fn check(self) -> Result<Self, String> {
-        let Self { t, upper, arc_length, on_robot, on_mesh, .. } = &self;
-        check_times([0.0, *t])?;
-        if !(upper.is_finite() && *upper >= 0.0) {
+        let Self { t, upper, arc_length, on_robot, on_mesh, .. } = self;
+        check_times([0.0, t])?;
+        if !(upper.is_finite() && upper >= 0.0) {
             return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
         }
-        if !on_robot.iter().chain(on_mesh).chain([arc_length]).all(|value| value.is_finite()) {
-            return Err(format!("a place is not finite: {arc_length}, {on_robot:?} or {on_mesh:?}"));
-        }
+        check_place(arc_length, Vector::from_array(on_robot), Vector::from_array(on_mesh))?;
         Ok(self)
     }
 }

@@ -14,4 +14,6 @@ pub(super) use outer::Outer;
 pub(super) use piece::Piece;
 pub(super) use placed::PlacedTube;
 pub use report::{Clearance, Decision, TubePiece};
+#[cfg(feature = "serde-serialize")]
+pub(super) use serialised::check_place;
 pub(super) use witness::Witness;

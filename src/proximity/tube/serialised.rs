@@ -37,9 +37,20 @@ impl TryFrom<Fields> for Clearance {
             ));
         }
         let (on_robot, on_mesh) = (Vector::from_array(on_robot), Vector::from_array(on_mesh));
-        if !(arc_length.is_finite() && on_robot.is_finite() && on_mesh.is_finite()) {
-            return Err(format!("a place is not finite: {arc_length}, {on_robot} or {on_mesh}"));
-        }
+        check_place(arc_length, on_robot, on_mesh)?;
         Ok(Self { lower, upper, arc_length, section, triangle, on_robot, on_mesh })
+    }
+}
+
+/// Every answer names a finite place.
+pub(in crate::proximity) fn check_place(
+    arc_length: Real,
+    on_robot: Vector,
+    on_mesh: Vector,
+) -> Result<(), String> {
+    if arc_length.is_finite() && on_robot.is_finite() && on_mesh.is_finite() {
+        Ok(())
+    } else {
+        Err(format!("a place is not finite: {arc_length}, {on_robot} or {on_mesh}"))
     }
 }

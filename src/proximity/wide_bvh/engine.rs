@@ -188,9 +188,11 @@ impl<'a> Query<'a> {
     }
 
     fn minimum(&mut self) -> LinkProximity {
-        let any = (0, self.robot.link(0));
-        let (link, nearest) =
-            self.nearest_link(Real::INFINITY).unwrap_or_else(|| (any.0, self.search().search.any(&any.1)));
+        let found = self.nearest_link(Real::INFINITY);
+        let (link, nearest) = found.unwrap_or_else(|| {
+            let first = self.robot.link(0);
+            (0, self.search().search.any(&first))
+        });
         nearest.report(link)
     }
 

@@ -28,8 +28,8 @@ impl RobotSearch<'_> {
     /// The contacts of every link.
     pub(super) fn within(&mut self, margin: Real, minima: &mut LocalMinima, out: &mut Vec<Contact>) {
         let Self { search, robot } = self;
-        let mut contacts =
-            RobotContacts::new(search.level, &search.hierarchy.mesh, *robot, margin, minima, out);
+        let (level, mesh, robot) = (search.level, &search.hierarchy.mesh, *robot);
+        let mut contacts = RobotContacts { level, mesh, robot, margin, minima, out };
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
