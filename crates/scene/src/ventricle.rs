@@ -56,6 +56,12 @@ pub fn goal() -> Joints {
     Joints { extensions: vec![13.2, 18.1, 10.4], angles: vec![-0.54, -1.76, 0.0] }
 }
 
+/// Two frames of a pulsating wall: its vertices as they are, and moved outwards by a hundredth.
+pub fn beat(vertices: &[Vector]) -> [Vec<Vector>; 2] {
+    let centre = vertices.iter().sum::<Vector>() / vertices.len() as Real;
+    [1.0, 1.01].map(|size| vertices.iter().map(|&vertex| centre + (vertex - centre) * size).collect())
+}
+
 /// The ventricle as a field.
 pub struct Ventricle {
     /// One side and the middle; the other side is its mirror image.

@@ -1,11 +1,11 @@
 //! The paper's experiment: a robot of 30 links, as capsules, with caps that fit, and as cylinders, against every triangle.
 
-use crate::meshes::LINKS;
 use crate::timed::{Timed, medians, milliseconds};
 use crate::{Opened, text};
 use continuum_scene::ventricle;
 use continuum_studies::gpu::Discs;
 use continuum_studies::long_table;
+use continuum_studies::models::LINKS;
 use parry_continuum::Chain;
 use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
@@ -19,7 +19,7 @@ pub fn chapter(
     opened: &[Opened],
     meshes: &[TriMesh],
     most_every_pair: u32,
-    models: &[Chain; 3],
+    models: &[(&str, Chain); 3],
     enough: Duration,
     out: &Path,
 ) -> Result<String, String> {
@@ -83,9 +83,9 @@ fn page(culling: &str, every_pair: &str, checks: &str, out: &Path) -> Result<Str
     ))
 }
 
-fn answers(engine: &mut dyn Proximity, models: &[Chain; 3]) -> Result<Vec<LinkProximity>, String> {
+fn answers(engine: &mut dyn Proximity, models: &[(&str, Chain); 3]) -> Result<Vec<LinkProximity>, String> {
     let (mut all, mut out) = (Vec::new(), Vec::new());
-    for robot in models {
+    for (_, robot) in models {
         engine.per_link(robot, &ventricle::entry(), &mut out).map_err(text)?;
         all.extend(&out);
     }
@@ -99,7 +99,7 @@ fn disagreement(one: &[LinkProximity], other: &[LinkProximity]) -> f64 {
 /// The three models on one engine, in turns.
 fn all_models(
     engine: &mut GpuExhaustive,
-    models: &[Chain; 3],
+    models: &[(&str, Chain); 3],
     enough: Duration,
 ) -> Result<Vec<Timed>, String> {
     let engine = std::cell::RefCell::new(engine);
@@ -109,7 +109,7 @@ fn all_models(
         engine.per_link(robot, &base, out).map_err(text)?;
         Ok(engine.device_time())
     };
-    let [capsules, fitted, cylinders] = models;
+    let [(_, capsules), (_, fitted), (_, cylinders)] = models;
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     let [out1, out2, out3] = &mut out;
     medians(

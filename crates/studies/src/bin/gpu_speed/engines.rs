@@ -1,11 +1,11 @@
 //! The engine on the GPU beside those on the CPU, one robot at a time and many.
 
-use crate::meshes::LINKS;
+use crate::meshes::on_gpus;
 use crate::timed::{Job, medians, milliseconds};
 use crate::{Opened, text};
 use continuum_scene::ventricle;
+use continuum_studies::models::LINKS;
 use parry_continuum::Chain;
-use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
@@ -55,9 +55,7 @@ fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration)
         Box::new(BvhSearch::new(mesh).map_err(text)?),
         Box::new(Exhaustive::<f32>::new(mesh).map_err(text)?),
     ];
-    for opened in opened {
-        engines.push(Box::new(GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?));
-    }
+    engines.extend(on_gpus(opened, mesh)?);
     let mut again: Vec<_> = engines
         .iter_mut()
         .map(|engine| {
@@ -80,9 +78,7 @@ fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration)
 fn batch(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
     let samples = samples(robot);
     let mut engines: Vec<Box<dyn Proximity>> = vec![Box::new(BvhSearch::new(mesh).map_err(text)?)];
-    for opened in opened {
-        engines.push(Box::new(GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?));
-    }
+    engines.extend(on_gpus(opened, mesh)?);
     let mut jobs: Vec<_> = engines
         .iter_mut()
         .map(|engine| {

@@ -18,6 +18,7 @@ mod timed;
 
 use clap::Parser;
 use continuum_scene::command;
+use continuum_studies::models::models;
 use parry_continuum::gpu::{Gpu, GpuError, Precision};
 use std::fs;
 use std::path::PathBuf;
@@ -120,8 +121,8 @@ fn measure(options: &Options) -> Result<(), String> {
         println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
     };
     let meshes = meshes::meshes(options.largest)?;
-    let models = meshes::models()?;
-    let [_, robot, _] = &models;
+    let models = models().map_err(text)?;
+    let [_, (_, robot), _] = &models;
     add("engines", engines::chapter(&opened, &meshes, robot, enough)?);
     add("moving", moving::chapter(&opened, &meshes, robot, enough)?);
     add("chains", chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &options.out)?);

@@ -1,23 +1,11 @@
-//! The robots and the meshes that all chapters ask: 30 links in the ventricle.
+//! The meshes that all chapters ask, and the engines on the GPU for one of them.
 
-use crate::text;
+use crate::{Opened, text};
 use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::{ctr, ventricle};
-use parry_continuum::Chain;
+use continuum_scene::ventricle;
+use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
-
-pub const LINKS: usize = 30;
-
-/// As capsules, with caps that fit (Algorithm 1, the paper's Z*), and as cylinders (K and Z).
-pub fn models() -> Result<[Chain; 3], String> {
-    let line = ctr::three_tubes().centreline(&ventricle::goal(), LINKS);
-    let (points, radii) = (&line.points, &line.radii);
-    Ok([
-        Chain::capsules(points, radii).map_err(text)?,
-        Chain::from_centreline(points, radii).map_err(text)?,
-        Chain::cylinders(points, radii).map_err(text)?,
-    ])
-}
+use parry_continuum::proximity::Proximity;
 
 /// The meshes, 1e4 triangles and more, and the largest: the ventricle divided in four until it has enough, shuffled,
 /// and of that the first so many.
@@ -36,4 +24,12 @@ fn mesh(triangles: u32) -> Result<TriMesh, String> {
     let (vertices, mut indices) = shuffled(divided, 1);
     indices.truncate(triangles as usize);
     TriMesh::new(vertices, indices).map_err(text)
+}
+
+/// An engine for a mesh on each GPU.
+pub fn on_gpus(opened: &[Opened], mesh: &TriMesh) -> Result<Vec<Box<dyn Proximity>>, String> {
+    let engine = |opened: &Opened| -> Result<Box<dyn Proximity>, String> {
+        Ok(Box::new(GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?))
+    };
+    opened.iter().map(engine).collect()
 }

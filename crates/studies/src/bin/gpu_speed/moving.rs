@@ -1,12 +1,11 @@
 //! Moving anatomy: a ventricle whose every vertex moves in each frame, on the GPU and on the CPU.
 
-use crate::meshes::LINKS;
+use crate::meshes::on_gpus;
 use crate::timed::{Job, medians, milliseconds};
 use crate::{Opened, text};
 use continuum_scene::ventricle;
+use continuum_studies::models::LINKS;
 use parry_continuum::Chain;
-use parry_continuum::gpu::GpuExhaustive;
-use parry_continuum::parry::math::Vector;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use std::fmt::Write;
@@ -43,18 +42,13 @@ struct Moving<'a> {
 }
 
 fn row(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
-    let rest = mesh.vertices();
-    let centre = rest.iter().sum::<Vector>() / rest.len() as f64;
-    let beats =
-        [1.0, 1.01].map(|beat| rest.iter().map(|&v| centre + (v - centre) * beat).collect::<Vec<_>>());
+    let beats = ventricle::beat(mesh.vertices());
     let base = ventricle::entry();
     let mut engines: Vec<Box<dyn Proximity>> = vec![
         Box::new(BvhSearch::new(mesh).map_err(text)?),
         Box::new(Exhaustive::<f32>::new(mesh).map_err(text)?),
     ];
-    for opened in opened {
-        engines.push(Box::new(GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?));
-    }
+    engines.extend(on_gpus(opened, mesh)?);
     let frame = |moving: &mut Moving| {
         moving.frames += 1;
         moving.engine.set_vertices(&beats[moving.frames % 2]).map_err(text)?;

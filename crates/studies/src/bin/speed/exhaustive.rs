@@ -5,8 +5,9 @@ use crate::goals::{Goal, Goals};
 use continuum_scene::levels::levels;
 use continuum_scene::subdivide::{in_four, shuffled};
 use continuum_scene::timing::{self, medians};
-use continuum_scene::{ctr, ventricle};
+use continuum_scene::ventricle;
 use continuum_studies::machine;
+use continuum_studies::models::models;
 use fearless_simd::Level;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -17,17 +18,6 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::LazyLock;
 use std::time::Duration;
-
-/// The robot of the ventricle with 30 links: as capsules, with the caps of Algorithm 1, and as cylinders.
-pub fn models() -> Result<[(&'static str, Chain); 3], String> {
-    let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
-    let (points, radii) = (&line.points, &line.radii);
-    Ok([
-        ("capsules", Chain::capsules(points, radii).map_err(|error| error.to_string())?),
-        ("fitted caps", Chain::from_centreline(points, radii).map_err(|error| error.to_string())?),
-        ("cylinders", Chain::cylinders(points, radii).map_err(|error| error.to_string())?),
-    ])
-}
 
 /// The ventricle divided in four so many times, in the order of subdivision.
 pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
@@ -58,7 +48,7 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
         "\nShare of the pairs whose axis distance was computed (a pack at a time), and that were measured in double \
          precision:\n\n| order | precision | capsules | fitted caps | cylinders |\n|---|---|---|---|---|\n",
     );
-    let models = models()?;
+    let models = models().map_err(|error| error.to_string())?;
     let sorted = divided(times);
     for (order, (vertices, indices)) in [("shuffled", shuffled(sorted.clone(), 1)), ("sorted", sorted)] {
         let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;

@@ -1,10 +1,11 @@
 //! Time against the number of triangles, links and threads: the paper's Figure 9 for the CPU.
 
 use crate::Effort;
-use crate::exhaustive::{models, on_one_thread};
+use crate::exhaustive::on_one_thread;
 use continuum_scene::subdivide::{in_four, shuffled};
 use continuum_scene::timing::{cylinders, medians, parry};
 use continuum_scene::ventricle;
+use continuum_studies::models::models;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
@@ -40,7 +41,8 @@ struct Series {
 
 /// The chapter of the page; the plot goes to `out`.
 pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
-    let (models, enough) = (models()?, effort.enough / 10);
+    let models = models().map_err(|error| error.to_string())?;
+    let enough = effort.enough / 10;
     let mut all: Vec<Series> = Vec::new();
     let mut threads = String::new();
     let mut mesh = ventricle::mesh(SMALLEST);

@@ -1,10 +1,10 @@
 //! Moving anatomy: a ventricle whose every vertex moves in each frame.
 
 use crate::Effort;
-use crate::exhaustive::{divided, models};
+use crate::exhaustive::divided;
 use continuum_scene::timing::medians;
 use continuum_scene::ventricle;
-use parry_continuum::parry::math::Vector;
+use continuum_studies::models::models;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 use std::fmt::Write;
@@ -17,13 +17,11 @@ pub fn chapter(effort: Effort) -> Result<String, String> {
          caps, on all cores. Milliseconds a frame; a search that is built anew includes neither parry's mesh nor its hierarchy.\n\n\
          | triangles | refit and search | exhaustive f32 | exhaustive f64 | build and search |\n|---|---|---|---|---|\n",
     );
-    let [_, (_, robot), _] = models()?;
+    let [_, (_, robot), _] = models().map_err(|error| error.to_string())?;
     let base = ventricle::entry();
     for times in [0, 2, 4].into_iter().filter(|times| *times <= effort.largest) {
         let (rest, indices) = divided(times);
-        let centre = rest.iter().sum::<Vector>() / rest.len() as f64;
-        let beats =
-            [1.0, 1.01].map(|beat| rest.iter().map(|&v| centre + (v - centre) * beat).collect::<Vec<_>>());
+        let beats = ventricle::beat(&rest);
         let mesh = TriMesh::new(rest, indices).map_err(|error| error.to_string())?;
         let text = |error: parry_continuum::proximity::MeshError| error.to_string();
         let mut search = BvhSearch::new(&mesh).map_err(text)?;

@@ -2,10 +2,11 @@
 
 use super::peak;
 use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::{ctr, ventricle};
+use continuum_scene::ventricle;
 use continuum_studies::Number;
 use continuum_studies::every_pair::EveryPair;
 use continuum_studies::long_table;
+use continuum_studies::models::models;
 use continuum_studies::quartic::QuarticAsPrinted;
 use parry_continuum::Chain;
 use parry_continuum::distance::{Convex, DiscSolver};
@@ -51,12 +52,7 @@ type Measured = [(f64, f64); COUNT];
 type Engine<'a> = Box<dyn FnMut(&Chain, &Pose) -> Result<Vec<f64>, String> + 'a>;
 
 fn measure<T: SearchPrecision + Number>(mesh: &TriMesh) -> Result<Measured, String> {
-    let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
-    let (points, radii) = (&line.points, &line.radii);
-    let text = |error: parry_continuum::RobotError| error.to_string();
-    let capsules = Chain::capsules(points, radii).map_err(text)?;
-    let fitted = Chain::from_centreline(points, radii).map_err(text)?;
-    let flat = Chain::cylinders(points, radii).map_err(text)?;
+    let [(_, capsules), (_, fitted), (_, flat)] = models().map_err(|error| error.to_string())?;
     let mut engines = [
         (&capsules, packed::<T>(mesh)?),
         (&fitted, packed::<T>(mesh)?),
