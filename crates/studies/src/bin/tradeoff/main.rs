@@ -154,7 +154,8 @@ fn measure(options: &Options) -> Result<(), String> {
     stage("writing");
     let errors = front::errors(&outcomes);
     let all = front::combinations(&times, &errors);
-    let command = command::line("-p continuum-studies --bin tradeoff");
+    let features = if cfg!(feature = "gpu") { "--features gpu " } else { "" };
+    let command = command::line(&format!("-p continuum-studies {features}--bin tradeoff"));
     let widest = robot.sections.iter().map(|section| section.radius).fold(0.0, f64::max);
     let trade =
         long_table::write(&page::table(&times, &errors), &out.join("tradeoff_links.csv"), page::is_shown)?;
