@@ -63,6 +63,7 @@ impl<'a> PlacedRobot<'a> {
 
     /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame; the radius; which caps
     /// are flat.
+    #[inline]
     pub(super) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
         let ends = |start: Vector, end: Vector| [self.pose * start, self.pose * end];
         match node {

@@ -25,6 +25,8 @@ pub(crate) struct SearchFrame {
     scale: Real,
     /// The size of a typical triangle in this frame.
     typical: Real,
+    /// What rounding to a subnormal number can do to a distance of the mesh's frame, seen in this one.
+    least: Real,
 }
 
 /// How many triangles tell what is typical.
@@ -43,7 +45,9 @@ impl SearchFrame {
             (0..mesh.len()).step_by(mesh.len().div_ceil(SAMPLE).max(1)).map(size).collect();
         let middle = sizes.len() / 2;
         let (_, typical, _) = sizes.select_nth_unstable_by(middle, Real::total_cmp);
-        Self { centre: low + (high - low) * 0.5, scale, typical: *typical * scale }
+        // Not a subnormal number itself: to compute with one takes longer than to place a link.
+        let least = (Real::from_bits(1) * scale).max(Real::MIN_POSITIVE);
+        Self { centre: low + (high - low) * 0.5, scale, typical: *typical * scale, least }
     }
 
     pub(crate) fn point<E: Lane>(&self, point: Vector) -> Vec3<E> {
@@ -119,8 +123,7 @@ impl<E: Lane> SearchLink<E> {
         if flat != [false; 2] && !gives_direction(E::round(length) * E::round(length)) {
             return None;
         }
-        // The last term: a distance of the mesh's frame may be a subnormal number.
-        let error = 64.0 * (E::UNIT_ROUNDOFF + f64::UNIT_ROUNDOFF) * reach + Real::from_bits(1) * frame.scale;
+        let error = 64.0 * (E::UNIT_ROUNDOFF + f64::UNIT_ROUNDOFF) * reach + frame.least;
         Some(Self {
             start: round(start),
             along: round(along),

@@ -26,6 +26,9 @@ use parry3d_f64::math::Real;
 const NODE_SHARE: f64 = 1.0;
 const LEAF_SHARE: f64 = 3.0;
 
+/// The root of the hierarchy.
+const WHOLE_MESH: u32 = 0;
+
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct Pairs<E> {
@@ -123,7 +126,7 @@ impl<E: Lane> JointSearch<'_, E> {
         doubtful.clear();
         waiting.clear();
         // The mesh is between one and two long.
-        waiting.push(Pair { run: 0, child: Child::Node(0).pack(), size: zero.one(), apart: zero });
+        waiting.push(Pair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero });
         if let Some((run, leaf)) = *last
             && let Some(LinkNode::Leaf(_)) = links.get(run as usize)
         {
@@ -184,8 +187,10 @@ impl<E: Lane> JointSearch<'_, E> {
         }
         let low = pair.run + 1;
         let below = if let LinkNode::Inner { below, .. } = tree[low as usize] { below as u32 } else { 0 };
-        // The half nearer to the base comes first.
-        self.pairs.waiting.extend([low + 1 + below, low].map(|run| Pair { run, ..pair }));
+        let high = low + 1 + below;
+        // Whatever collides has most often got there with its tip; near a part of the mesh no half is the likelier one.
+        let last_and_first = if pair.child == WHOLE_MESH { [low, high] } else { [high, low] };
+        self.pairs.waiting.extend(last_and_first.map(|run| Pair { run, ..pair }));
         true
     }
 
@@ -241,6 +246,9 @@ impl<E: Lane> JointSearch<'_, E> {
         };
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
+            if lanes.has_centre_within(vertices, certain) {
+                return true;
+            }
             if lanes.not_behind_plane(vertices, limit) == 0 {
                 continue;
             }

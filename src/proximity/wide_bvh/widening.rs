@@ -4,9 +4,10 @@
 //! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
 //! more rarely.
 
-use super::outline::{Outline, ROUNDING};
+use super::outline::ROUNDING;
 use crate::proximity::placed::PlacedRobot;
-use parry3d_f64::math::Real;
+use crate::robot::length;
+use parry3d_f64::math::{Real, Vector};
 
 /// How many queries a wider search is to speak for at the most.
 const QUERIES: Real = 8.0;
@@ -17,8 +18,8 @@ const REST_WITHOUT_PAY: u32 = 255;
 
 #[derive(Clone)]
 pub(super) struct Widening {
-    /// The first and the last link of the last query.
-    before: Option<[Outline; 2]>,
+    /// Where base and tip were at the last query.
+    before: Option<[Vector; 2]>,
     /// How many queries the next wider search is to speak for.
     queries: Real,
     /// How many queries are not to try one, and how many it was after the last that did not pay.
@@ -36,15 +37,15 @@ impl Widening {
     /// By how much a query about this robot is to widen its search. `reach` is the largest coordinate of the mesh. None
     /// where it is better not to.
     pub(super) fn next(&mut self, robot: PlacedRobot, reach: Real) -> Option<Real> {
-        let ends = [0, robot.links().len() - 1].map(|link| Outline::of(robot, link));
+        let (ends, radius, _) = robot.outline(&robot.link_tree()[0]);
         let before = self.before.replace(ends)?;
         if self.rest > 0 {
             self.rest -= 1;
             return None;
         }
-        let moved = ends[0].moved_from(&before[0]).max(ends[1].moved_from(&before[1]));
-        let rounding = ROUNDING * (reach + 2.0 * ends[0].extent().max(ends[1].extent()));
-        Some(self.queries * moved + 4.0 * rounding)
+        let moved = length(ends[0] - before[0]).max(length(ends[1] - before[1]));
+        let extent = ends[0].abs().max(ends[1].abs()).max_element() + radius;
+        Some(self.queries * moved + 4.0 * ROUNDING * (reach + 2.0 * extent))
     }
 
     /// Takes over that the last wider search paid.
