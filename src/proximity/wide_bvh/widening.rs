@@ -43,7 +43,12 @@ impl Widening {
             self.rest -= 1;
             return None;
         }
-        let moved = length(ends[0] - before[0]).max(length(ends[1] - before[1]));
+        let [base, tip] = [ends[0] - before[0], ends[1] - before[1]];
+        // A thick, short robot may turn where it stands: its caps move then, and its ends do not.
+        let thick = robot.links().last().map_or(radius, |link| link.radius());
+        let [long, longer] = [before, ends].map(|[base, tip]| length(tip - base));
+        let turned = 2.0 * thick * (length(tip - base) / (long + longer));
+        let moved = length(base).max(length(tip)) + if turned > 0.0 { turned } else { 0.0 };
         let extent = ends[0].abs().max(ends[1].abs()).max_element() + radius;
         Some(self.queries * moved + 4.0 * ROUNDING * (reach + 2.0 * extent))
     }
