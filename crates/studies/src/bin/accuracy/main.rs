@@ -42,7 +42,7 @@ sizes, and problems far from the origin.
 
 ## In millimetres
 
-A scene of 100 mm, be the gap 2 mm or none: the worst error over the cases of each pair, taken to that size.
+The worst error in a scene of 100 mm, whether the gap is 2 mm or none: that of the cases of each pair, taken to this size.
 
 <!-- millimetres -->
 ";
@@ -54,7 +54,7 @@ const IN_ROUNDINGS: &str = "<!-- /millimetres -->
 The error is the difference from the reference distance, in units of u x extent. u is 2^-53 in double precision (f64)
 and 2^-24 in single precision (f32). The extent is the largest difference between two coordinates of the problem, or
 its radius. An error of 1 means one rounding of a number as large as the problem. The crate promises at most 16.
-Single precision is measured on the cases whose input it can hold. Of two errors in the middle, the median is the
+Single precision is measured on the cases whose input it can hold. Where two errors are in the middle, the median is the
 smaller. The numbers do not depend on the machine, because the kernels use only operations that IEEE 754 rounds
 correctly. [accuracy_cases.csv](accuracy_cases.csv) has each category by itself.
 
