@@ -79,7 +79,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "write 4 numbers");
     refuse_pose(&TURNED.replace("0 0 0 1", "0 0 0 2"), "not 0 0 0 1");
     refuse_pose(&TURNED.replace("-1", "1"), "mirrors");
-    refuse_pose(&TURNED.replace("-1", "-0.9"), "right angles by 0.19");
+    refuse_pose(&TURNED.replace("-1", "-0.5"), "right angles by 0.75");
     refuse_pose("0 -1e3 0 60\n1e3 0 0 0\n0 0 1e3 0\n0 0 0 1\n", "scales by 1000");
     refuse_pose(&TURNED.replace("60", "nan"), "row 1, column 4");
     refuse("my_robot", &["--mesh", room, "--centreline", "nowhere.csv"], "cannot read nowhere.csv");
