@@ -93,8 +93,8 @@ pub fn chapter(effort: Effort) -> Result<(String, String), String> {
         }
     }
     let sentence = format!(
-        "These queries follow one another. Where {} MB of other data pass through the caches between two of them, all links \
-         again take {}, beside a wall that is 2 mm away.",
+        "These queries follow one another. Where {} MB of other data pass through the caches between two of them, a query \
+         for all links takes {}, beside a wall that is 2 mm away.",
         OTHER_WORK >> 20,
         slowed.join(" and ")
     );
