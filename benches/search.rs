@@ -43,20 +43,20 @@ fn search(criterion: &mut Criterion) {
             });
             let mut engine = BvhSearch::new(&mesh).expect("the scene's mesh is valid");
             let mut out = Vec::new();
-            bench("per link, cold", &mut |pose| {
+            bench("per link, first time", &mut |pose| {
                 engine.forget();
                 engine.per_link(&robot, pose, &mut out).expect("a finite pose");
                 black_box(&out);
             });
-            bench("per link, warm", &mut |pose| {
+            bench("per link, again", &mut |pose| {
                 engine.per_link(&robot, pose, &mut out).expect("a finite pose");
                 black_box(&out);
             });
-            bench("minimum, cold", &mut |pose| {
+            bench("minimum, first time", &mut |pose| {
                 engine.forget();
                 black_box(engine.minimum(&robot, pose).expect("a finite pose"));
             });
-            bench("clears, cold", &mut |pose| {
+            bench("clears, first time", &mut |pose| {
                 engine.forget();
                 black_box(engine.clears(&robot, pose, margin).expect("a finite pose"));
             });

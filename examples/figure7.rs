@@ -93,12 +93,12 @@ fn panels() -> Result<Vec<Panel>, RobotError> {
         panel('e', "flat ends, long links", "closed, and flat where it ends", true, long.naive()?),
         panel(
             'f',
-            "Algorithm 1, short links",
+            "fitted caps, short links",
             "round only where it stays inside",
             true,
             short.algorithm_1()?,
         ),
-        panel('g', "Algorithm 1, three tubes", "flat at each step", true, tubes.algorithm_1()?),
+        panel('g', "fitted caps, three tubes", "flat at each step", true, tubes.algorithm_1()?),
     ])
 }
 
@@ -143,7 +143,7 @@ fn draw(panels: &[Panel]) -> Canvas {
     let [x, y] = [(GAP + 3 * (CARD[0] + GAP) + 30) as f32, (HEAD + CARD[1] + GAP + 150) as f32];
     let legend = [
         (INADEQUATE, ["not the robot's shape,", "for the reason that is named"]),
-        (ADEQUATE, ["the robot's shape,", "as Algorithm 1 makes it"]),
+        (ADEQUATE, ["the robot's shape,", "as fitted caps make it"]),
     ];
     for (row, (verdict, lines)) in legend.into_iter().enumerate() {
         let y = y - 60.0 + 92.0 * row as f32;

@@ -3,7 +3,7 @@
 use clap::Parser;
 use parry_continuum::parry::{math::Pose, math::Vector, shape::TriMesh};
 use parry_continuum::{Chain, Tube, pose_from_matrix, proximity::BvhSearch, proximity::Proximity};
-use std::{error::Error, ops::RangeInclusive, path::Path, path::PathBuf};
+use std::{error::Error, io::Write, ops::RangeInclusive, path::Path, path::PathBuf};
 
 /// How far is my robot from my wall, link by link? All lengths are in one unit, that of the mesh.
 #[derive(Parser)]
@@ -12,19 +12,19 @@ struct Options {
     #[arg(long)]
     mesh: PathBuf,
     /// The label of the wall in a segmentation [default: all that are not 0]
-    #[arg(long)]
+    #[arg(long, value_parser = |s: &str| s.parse::<u32>().or(Err("write a whole number")))]
     label: Option<u32>,
     /// A line for each point of the centreline: x,y,z and optionally the radius of the segment that begins there
     #[arg(long)]
     centreline: PathBuf,
     /// The radius of each segment for which the centreline's file has none
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = |s: &str| s.parse::<f64>().or(Err("write a number")))]
     radius: Option<f64>,
     /// A file with a 4x4 matrix, row by row: it brings the robot into the frame of the mesh
     #[arg(long)]
     pose: Option<PathBuf>,
     /// Also bound the clearance of the curve through the points: how far apart the two bounds may be
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = |s: &str| s.parse::<f64>().or(Err("write a number")))]
     tolerance: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ fn main() {
 }
 
 fn clearance(my: &Options) -> Result<(), Box<dyn Error>> {
-    let (mut points, mut radii, mut links) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut radii, mut links, mut out) = (Vec::new(), Vec::new(), Vec::new(), std::io::stdout());
     for (line, row) in rows(&my.centreline, 3..=4, "x,y,z or x,y,z,radius")? {
         points.push(Vector::new(row[0], row[1], row[2]));
         let none = format!("{line} has no radius; write it as a fourth number, or give --radius");
@@ -52,14 +52,13 @@ fn clearance(my: &Options) -> Result<(), Box<dyn Error>> {
     let robot = Chain::from_centreline(&points, &radii)?;
     search.per_link(&robot, &pose, &mut links)?;
     for l in &links {
-        println!("link {}: {:.6}, from {:.6} to {:.6}", l.link, l.distance, l.on_robot, l.on_mesh);
+        writeln!(out, "link {}: {:.6}, from {:.6} to {:.6}", l.link, l.distance, l.on_robot, l.on_mesh)?;
     }
     if let Some(tolerance) = my.tolerance {
         let curve = search.clearance(&Tube::from_samples(&points, &radii, None)?, &pose, tolerance)?;
-        println!("curve: {:.6} to {:.6}, {:.3} along it", curve.lower, curve.upper, curve.arc_length);
+        writeln!(out, "curve: {:.6} to {:.6}, {:.3} along it", curve.lower, curve.upper, curve.arc_length)?;
     }
-    println!("minimum {:.6}", search.minimum(&robot, &pose)?.distance);
-    Ok(())
+    Ok(writeln!(out, "minimum {:.6}", search.minimum(&robot, &pose)?.distance)?)
 }
 
 /// The numbers of each line, with the line's name. Empty lines and a heading are passed over.

@@ -26,8 +26,8 @@ struct Options {
     #[command(flatten)]
     anatomy: Anatomy,
 
-    /// The ends of each link: all round (capsule), all flat (cylinder), or what fits each joint (modified)
-    #[arg(long, value_enum, default_value_t = Model::Modified)]
+    /// The ends of each link: all round (capsule), all flat (cylinder), or what fits each joint (fitted)
+    #[arg(long, value_enum, default_value_t = Model::Fitted)]
     model: Model,
 
     /// Take the fewest links within this distance of the curve, in millimetres, and bound the curve's own clearance as
@@ -52,7 +52,7 @@ struct Options {
 enum Model {
     Capsule,
     Cylinder,
-    Modified,
+    Fitted,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -188,7 +188,7 @@ fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, Rob
     match options.model {
         Model::Capsule => Chain::capsules(&points, &radii),
         Model::Cylinder => Chain::cylinders(&points, &radii),
-        Model::Modified => Chain::from_centreline(&points, &radii),
+        Model::Fitted => Chain::from_centreline(&points, &radii),
     }
 }
 
@@ -238,7 +238,7 @@ fn print_pieces(pieces: &[TubePiece]) {
     }
 }
 
-/// Times each engine and parry in turns, and prints them. Returns search (cold and warm), exhaustive and parry.
+/// Times each engine and parry in turns, and prints them. Returns search (the first time and again), exhaustive and parry.
 fn print_times(
     mesh: &TriMesh,
     chains: &[Chain],
@@ -249,7 +249,7 @@ fn print_times(
     let chain = &chains[chains.len() - 1];
     let before = &chains[chains.len().saturating_sub(2)];
     let cylinders = timing::cylinders(chain);
-    let mut warm = BvhSearch::new(mesh).map_err(text)?;
+    let mut kept = BvhSearch::new(mesh).map_err(text)?;
     let [mut a, mut b, mut c] = [Vec::new(), Vec::new(), Vec::new()];
     let mut turn = false;
     let medians = timing::medians::<String>(
@@ -260,23 +260,23 @@ fn print_times(
             },
             &mut || {
                 turn = !turn;
-                warm.per_link(if turn { before } else { chain }, base, &mut b).map_err(text)
+                kept.per_link(if turn { before } else { chain }, base, &mut b).map_err(text)
             },
             &mut || exhaustive.per_link(chain, base, &mut c).map_err(text),
             &mut || timing::parry(mesh, &cylinders, base).map(drop).map_err(text),
         ],
         Duration::from_secs(1),
     )?;
-    let [cold, warm, all, parry] = medians[..] else { return Err("a time is missing".into()) };
+    let [first, again, all, parry] = medians[..] else { return Err("a time is missing".into()) };
     println!("\ntime per query of all {} links (median, taken in turns)", chain.links().len());
     let row = |name: &str, time: Duration| {
         println!("  {name:<46} {:>11.1} us   {:>8.2} x", time.as_secs_f64() * 1e6, ratio(parry, time));
     };
     row("parry distance(Cylinder, TriMesh), link by link", parry);
-    row("search, cold", cold);
-    row("search, warm from the step before", warm);
+    row("search, first time", first);
+    row("search, again after the step before", again);
     row(exhaustive_name, all);
-    Ok([cold, warm, all, parry])
+    Ok([first, again, all, parry])
 }
 
 fn ratio(of: Duration, to: Duration) -> f64 {
@@ -302,17 +302,17 @@ fn caption(
     mesh: &TriMesh,
     chain: &Chain,
     nearest: Option<String>,
-    [cold, warm, exhaustive, parry]: [Duration; 4],
+    [first, again, exhaustive, parry]: [Duration; 4],
 ) -> figure::Caption {
     let (one, many) = match options.model {
         Model::Capsule => ("capsule", "capsules"),
         Model::Cylinder => ("cylinder", "cylinders"),
-        Model::Modified => ("modified cylinder", "modified cylinders"),
+        Model::Fitted => ("link with fitted caps", "links with fitted caps"),
     };
     let count = chain.links().len();
     let links = format!("{count} {}", if count == 1 { one } else { many });
     let mut notes = Vec::from_iter(nearest);
-    notes.push(format!("all links: search {} cold, {} warm", clock(cold), clock(warm)));
+    notes.push(format!("all links: search {} the first time, {} again", clock(first), clock(again)));
     notes.push(format!("every triangle {}, parry link by link {}", clock(exhaustive), clock(parry)));
     figure::Caption {
         title: format!("A concentric tube robot in {}", options.anatomy.name()),

@@ -43,7 +43,6 @@
 //!   [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase.
 //!   The feature `rapier` adds a helper that does so and sets what depends on the unit of length.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and `f32`.
-//!
 //! - **The registration.** [`pose_from_matrix`] takes the 4x4 matrix that brings the robot into the mesh's frame.
 //! - **The book.** [`book`] explains the shape, the queries, the trade of accuracy for time, certificates and limits, how to
 //!   get [from CT to clearance](book::from_ct), and what changes for those who [come from](book::coming_from) capsules,

@@ -12,7 +12,7 @@ use super::{Closest, Scalar, Vec3};
 /// in 147 ns (`f64`, scalar) or 28 ns where several run at once. The paper's quartic as printed is off by more than
 /// 1e-4 of the extent in 2 to 8 % of them, whichever root finder serves it. Recentred it is as exact with any finder
 /// (in `f32` with a polish), but takes at least 1.65 times as long (2.27 in `f32`), and its finders branch, so that they
-/// cannot run in packs. (Table I of docs/STUDIES.md.)
+/// cannot run in packs. (Table I of docs/internals/studies.md.)
 pub trait DiscSolver<T: Scalar> {
     /// The closest points of the segment between `ends` (`point1`) and the solid disc around the origin with
     /// the unit vector `normal` (`point2`). The caller has scaled the problem, so that products of lengths

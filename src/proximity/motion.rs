@@ -32,7 +32,7 @@ pub enum MotionAnswer {
         on_mesh: Vector,
     },
     /// No such shape was found, but one whose clearance is at most the margin and the resolution; or one in which the end
-    /// of a link becomes flat or round, by Algorithm 1, so close to the mesh that this decides.
+    /// of a link becomes flat or round, so close to the mesh that this decides.
     #[non_exhaustive]
     Undecided {
         /// The first interval of time in which there is one. The clearance is more than the margin before it.
@@ -72,7 +72,7 @@ pub enum FirstContact {
         on_mesh: Vector,
     },
     /// No such shape was found, but one whose clearance is at most the margin and the resolution; or one in which the end
-    /// of a link becomes flat or round, by Algorithm 1, so close to the mesh that this decides.
+    /// of a link becomes flat or round, so close to the mesh that this decides.
     #[non_exhaustive]
     Undecided {
         /// The first interval of time in which there is one. The clearance is more than the margin before it.

@@ -19,8 +19,8 @@ use std::sync::OnceLock;
 ///
 /// | constructor | caps | the tube is |
 /// |---|---|---|
-/// | [`from_centreline`](Self::from_centreline) | by Algorithm 1, from one radius per segment | followed: flat ends, filled bends |
-/// | [`from_vertex_radii`](Self::from_vertex_radii) | by Algorithm 1 as printed, from one radius per point | followed |
+/// | [`from_centreline`](Self::from_centreline) | those that fit (Algorithm 1 of the paper), from one radius per segment | followed: flat ends, filled bends |
+/// | [`from_vertex_radii`](Self::from_vertex_radii) | the same by the letter of the paper, from one radius per point | followed |
 /// | [`capsules`](Self::capsules) | all round | covered, but reaches one radius too far at its ends |
 /// | [`cylinders`](Self::cylinders) | all flat | never exceeded at its ends, but open at the bends |
 ///
@@ -63,7 +63,8 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// The robot with this centreline, its tubes' radii given segment by segment, capped by Algorithm 1.
+    /// The robot with this centreline, its tubes' radii given segment by segment, with the caps that fit (Algorithm 1 of the
+    /// paper).
     ///
     /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
     /// where a round cap does not stick out of such a face. A radius that is meant to be constant must be so to

@@ -40,7 +40,7 @@ pub enum MatrixError {
     },
     /// The axes are not perpendicular unit vectors.
     #[error(
-        "the matrix does not rotate: its axes are off unit length and right angles by {deviation:e}; \
+        "the matrix does not rotate: its axes are off unit length and right angles by {deviation:?}; \
          give a rigid registration, with six digits after the point"
     )]
     NoRotation {

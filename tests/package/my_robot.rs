@@ -1,7 +1,7 @@
 //! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to change.
 
-use crate::programs::{refuse, succeed};
-use continuum_testing::programs::{file, room};
+use crate::programs::{example, refuse, succeed};
+use continuum_testing::programs::{file, room, run};
 
 /// A quarter turn that brings x to y and y to -x, and a shift.
 const TURNED: &str = "0 -1 0 60\n1 0 0 0\n0 0 1 0\n0 0 0 1\n";
@@ -79,11 +79,20 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "write 4 numbers");
     refuse_pose(&TURNED.replace("0 0 0 1", "0 0 0 2"), "not 0 0 0 1");
     refuse_pose(&TURNED.replace("-1", "1"), "mirrors");
-    refuse_pose(&TURNED.replace("-1", "-0.9"), "does not rotate");
+    refuse_pose(&TURNED.replace("-1", "-0.5"), "right angles by 0.75");
     refuse_pose("0 -1e3 0 60\n1e3 0 0 0\n0 0 1e3 0\n0 0 0 1\n", "scales by 1000");
     refuse_pose(&TURNED.replace("60", "nan"), "row 1, column 4");
     refuse("my_robot", &["--mesh", room, "--centreline", "nowhere.csv"], "cannot read nowhere.csv");
     refuse("my_robot", &["--mesh", "nowhere.stl", "--centreline", shape], "check the path");
+    for (option, wrong, expected) in [
+        ("--radius", "wide", "write a number"),
+        ("--tolerance", "1,5", "write a number"),
+        ("--label", "left", "write a whole number"),
+    ] {
+        let (success, _, error) =
+            run(example("my_robot"), &["--mesh", room, "--centreline", shape, option, wrong]);
+        assert!(!success && error.contains(expected), "{error}");
+    }
     #[cfg(unix)]
     refuse("my_robot", &["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
 }

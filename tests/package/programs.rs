@@ -3,7 +3,8 @@
 use continuum_testing::programs::{self, colours, file, place, read, room};
 use std::path::PathBuf;
 
-fn example(name: &str) -> PathBuf {
+/// An example program, which is built first.
+pub fn example(name: &str) -> PathBuf {
     programs::example(env!("CARGO_MANIFEST_DIR"), name, if cfg!(feature = "gpu") { "gpu" } else { "" })
 }
 
@@ -44,7 +45,7 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--base", "1,2"], "three numbers"),
         (&["--base", "1,2,inf"], "three numbers"),
         (&["--axis", "0,0,0"], "a direction needs a length"),
-        (&["--model", "cone"], "capsule, cylinder, modified"),
+        (&["--model", "cone"], "capsule, cylinder, fitted"),
         (&["--tolerance", "-0.1"], "at least 0"),
         (&["--steps", "0"], "write a whole number from 1 to 100000"),
         // An output that cannot be written is found before a mesh that cannot be read.
@@ -88,7 +89,7 @@ fn programs_draw_their_pictures() {
     let out = succeed("ventricle", &arguments);
     assert!(out.contains("12 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
     assert!(out.contains("that took ") && out.contains(" pieces: the shortest is "), "{out}");
-    for line in ["parry distance(Cylinder, TriMesh)", "search, cold", "search, warm", "exhaustive"] {
+    for line in ["parry distance(Cylinder, TriMesh)", "search, first time", "search, again", "exhaustive"] {
         assert!(out.contains(line), "{out}");
     }
     succeed("figure7", &["--out", "drawn/seven.png"]);

@@ -11,8 +11,8 @@
 //! Jenkins-Traub 2.8 and the companion matrix 4.4 times as long. Above, Bairstow and Jenkins-Traub are about
 //! equal (degree 10: 3.5 us) and the companion matrix takes 1.3 to 1.8 times as long. Of the roots of a million random
 //! polynomials of degree 15, Jenkins-Traub and the companion matrix found all in `f64`, Bairstow all but 13 in a
-//! million. (Table V of
-//! [docs/STUDIES.md](https://docs.rs/crate/parry-continuum/latest/source/docs/STUDIES.md).)
+//! million. (Table V of the repository's
+//! `docs/internals/studies.md`.)
 //!
 //! Coefficients come lowest power first: `coefficients[k]` belongs to x^k. Nothing is allocated. All methods are
 //! tested up to degree 15 and share what surrounds the method itself:

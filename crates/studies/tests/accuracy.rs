@@ -3,7 +3,7 @@
 use continuum_scene::levels::levels;
 use continuum_studies::accuracy::measure::{Measured, Measurement, measure, problems, range};
 use continuum_studies::accuracy::{EACH, LARGEST, certificates, engines, reference, tables};
-use continuum_studies::quote;
+use continuum_studies::{long_table, quote};
 use continuum_testing::distance_cases;
 
 /// A file of the repository.
@@ -81,6 +81,16 @@ fn assert_lines(written: &[&str], measurement: &Measurement) {
     }
 }
 
+/// The largest error in a table of the extremes, in double and in single precision.
+fn worst(table: &str) -> [f64; 2] {
+    let rows = table.lines().map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
+    let errors = |from_end: usize| {
+        rows.clone()
+            .filter_map(move |cells| cells.get(cells.len().checked_sub(from_end)?)?.parse::<f64>().ok())
+    };
+    [5, 2].map(|column| errors(column).fold(0.0, f64::max))
+}
+
 fn measured<T: Measured>() -> Measurement {
     measure(&problems::<T>(EACH), &levels())
 }
@@ -90,6 +100,15 @@ fn the_written_extremes_are_the_measured_ones() {
     let (double, single) = (measured::<f64>(), measured::<f32>());
     let ranges = [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])];
     assert_same(&written("extremes"), &tables::tables(&double, &single, ranges));
+    let page = written("extremes");
+    let (categories, pairs) = page.split_once("\nBy pair").expect("two tables");
+    for (file, shown, table) in [
+        ("categories", categories, tables::by_category(&double, &single)),
+        ("pairs", pairs, tables::by_pair(&double, &single)),
+    ] {
+        assert_same(&read(&format!("docs/accuracy_{file}.csv")), &long_table::csv(&table));
+        assert_eq!(worst(shown), worst(&table), "the page shows the worst of all {file}");
+    }
     assert_same(&read("docs/accuracy_powers.csv"), &tables::powers(&double, &single));
     let file = read("docs/accuracy.csv");
     let file: Vec<_> = file.lines().collect();

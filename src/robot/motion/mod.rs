@@ -22,8 +22,8 @@ use parry3d_f64::math::{Pose, Real};
 ///
 /// Points of the centreline correspond by their section and by their share of its length, both from the base to the
 /// tip. So the number of sections and their radii stay the same; a section that is not out yet has a tiny length. Where
-/// the radii do not change, the flat ends that Algorithm 1 finds for them do not either: the robot's two ends, and the
-/// wider side of each step in radius. The model may not change on the way, say from capsules to Algorithm 1.
+/// the radii do not change, neither do the flat ends: the robot's two ends, and the wider side of each step in radius. The
+/// model may not change on the way, say from capsules to fitted caps.
 ///
 /// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use. A motion of one's own needs bounds on its speed, and what is
 /// proven of it relies on them: [`verify_motion`] tries them.

@@ -3,6 +3,7 @@
 use super::measure::{Found, Measurement, PAIRS};
 use super::problems::Extreme;
 use super::reference::median_and_worst;
+use crate::long_table::shown;
 use std::fmt::Write;
 
 /// The instruction sets that have columns in the file.
@@ -44,30 +45,60 @@ pub fn head() -> String {
     format!("precision,category,pair,problems,scalar median,scalar worst,{levels},parry median,parry worst")
 }
 
-/// The tables of scalar errors, which are the same on every machine.
+/// The categories on the page, the worst of all among them; a file has the others too.
+const SHOWN: [&str; 10] = [
+    "generic",
+    "parallel",
+    "near parallel",
+    "contact",
+    "needle",
+    "sliver",
+    "short link",
+    "long link",
+    "offset",
+    "scale",
+];
+
+/// What the page shows of the scalar errors, which are the same on every machine.
 pub fn tables(double: &Measurement, single: &Measurement, ranges: [[i32; 2]; 2]) -> String {
+    let categories = shown(&by_category(double, single), |cells| SHOWN.contains(&cells[0]));
+    let pairs = shown(&by_pair(double, single), |cells| is_pair_shown(cells[0]));
+    let [[low, high], [single_low, single_high]] = ranges;
+    format!(
+        "{categories}\nBy pair, over all categories ([accuracy_pairs.csv](accuracy_pairs.csv) has the plane and the disc too):\n\n{pairs}\n\
+         The usable range: problems of a size from 2^{low} to 2^{high} in f64 and from 2^{single_low} to 2^{single_high} \
+         in f32 are answered within 16 units. No proof left more than {:.1} units open.\n",
+        double.gap.max(single.gap)
+    )
+}
+
+/// Whether the page shows a pair: not the plane, which is no part of a mesh.
+pub fn is_pair_shown(pair: &str) -> bool {
+    pair != "plane and disc"
+}
+
+/// The scalar errors of all pairs in each category.
+pub fn by_category(double: &Measurement, single: &Measurement) -> String {
     let mut text = String::from(
-        "| category | what it is | f64 answers | median | worst | f32 answers | median | worst |\n\
+        "| category | what it is | f64: answers | median | worst | f32: answers | median | worst |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for (extreme, name, what) in Extreme::ALL {
         let of = |measurement| row(measurement, |found| found.extreme == extreme);
         writeln!(text, "| {name} | {what} | {} | {} |", of(double), of(single)).ok();
     }
-    text += "\nThe same by pair:\n\n\
-             | pair | f64 answers | median | worst | f32 answers | median | worst |\n|---|---|---|---|---|---|---|\n";
+    text
+}
+
+/// The scalar errors of each pair over all categories.
+pub fn by_pair(double: &Measurement, single: &Measurement) -> String {
+    let mut text = String::from(
+        "| pair | f64: answers | median | worst | f32: answers | median | worst |\n|---|---|---|---|---|---|---|\n",
+    );
     for (name, kernels) in PAIRS {
         let of = |measurement| row(measurement, |found| kernels.contains(&found.kernel));
         writeln!(text, "| {name} | {} | {} |", of(double), of(single)).ok();
     }
-    let [[low, high], [single_low, single_high]] = ranges;
-    write!(
-        text,
-        "\nThe usable range: problems of a size from 2^{low} to 2^{high} in f64 and from 2^{single_low} to 2^{single_high} \
-         in f32 are answered within 16 units. No proof left more than {:.1} units open.\n",
-        double.gap.max(single.gap)
-    )
-    .ok();
     text
 }
 

@@ -17,28 +17,30 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     let page = read("gpu_speed/GPU_SPEED.md");
     assert_finite(&page);
     let precisions = if gpu::open(Precision::F64).is_some() { 2 } else { 1 };
+    for head in [
+        "| triangles | search, first time |",
+        "| triangles | search | GPU f32 |",
+        "| triangles | search | exhaustive f32, CPU |",
+    ] {
+        assert_eq!(table(&page, head).len(), 1, "{head}: {page}");
+    }
+    let studies = read("gpu_speed/internals/gpu_studies.md");
+    assert_finite(&studies);
     for (head, rows) in [
-        ("| triangles | search, first time |", 1),
-        ("| triangles | search | GPU f32 |", 1),
-        ("| triangles | search | exhaustive f32, CPU |", 1),
         ("| triangles | precision | capsules, device |", precisions),
         ("| triangles | precision | discs |", 3 * precisions),
         ("| distance | precision | clamps, device |", 2 * precisions),
         // Four finders at three degrees, of which the closed form solves the first.
         ("| degree | finder |", 4 + 3 + 3),
     ] {
-        assert_eq!(table(&page, head).len(), rows, "{head}: {page}");
+        assert_eq!(table(&studies, head).len(), rows, "{head}: {studies}");
     }
     let rows = |file: &str| read(file).lines().count() - 1;
-    assert_eq!(rows("gpu_speed/gpu_every_pair.csv"), 3 * precisions);
+    assert_eq!(rows("gpu_speed/internals/gpu_every_pair.csv"), 3 * precisions);
     // Of seven degrees.
-    assert_eq!(rows("gpu_speed/gpu_roots.csv"), 4 * 7 - 4);
-    // The distances are those of the search.
-    let check = page.lines().filter(|line| line.starts_with("- 1000 triangles,"));
-    let errors: Vec<f64> = check
-        .map(|line| line.split(" at most ").nth(1).unwrap().split(" mm").next().unwrap().parse().unwrap())
-        .collect();
-    assert!(errors.len() == precisions && errors.iter().all(|error| *error < 1e-10), "{page}");
+    assert_eq!(rows("gpu_speed/internals/gpu_roots.csv"), 4 * 7 - 4);
+    // To the last bit.
+    assert_eq!(studies.matches(": the distances are the search's, and ").count(), precisions, "{studies}");
 
     let adapter = gpu::open(Precision::F32).unwrap().adapter();
     if adapter.is_software {

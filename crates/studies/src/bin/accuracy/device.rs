@@ -4,7 +4,7 @@ use continuum_studies::accuracy::measure::Problem;
 use continuum_studies::accuracy::{
     gpu,
     measure::{Found, PAIRS},
-    tables::cell,
+    tables::{cell, is_pair_shown},
 };
 use parry_continuum::gpu::{Gpu, Precision};
 use std::path::Path;
@@ -52,7 +52,7 @@ fn table(measured: &[(&str, Vec<Found>)]) -> String {
     let mut text = String::from("| pair |");
     measured.iter().for_each(|(precision, _)| text += &format!(" {precision} median | {precision} worst |"));
     text += &format!("\n|---|{}\n", "---|---|".repeat(measured.len()));
-    for (pair, kernels) in PAIRS {
+    for (pair, kernels) in PAIRS.into_iter().filter(|(pair, _)| is_pair_shown(pair)) {
         text += &format!("| {pair} |");
         for (_, found) in measured {
             let here = |found: &&Found| kernels.contains(&found.kernel);

@@ -33,12 +33,18 @@ pub fn chapter(
             let apart = disagreement(&answers(&mut engine, models)?, &exact);
             let timed = all_models(&mut engine, models, enough)?;
             culling.push_str(&row(&name, size, opened.tflops, &timed)?);
+            let distances = match apart {
+                0.0 => "the distances are the search's".into(),
+                _ => format!("the distances differ from the search's by at most {apart:.0e} mm"),
+            };
+            let on_cpu = match engine.answered_on_cpu() {
+                0 => "no link".into(),
+                count => format!("{count} links"),
+            };
             writeln!(
                 checks,
-                "- {size} triangles, {}: the distances differ from the search's by at most {apart:.0e} mm, and {} links \
-                 needed the CPU.",
-                opened.name,
-                engine.answered_on_cpu()
+                "- {size} triangles, {}: {distances}, and {on_cpu} needed the CPU.",
+                opened.name
             )
             .map_err(text)?;
             if size > most_every_pair as usize {

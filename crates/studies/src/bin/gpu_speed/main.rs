@@ -1,5 +1,5 @@
-//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU; exhaustive queries as
-//! in the paper's Figure 9 and Table IV, and Tables II, III and V. Writes `docs/GPU_SPEED.md`.
+//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU. Writes
+//! `docs/GPU_SPEED.md`. The paper's Figure 9 and Tables II to V on the GPU go to `docs/internals/gpu_studies.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --features gpu --bin gpu_speed -- --tflops 66.9,33.5
@@ -21,13 +21,13 @@ use continuum_scene::command;
 use continuum_studies::models::models;
 use parry_continuum::gpu::{Gpu, GpuError, Precision};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 #[derive(Parser)]
 struct Options {
-    /// Where to write GPU_SPEED.md
+    /// Where to write GPU_SPEED.md and, below internals, gpu_studies.md with its long tables
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 
@@ -101,35 +101,52 @@ fn measure(options: &Options) -> Result<(), String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let adapter = opened[0].gpu.adapter();
     let command = command::line("-p continuum-studies --features gpu --bin gpu_speed");
-    let mut page = format!(
-        "# Speed on the GPU\n\n\
-         Written by `{command}` on {adapter}; the engines on the \
-         CPU beside it ran on {cores} cores. Times are medians; jobs that are compared take turns in one run, and did so before for as long, because \
-         a GPU at rest starts slowly. Device: the GPU's own clock, from the first kernel to the last. End to end: the whole \
-         call, with transfers and what the CPU measures again.\n"
+    let written = format!(
+        "Written by `{command}` on {adapter}; the engines on the \
+         CPU beside it ran on {cores} cores. Times are medians. Jobs that are compared take turns in one run; before that they \
+         run as long untimed, because a GPU at rest starts slowly."
     );
+    let mut remarks = String::new();
     if adapter.is_software {
-        page.push_str("\nThis is a GPU in software: its times tell nothing of a GPU.\n");
+        remarks.push_str("\nThis is a GPU in software: its times tell nothing of a GPU.\n");
     }
     if let Some(missing) = missing {
-        page.push_str(&format!("\n{missing}.\n"));
+        remarks.push_str(&format!("\n{missing}.\n"));
     }
     let enough = Duration::from_secs_f64(options.enough.clamp(0.0, 60.0));
-    let mut add = |name: &str, chapter: String| {
+    let add = |page: &mut String, name: &str, chapter: String| {
         page.push('\n');
         page.push_str(&chapter);
         println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
     };
+    let internals = options.out.join("internals");
     let meshes = meshes::meshes(options.largest)?;
     let models = models().map_err(text)?;
     let [_, (_, robot), _] = &models;
-    add("engines", engines::chapter(&opened, &meshes, robot, enough)?);
-    add("moving", moving::chapter(&opened, &meshes, robot, enough)?);
-    add("chains", chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &options.out)?);
-    add("forms", forms::chapter(&opened, options.problems as usize, enough)?);
-    add("roots", roots::chapter(&opened, options.problems as usize, enough / 4, &options.out)?);
-    fs::create_dir_all(&options.out)
-        .and_then(|()| fs::write(&path, page))
+    let mut page = format!(
+        "# Speed on the GPU\n\n\
+         {written} A time is that of the whole call, with transfers and what the CPU measures again.\n{remarks}"
+    );
+    add(&mut page, "engines", engines::chapter(&opened, &meshes, robot, enough)?);
+    add(&mut page, "moving", moving::chapter(&opened, &meshes, robot, enough)?);
+    let mut studies = format!(
+        "# The paper's studies on the GPU\n\n\
+         {written} Device: the GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers \
+         and what the CPU measures again.\n{remarks}"
+    );
+    let chains = chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &internals)?;
+    add(&mut studies, "chains", chains);
+    add(&mut studies, "forms", forms::chapter(&opened, options.problems as usize, enough)?);
+    let roots = roots::chapter(&opened, options.problems as usize, enough / 4, &internals)?;
+    add(&mut studies, "roots", roots);
+    write(&path, &page)?;
+    write(&internals.join("gpu_studies.md"), &studies)
+}
+
+fn write(path: &Path, page: &str) -> Result<(), String> {
+    let directory = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(directory)
+        .and_then(|()| fs::write(path, page))
         .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
     println!("{}", path.display());
     Ok(())

@@ -39,8 +39,8 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
         "## Exhaustive\n\n\
          The ventricle of 6,000 triangles divided in four {often}, 30 links, one thread. The peer is a loop of parry's \
          `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, but a sphere around \
-         it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled, as in the \
-         paper; and in the order of subdivision, where neighbours stand together.\n\n\
+         it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled; and in \
+         the order of subdivision, where neighbours stand together.\n\n\
          | order | precision | culling | capsules | fitted caps | cylinders | fitted caps / capsules | cylinders / capsules |\n\
          |---|---|---|---|---|---|---|---|\n",
     );

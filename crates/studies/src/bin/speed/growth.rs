@@ -1,4 +1,4 @@
-//! Time against the number of triangles, links and threads: the paper's Figure 9 for the CPU.
+//! Time against the number of triangles, links and threads: the paper's Figure 9 on the CPU, with culling.
 
 use crate::Effort;
 use crate::exhaustive::on_one_thread;
@@ -128,8 +128,7 @@ fn table(all: &[Series]) -> Result<String, String> {
     let mut page = String::from(
         "## Growth\n\n\
          A ventricle divided in four again and again and shuffled, 30 links, one thread: time of a per-link query \
-         against triangles (the paper's Figure 9 for the CPU, with culling). The search has the answers of the same \
-         query before.\n\n\
+         against triangles. The search has the answers of the same query before.\n\n\
          ![Time against triangles](speed.svg)\n\n| microseconds |",
     );
     let write_all = |page: &mut String| -> std::fmt::Result {

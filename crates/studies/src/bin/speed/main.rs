@@ -79,7 +79,7 @@ fn measure(options: &Options) -> Result<(), String> {
     let (planner, shapes) = planner::chapter(effort, &mut goals)?;
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
     let growth = growth::chapter(effort, &options.out)?;
-    let latency = latency::chapter(effort)?;
+    let (latency, after_other_work) = latency::chapter(effort)?;
     for chapter in [search, planner, latency, exhaustive, growth, moving::chapter(effort)?, memory] {
         page.push('\n');
         page.push_str(&chapter);
@@ -93,6 +93,7 @@ fn measure(options: &Options) -> Result<(), String> {
         "{written}: a robot of 30 links in a cavity of about 100 mm, near the wall (2 mm away) and far from it (19 mm). \
          Microseconds a query, and how many times faster than parry, which is given the same bounds. The first time the engine has \
          no answers to start from; again it has those of the query before, as in a control loop.\n\n{}{table}\n\
+         {after_other_work}\n\n\
          A planner throws random shapes and asks whether they touch, each for the first time. Microseconds a shape:\n\n{shapes}\n\
          [docs/SPEED.md](docs/SPEED.md) has the rest.\n",
         search::HEAD,

@@ -229,7 +229,7 @@ fn write_page(
          with the convex route {a32:.2} and {a64:.2} for cylinders, and {b32:.2} and {b64:.2} for fitted caps; packed {z32:.2} \
          and {z64:.2} for cylinders, and {s32:.2} and {s64:.2} for fitted caps. So fitted caps cost less than cylinders: {}; \
          and no more than capsules: {} without culling. (Culling, the engine's default, brings cylinders near capsules: \
-         docs/SPEED.md.)",
+         [SPEED.md](../SPEED.md).)",
         finding(s32 < z32 && s64 < z64 && c32 < p32 && c64 < p64),
         finding([s32, s64, c32, c64].iter().all(|ratio| *ratio < 1.05)),
     )?;

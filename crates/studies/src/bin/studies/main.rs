@@ -1,5 +1,5 @@
 //! The paper's studies on your own processor: branching (Tables II and III), root finders (Tables I and V) and the
-//! exhaustive engines with the paper's solvers (Figure 9, Table IV). Writes `docs/STUDIES.md`.
+//! exhaustive engines with the paper's solvers (Figure 9, Table IV). Writes `docs/internals/studies.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin studies
@@ -27,8 +27,8 @@ use std::process::ExitCode;
 /// Repeat the paper's studies on this processor: branching, root finders and exhaustive engines.
 #[derive(Parser)]
 struct Options {
-    /// Where to write STUDIES.md, and its long tables as studies_*.csv
-    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    /// Where to write studies.md, and its long tables as studies_*.csv
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs/internals")]
     out: PathBuf,
 
     /// Measure this chapter alone
@@ -84,7 +84,7 @@ fn main() -> ExitCode {
 
 fn measure(options: &Options) -> Result<(), String> {
     command::directory(&options.out)?;
-    let path = options.out.join("STUDIES.md");
+    let path = options.out.join("studies.md");
     let before = fs::read_to_string(&path).unwrap_or_default();
     let mut page = format!(
         "# The paper's studies\n\n\

@@ -5,7 +5,7 @@ use crate::front::{Combination, front};
 use crate::guide;
 use crate::outcome::{INPUT_SPACING, Outcome, REFERENCE_SPACING, TOLERANCES};
 use crate::reference::Checked;
-use crate::statistics::{Errors, length, quantile};
+use crate::statistics::{Errors, length, quantile, signed};
 use crate::subject::Model;
 use continuum_studies::machine;
 use std::fmt::Write;
@@ -239,9 +239,4 @@ fn clearances(outcomes: &[Outcome]) -> String {
 fn microseconds(seconds: f64) -> String {
     let us = seconds * 1e6;
     if us < 100.0 { format!("{us:.1} us") } else { format!("{us:.0} us") }
-}
-
-/// With its sign, because a sign tells the safe side from the unsafe.
-fn signed(mm: f64) -> String {
-    if mm > 0.0 { format!("+{}", length(mm)) } else { length(mm) }
 }

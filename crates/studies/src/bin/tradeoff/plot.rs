@@ -121,6 +121,7 @@ fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
             }
             Shape::Frame => series
                 .legend(|(x, y)| Rectangle::new([(x + 3, y - 4), (x + 11, y + 4)], BLACK.stroke_width(1))),
+            Shape::Diamond => series.legend(|(x, y)| diamond((x + 7, y), BLACK.stroke_width(1))),
         };
     }
     Ok(())
@@ -134,6 +135,7 @@ enum Shape {
     Cross,
     Square,
     Frame,
+    Diamond,
 }
 
 fn shape(way: &str) -> Shape {
@@ -143,7 +145,8 @@ fn shape(way: &str) -> Shape {
         "exhaustive, f32" => Shape::Triangle,
         "exhaustive, f64" => Shape::Cross,
         "parry's search" => Shape::Square,
-        _ => Shape::Frame,
+        "GPU, f32" => Shape::Frame,
+        _ => Shape::Diamond,
     }
 }
 
@@ -175,8 +178,16 @@ fn mark(chart: &mut Chart, at: (f64, f64), way: &str, colour: RGBColor) -> Drawn
             let frame = Rectangle::new([(-4, -4), (4, 4)], colour.stroke_width(1));
             chart.draw_series([EmptyElement::at(at) + frame])?
         }
+        Shape::Diamond => {
+            chart.draw_series([EmptyElement::at(at) + diamond((0, 0), colour.stroke_width(1))])?
+        }
     };
     Ok(())
+}
+
+/// A square that stands on a corner.
+fn diamond((x, y): (i32, i32), style: ShapeStyle) -> PathElement<(i32, i32)> {
+    PathElement::new([(x, y - 5), (x + 5, y), (x, y + 5), (x - 5, y), (x, y - 5)], style)
 }
 
 /// A number without needless digits.

@@ -68,10 +68,14 @@ impl std::fmt::Display for Share {
     }
 }
 
-/// Per cent with as many digits as a share needs.
+/// Per cent with as many digits as a share needs: a bound above 0 never reads as 0.
 fn percent(share: f64) -> String {
-    let value = 100.0 * share;
-    if (0.005..10.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.1}") }
+    match 100.0 * share {
+        value if value >= 10.0 => format!("{value:.1}"),
+        value if value >= 0.005 => format!("{value:.2}"),
+        value if value > 0.0 => format!("{value:.*}", -value.log10().floor() as usize),
+        _ => "0".into(),
+    }
 }
 
 /// A length in mm with two digits, and none where it is no more than rounding.
@@ -81,5 +85,29 @@ pub fn length(mm: f64) -> String {
         size if size < 1e-3 => format!("{mm:.0e}"),
         size if size < 0.1 => format!("{mm:.4}"),
         _ => format!("{mm:.2}"),
+    }
+}
+
+/// The same with its sign, because a sign tells the safe side from the unsafe.
+pub fn signed(mm: f64) -> String {
+    let length = length(mm);
+    if mm > 0.0 && length != "0" { format!("+{length}") } else { length }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_0_does_not_read_as_0() {
+        // Wilson's bounds are 0.0024 % and 0.0757 %.
+        assert_eq!(Share { count: 1, of: 7483 }.to_string(), "1 of 7483: 0.01 % (0.002 to 0.08)");
+        assert_eq!(Share { count: 0, of: 7483 }.to_string(), "none of 7483 (below 0.05 %)");
+        assert_eq!(percent(3e-6), "0.0003");
+    }
+
+    #[test]
+    fn only_a_length_has_a_sign() {
+        assert_eq!([1e-13, 0.0, 0.5, -0.5].map(signed), ["0", "0", "+0.50", "-0.50"]);
     }
 }
