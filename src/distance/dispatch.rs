@@ -25,6 +25,7 @@ macro_rules! dispatch {
                 || $work,
             )
         } else if let Some($token) = level.as_sse2().or(Level::baseline().as_sse2()) {
+            // The level is less only where another crate has `fearless_simd` offer its scalar fallback.
             $token.vectorize(
                 #[inline(always)]
                 || $work,
