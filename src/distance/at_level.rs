@@ -1,8 +1,8 @@
 //! Any kernel on packs of an instruction set of one's choice: how the accuracy of packs is measured.
 
-use super::Scalar;
 use super::lanes::{Lane, Pack};
-use fearless_simd::{Level, dispatch};
+use super::{Scalar, dispatch};
+use fearless_simd::Level;
 
 /// What is run: one text for single numbers and for packs of them.
 pub trait Kernel<const IN: usize, const OUT: usize> {

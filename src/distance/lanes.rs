@@ -1,6 +1,6 @@
 //! Packs of `f32` or `f64` that take a [`Scalar`]'s place: the kernels run on 2 to 16 triangles at once.
 //!
-//! The width is that of the instruction set chosen at run time by [`fearless_simd::dispatch!`]. A constant needs
+//! The width is that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A constant needs
 //! the instruction set's token, which every pack carries; hence [`Scalar::lit`] takes a `self`.
 
 use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};

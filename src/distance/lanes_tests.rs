@@ -1,8 +1,8 @@
 //! Every instruction set of this machine gives the scalar's answers, lane by lane.
 
 use super::*;
-use crate::distance::{Kernel, Vec3, at_level, segment_disc, triangle_modified_cylinder};
-use fearless_simd::{Level, dispatch};
+use crate::distance::{Kernel, Vec3, at_level, dispatch, segment_disc, triangle_modified_cylinder};
+use fearless_simd::{Level, Simd};
 
 /// The instruction sets of this machine.
 pub(crate) fn levels() -> Vec<Level> {
@@ -12,10 +12,20 @@ pub(crate) fn levels() -> Vec<Level> {
     #[cfg(target_arch = "x86_64")]
     {
         levels.extend(best.as_avx2().map(Level::Avx2));
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
         levels.extend(best.as_sse2().map(Level::Sse2));
     }
     levels
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn a_level_runs_as_itself_and_sse4_2_as_sse2() {
+    let best = Level::new();
+    let run = |level: Level| dispatch!(level, simd => Simd::level(simd));
+    assert!(best.as_avx512().is_none_or(|token| matches!(run(token.level()), Level::Avx512(_))));
+    assert!(best.as_avx2().is_none_or(|token| matches!(run(token.level()), Level::Avx2(_))));
+    assert!(best.as_sse4_2().is_none_or(|token| matches!(run(token.level()), Level::Sse2(_))));
+    assert!(best.as_sse2().is_some_and(|token| matches!(run(token.level()), Level::Sse2(_))));
 }
 
 /// Numbers in [-1, 1), every seventh of them on a coarse lattice, where ties and parallels are common.

@@ -19,6 +19,7 @@
 mod at_level;
 mod bounds;
 mod disc_solver;
+mod dispatch;
 mod double_double;
 mod face;
 mod frame;
@@ -36,6 +37,7 @@ mod triangle_modified_cylinder;
 mod unfused;
 mod vec3;
 
+pub(crate) use dispatch::dispatch;
 pub(crate) use face::Face;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
 #[cfg(feature = "gpu")]

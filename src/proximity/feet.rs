@@ -117,6 +117,7 @@ impl<L: Scalar> Slope<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::distance::dispatch;
     use crate::distance::lanes::{Lane, tests::levels};
     use crate::proximity::mesh::Mesh;
     use crate::proximity::placed::PlacedLink;
@@ -125,7 +126,7 @@ mod tests {
     use crate::proximity::triangle_block::{BLOCK, load_vertices, place_triangle};
     use crate::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
-    use fearless_simd::{Level, dispatch};
+    use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
     /// The feet of a block of triangles.

@@ -4,8 +4,8 @@
 use super::mesh::Mesh;
 use super::placed::{Best, Nearest, Pair, PlacedLink};
 use crate::distance::lanes::Pack;
-use crate::distance::{Axial, Closest, Face, Link, Unfused, Vec3};
-use fearless_simd::{Level, dispatch};
+use crate::distance::{Axial, Closest, Face, Link, Unfused, Vec3, dispatch};
+use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
 /// How many triangles are measured together: the widest pack of `f64`.
@@ -81,7 +81,7 @@ fn measure_pack(
         units[lane] = pair.unit;
     }
     let (flat, count) = (link.flat(), triangles.len());
-    dispatch!(level, simd => closest::<Unfused<_>>(simd, &pairs, flat, count, &mut answers));
+    closest_at(level, &pairs, flat, count, &mut answers);
     for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
         let distance = answers[0][lane];
         if distance * units[lane] <= bound {
@@ -98,6 +98,11 @@ fn put(pairs: &mut Pairs, row: usize, lane: usize, point: Vec3<f64>) {
     pairs[row][lane] = point.x;
     pairs[row + 1][lane] = point.y;
     pairs[row + 2][lane] = point.z;
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn closest_at(level: Level, pairs: &Pairs, flat: [bool; 2], count: usize, answers: &mut Answers) {
+    dispatch!(level, simd => closest::<Unfused<_>>(simd, pairs, flat, count, answers));
 }
 
 #[inline(always)]

@@ -1,5 +1,8 @@
 //! The reference distances, through the kernels in double and single precision and through parry's traits.
 
+use continuum_testing::narrow_phase::{
+    segment_disc, segment_triangle, triangle_capsule, triangle_disc, triangle_modified_cylinder,
+};
 use continuum_testing::precision::Precision;
 use continuum_testing::{Case, distance_cases};
 use parry_continuum::distance::*;

@@ -6,6 +6,7 @@ use continuum_testing::Random;
 use continuum_testing::certificate::{Exact, Shape};
 use continuum_testing::distance_cases;
 use continuum_testing::kernels::Input;
+use continuum_testing::narrow_phase::{segment_triangle, triangle_disc};
 use continuum_testing::problems::Family;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;

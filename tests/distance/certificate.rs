@@ -4,6 +4,7 @@
 use continuum_testing::Random;
 use continuum_testing::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
 use continuum_testing::kernels::{Input, KERNELS};
+use continuum_testing::narrow_phase::{segment_disc, triangle_modified_cylinder};
 use continuum_testing::precision::{Precision, extent, vector};
 use continuum_testing::problems::Family;
 use parry_continuum::distance::*;

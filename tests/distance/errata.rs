@@ -3,6 +3,7 @@
 //! turned out unfounded is here too.
 
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::{segment_disc, triangle_disc};
 use continuum_testing::rotation::Rotation;
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;

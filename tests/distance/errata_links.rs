@@ -3,6 +3,9 @@
 
 use crate::errata::{ORIGIN, V, Z, assert_close, v};
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::{
+    segment_triangle, triangle_capsule, triangle_disc, triangle_modified_cylinder,
+};
 use parry_continuum::distance::*;
 
 fn cylinder(triangle: [V; 3], start: V, end: V, radius: f64) -> Closest<f64> {

@@ -2,6 +2,9 @@
 
 use continuum_testing::Random;
 use continuum_testing::kernels::{Input, KERNELS};
+use continuum_testing::narrow_phase::{
+    segment_disc, segment_triangle, triangle_disc, triangle_modified_cylinder,
+};
 use continuum_testing::precision::{extent, vector};
 use continuum_testing::problems::{Family, Problem};
 use parry_continuum::distance::*;

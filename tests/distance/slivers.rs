@@ -5,6 +5,7 @@
 //! numbers that the kernel gets; so is the proof that the sample projects inside the face.
 
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::{segment_triangle, triangle_disc, triangle_modified_cylinder};
 use continuum_testing::precision::{Precision, extent, vector};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;

@@ -2,7 +2,8 @@
 
 use crate::draw::{Draw, U, extent};
 use continuum_testing::Random;
-use parry_continuum::distance::{Vec3, segment_triangle};
+use continuum_testing::narrow_phase::segment_triangle;
+use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{Contact, PointQuery, QueryDispatcher};
 use parry_continuum::parry::shape::{Shape, SupportMap, Triangle};

@@ -1,9 +1,9 @@
 //! The library's certificates: bounds that hold on the reference cases, that are tight, and that catch a wrong answer.
 
+use continuum_testing::narrow_phase::triangle_modified_cylinder;
 use continuum_testing::precision::Precision;
 use continuum_testing::problems::{Family, Problem};
 use continuum_testing::{Random, distance_cases};
-use parry_continuum::distance::triangle_modified_cylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::*;

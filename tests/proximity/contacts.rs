@@ -3,8 +3,9 @@
 
 use super::scenes::mesh_of;
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::{point_modified_cylinder, triangle_modified_cylinder};
 use parry_continuum::Chain;
-use parry_continuum::distance::{Vec3, point_modified_cylinder, point_triangle, triangle_modified_cylinder};
+use parry_continuum::distance::{Vec3, point_triangle};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, Proximity};

@@ -2,8 +2,9 @@
 //! robot's own distance along its joints.
 
 use super::scenes::mesh_of;
+use continuum_testing::narrow_phase::{segment_triangle, triangle_modified_cylinder};
 use continuum_testing::{Case, Random, distance_cases};
-use parry_continuum::distance::{DoubleDouble, Scalar, Vec3, segment_triangle, triangle_modified_cylinder};
+use parry_continuum::distance::{DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Contact, ContactFeature, Derivative, LinkProximity, Proximity};

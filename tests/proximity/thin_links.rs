@@ -2,8 +2,8 @@
 //! would rule out the nearest.
 
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::triangle_modified_cylinder;
 use continuum_testing::precision::{Precision, extent};
-use parry_continuum::distance::triangle_modified_cylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::QueryDispatcher;
 use parry_continuum::parry::shape::TriMesh;

@@ -2,6 +2,7 @@
 //! names.
 
 use crate::drop::{mesh, world};
+use continuum_worlds as worlds;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
@@ -58,12 +59,12 @@ fn heights_later(mut world: PhysicsWorld, bodies: [RigidBodyHandle; 2]) -> [Real
 #[test]
 fn a_world_with_links_is_refused_and_one_without_is_not() {
     let (mut world, bodies) = falling();
-    let refused = to_string(&world).map(drop).expect_err("a custom shape was written");
+    let refused = worlds::write(&world).map(drop).expect_err("a custom shape was written");
     assert!(refused.to_string().contains("Custom cannot be serialized"), "{refused}");
     for body in bodies {
         world.remove_body(body);
     }
-    let read: PhysicsWorld = from_str(&to_string(&world).unwrap()).unwrap();
+    let read = worlds::read(&worlds::write(&world).unwrap()).unwrap();
     assert_eq!(read.colliders.len(), 1);
 }
 
@@ -83,10 +84,10 @@ fn a_world_is_saved_with_its_robots_beside_it() {
         }
     }
     assert_eq!(robots.len(), 2);
-    let text = (to_string(&saved).unwrap(), to_string(&robots).unwrap());
+    let text = (worlds::write(&saved).unwrap(), to_string(&robots).unwrap());
 
     let load = || {
-        let mut world: PhysicsWorld = from_str(&text.0).unwrap();
+        let mut world = worlds::read(&text.0).unwrap();
         let read: Vec<(ColliderHandle, Robot)> = from_str(&text.1).unwrap();
         assert_eq!(read, robots);
         for (handle, robot) in read {
@@ -117,7 +118,7 @@ fn the_parameters_are_saved_and_the_dispatcher_is_not() {
         dispatcher.distance(&Pose::IDENTITY, &link, &wall).map(|apart| apart.distance)
     };
     assert_eq!(apart(&world).unwrap(), 1.5);
-    let mut read: PhysicsWorld = from_str(&to_string(&world).unwrap()).unwrap();
+    let mut read = worlds::read(&worlds::write(&world).unwrap()).unwrap();
     assert_eq!(read.integration_parameters, world.integration_parameters);
     assert_ne!(apart(&read).ok(), Some(1.5));
     parry_continuum::rapier::install(&mut read.narrow_phase, &mut read.integration_parameters, 1e-3).unwrap();

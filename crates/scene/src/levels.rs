@@ -9,9 +9,8 @@ pub fn levels() -> Vec<(&'static str, Level)> {
     {
         let avx512 = best.as_avx512().map(|token| ("AVX-512", Level::Avx512(token)));
         let avx2 = best.as_avx2().map(|token| ("AVX2", Level::Avx2(token)));
-        let sse4_2 = best.as_sse4_2().map(|token| ("SSE4.2", Level::Sse4_2(token)));
         let sse2 = best.as_sse2().map(|token| ("SSE2", Level::Sse2(token)));
-        [avx512, avx2, sse4_2, sse2].into_iter().flatten().collect()
+        [avx512, avx2, sse2].into_iter().flatten().collect()
     }
     #[cfg(not(target_arch = "x86_64"))]
     vec![(std::env::consts::ARCH, best)]

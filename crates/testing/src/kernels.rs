@@ -1,6 +1,10 @@
 //! Every public function of the narrow phase on one input.
 
 use crate::Case;
+use crate::narrow_phase::{
+    point_modified_cylinder, segment_disc, segment_triangle, triangle_capsule, triangle_disc,
+    triangle_modified_cylinder,
+};
 use crate::precision::{Precision, extent, vector};
 use crate::problems::Problem;
 use parry_continuum::distance::*;
@@ -15,30 +19,6 @@ pub struct Input<T> {
     pub end: Vec3<T>,
     pub disc_normal: Vec3<T>,
     pub radius: T,
-}
-
-// The kernels are inlined wherever they are called; these are compiled once for all kinds of caps.
-
-#[inline(never)]
-fn point_apart<T: Scalar>(
-    point: Vec3<T>,
-    start: Vec3<T>,
-    end: Vec3<T>,
-    radius: T,
-    flat: [T::Mask; 2],
-) -> Closest<T> {
-    point_modified_cylinder(point, start, end, radius, flat)
-}
-
-#[inline(never)]
-fn link_apart<T: Scalar>(
-    triangle: [Vec3<T>; 3],
-    start: Vec3<T>,
-    end: Vec3<T>,
-    radius: T,
-    flat: [T::Mask; 2],
-) -> Closest<T> {
-    triangle_modified_cylinder(triangle, start, end, radius, flat)
 }
 
 /// The names of what [`Input::answers`] returns.
@@ -66,8 +46,8 @@ impl<T: Scalar> Input<T> {
         let Self { triangle, plane_normal, start, end, disc_normal, radius } = *self;
         let [a, b, _] = triangle;
         let (yes, no) = (radius.le(radius), radius.lt(radius));
-        let to_point = |flat| point_apart(a, start, end, radius, flat);
-        let to_triangle = |flat| link_apart(triangle, start, end, radius, flat);
+        let to_point = |flat| point_modified_cylinder(a, start, end, radius, flat);
+        let to_triangle = |flat| triangle_modified_cylinder(triangle, start, end, radius, flat);
         [
             segment_segment([start, end], [a, b]),
             point_triangle(end, triangle),
@@ -146,7 +126,7 @@ impl Kernel<NUMBERS, 1> for LinkDistance {
             [Vec3::new(n[9], n[10], n[11]), Vec3::new(n[12], n[13], n[14])],
         );
         let flat = [n[16].zero().lt(n[16]), n[17].zero().lt(n[17])];
-        [triangle_modified_cylinder(triangle, start, end, n[15], flat).distance]
+        [parry_continuum::distance::triangle_modified_cylinder(triangle, start, end, n[15], flat).distance]
     }
 }
 

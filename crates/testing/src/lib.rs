@@ -3,7 +3,7 @@
 //! | what | modules |
 //! |---|---|
 //! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`Random`], the same anywhere |
-//! | the narrow phase | [`kernels`], every public function on one input; [`precision`], one text for `f32` and `f64` |
+//! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
 //! | programs | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
 
@@ -14,6 +14,7 @@ pub mod disc_problems;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod kernels;
+pub mod narrow_phase;
 pub mod precision;
 pub mod problems;
 #[cfg(feature = "programs")]

@@ -3,8 +3,9 @@
 
 use super::blocks::prepare;
 use super::scan::{Findings, Job};
+use crate::distance::dispatch;
 use crate::distance::lanes::Lane;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 /// A precision with its loops.
 pub(super) trait Kernels: Lane {

@@ -109,6 +109,7 @@ pub(super) mod tests {
     use super::super::build::WideBvh;
     use super::super::node::{Child, Node, WIDTH};
     use super::*;
+    use crate::distance::dispatch;
     use crate::distance::lanes::Lane;
     use crate::proximity::mesh::Mesh;
     use crate::proximity::search_frame::SearchLink;
@@ -198,7 +199,8 @@ pub(super) mod tests {
                 {
                     let limit = link.limit_of_bounds(axis_limit);
                     let level = Level::new();
-                    let [may_meet, nearer] = fearless_simd::dispatch!(level, simd => ask::<<f32 as Lane>::Pack<_>>(simd, node, &link, limit));
+                    let [may_meet, nearer] =
+                        dispatch!(level, simd => ask::<<f32 as Lane>::Pack<_>>(simd, node, &link, limit));
                     differ += (may_meet ^ nearer).count_ones();
                     for (lane, least) in least.iter().enumerate() {
                         if *least < f64::from(axis_limit) {

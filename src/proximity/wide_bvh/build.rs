@@ -5,13 +5,13 @@
 
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
-use crate::distance::Scalar;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Scalar, dispatch};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::each;
 use crate::proximity::search_frame::SearchFrame;
 use crate::proximity::triangle_block::BLOCK;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use std::ops::Range;
 
 /// How many leaves one thread takes over at a time.

@@ -8,8 +8,8 @@
 
 use super::build::WideBvh;
 use super::node::{Child, WIDTH};
-use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
 use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::measure_lanes::TOGETHER;
@@ -18,7 +18,7 @@ use crate::proximity::placed::{Best, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
 use crate::robot::LinkNode;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
 /// A run is parted before it meets a node this many times smaller, or a leaf. Measured: a run that is parted late meets

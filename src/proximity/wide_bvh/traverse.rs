@@ -8,8 +8,8 @@
 
 use super::build::WideBvh;
 use super::node::{Child, WIDTH};
-use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
 use crate::proximity::feet::{CERTAIN, Feet};
 use crate::proximity::link_lanes::LinkLanes;
@@ -19,7 +19,7 @@ use crate::proximity::near_triangle::NearTriangle;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 /// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
 /// another.
@@ -97,7 +97,7 @@ impl<E: Lane> Traversal<'_, E> {
         let limit = searched.axis_limit(best.bound());
         let below = best.wanted_below();
         let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, start));
+        self.search(&mut target, start);
         self.settle(&mut target);
         if let Aim::Nearest(_, best) = target.aim { best } else { best }
     }
@@ -117,7 +117,7 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> (Best, f64, Option<u32>) {
         let (limit, below) = (searched.axis_limit(far), best.wanted_below());
         let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, start));
+        self.search(&mut target, start);
         let mut least = (target.limit, None);
         for &(lower, triangle) in &self.stack.candidates {
             if lower < least.0 {
@@ -135,7 +135,7 @@ impl<E: Lane> Traversal<'_, E> {
         let limit = searched.axis_limit(f64::INFINITY);
         let below = u32::MAX;
         let mut target = Target { searched, limit, below, aim: Aim::About(None, LEAVES_FOR_A_GUESS) };
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        self.search(&mut target, [None; 2]);
         if let Aim::About(found, _) = target.aim { found } else { None }
     }
 
@@ -144,7 +144,7 @@ impl<E: Lane> Traversal<'_, E> {
     pub(super) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below, aim: Aim::Any(false) };
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        self.search(&mut target, [None; 2]);
         matches!(target.aim, Aim::Any(true))
     }
 
@@ -152,7 +152,12 @@ impl<E: Lane> Traversal<'_, E> {
     pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<NearTriangle>) {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every(found) };
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        self.search(&mut target, [None; 2]);
+    }
+
+    #[inline(never)] // compiled for each instruction set, not for each aim as well
+    fn search(&mut self, target: &mut Target<E>, start: [Option<u32>; 2]) {
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use crate::long_table::shown;
 use std::fmt::Write;
 
 /// The instruction sets that have columns in the file.
-pub const LEVELS: [&str; 4] = ["AVX-512", "AVX2", "SSE4.2", "SSE2"];
+pub const LEVELS: [&str; 3] = ["AVX-512", "AVX2", "SSE2"];
 
 /// Median and worst of some errors.
 pub fn cell(errors: Vec<f64>) -> String {

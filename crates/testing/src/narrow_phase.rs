@@ -1,0 +1,23 @@
+//! The narrow phase for whoever asks it here and there: the library's functions are inlined into each that calls them,
+//! these are compiled once for every kind of number.
+
+use parry_continuum::distance::{self, Closest, Scalar, Vec3};
+
+macro_rules! called {
+    ($($name:ident($($argument:ident: $Type:ty),*);)*) => {$(
+        #[doc = concat!("[`distance::", stringify!($name), "`]")]
+        #[inline(never)]
+        pub fn $name<T: Scalar>($($argument: $Type),*) -> Closest<T> {
+            distance::$name($($argument),*)
+        }
+    )*};
+}
+
+called! {
+    segment_triangle(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]);
+    segment_disc(segment: [Vec3<T>; 2], centre: Vec3<T>, normal: Vec3<T>, radius: T);
+    triangle_disc(triangle: [Vec3<T>; 3], centre: Vec3<T>, normal: Vec3<T>, radius: T);
+    point_modified_cylinder(point: Vec3<T>, start: Vec3<T>, end: Vec3<T>, radius: T, flat: [T::Mask; 2]);
+    triangle_capsule(triangle: [Vec3<T>; 3], start: Vec3<T>, end: Vec3<T>, radius: T);
+    triangle_modified_cylinder(triangle: [Vec3<T>; 3], start: Vec3<T>, end: Vec3<T>, radius: T, flat: [T::Mask; 2]);
+}
