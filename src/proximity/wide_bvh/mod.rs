@@ -1,5 +1,6 @@
 //! Search through a hierarchy 16 children wide, a pack of them at a time.
 
+mod across;
 mod bound;
 mod build;
 mod engine;

@@ -6,6 +6,7 @@
 //! only win if its own lower bound is below u + 2 e. Such candidates are put off: at the end the few that are left are
 //! measured in double precision.
 
+use super::across::Across;
 use super::build::WideBvh;
 use super::node::{Child, WIDTH};
 use crate::distance::Face;
@@ -15,7 +16,7 @@ use crate::proximity::feet::{CERTAIN, Feet};
 use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::NearTriangle;
+use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
@@ -50,10 +51,10 @@ struct Target<'a, E> {
     limit: E,
     /// What its number must be below.
     below: u32,
-    aim: Aim<'a>,
+    aim: Aim<'a, E>,
 }
 
-enum Aim<'a> {
+enum Aim<'a, E> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
@@ -61,7 +62,14 @@ enum Aim<'a> {
     /// Whether any triangle may be within the limit.
     Any(bool),
     /// Every triangle that may be within the limit.
-    Every(&'a mut Vec<NearTriangle>),
+    Every(Gathering<'a, E>),
+}
+
+/// Where triangles are gathered.
+struct Gathering<'a, E> {
+    found: &'a mut NearTriangles,
+    /// Tells which lie on a slope.
+    across: Option<&'a Across<E>>,
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -148,10 +156,18 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Aim::Any(true))
     }
 
-    /// Adds to `found` every triangle that may be at most `bound` from the link.
-    pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<NearTriangle>) {
+    /// Adds to `found` every triangle that may be at most `bound` from the link. `across` tells which lie on a slope; it
+    /// is for single precision.
+    pub(super) fn within(
+        &mut self,
+        searched: &SearchLink<E>,
+        bound: f64,
+        across: Option<&Across<E>>,
+        found: &mut NearTriangles,
+    ) {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every(found) };
+        let aim = Aim::Every(Gathering { found, across });
+        let mut target = Target { searched, limit, below: u32::MAX, aim };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
     }
 
@@ -187,8 +203,8 @@ impl<E: Lane> Traversal<'_, E> {
                 Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
                 Child::Leaf(leaf) => match &mut target.aim {
-                    Aim::Every(found) => {
-                        self.gather_leaf(token, &lanes, leaf, target.searched, target.limit, found);
+                    Aim::Every(gathering) => {
+                        self.gather_leaf(token, &lanes, leaf, target.searched, target.limit, gathering);
                     }
                     _ => self.visit_leaf(token, &lanes, leaf, target),
                 },
@@ -250,46 +266,56 @@ impl<E: Lane> Traversal<'_, E> {
         leaf: u32,
         searched: &SearchLink<E>,
         limit: E,
-        found: &mut Vec<NearTriangle>,
+        Gathering { found, across }: &mut Gathering<E>,
     ) {
         self.work.visited += BLOCK as u64;
+        let across = across.map(|across| across.of(leaf, self.tree, self.mesh));
         let leaf = &self.tree.leaves[leaf as usize];
         let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
-        let (mut near, mut feet) = (0, Feet { away: [0; 3], inside: 0 });
+        let (mut near, mut slopes, mut feet) = (0, 0, Feet { away: [0; 3], beyond: [0; 3] });
         let (limit, error) = (L::splat(token, limit), L::splat(token, searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.not_behind_plane(vertices, limit) == 0 {
+            let mut in_question = lanes.not_behind_plane(vertices, limit);
+            if let Some(across) = across.filter(|_| in_question != 0) {
+                let across = load_vertices::<L>(token, across, lane);
+                let on_slope = in_question & lanes.on_slope(vertices, across, error);
+                slopes |= on_slope << lane;
+                in_question &= !on_slope;
+            }
+            if in_question == 0 {
                 continue;
             }
             self.work.axis_distances += L::LANES as u64;
             let (bounds, pack) = lanes.nearer_and_feet(vertices, limit, error);
             bounds.lower.store(&mut lower[lane..]);
             bounds.upper.store(&mut upper[lane..]);
-            near |= bounds.nearer << lane;
-            for (away, pack) in feet.away.iter_mut().zip(pack.away) {
-                *away |= pack << lane;
+            near |= (bounds.nearer & in_question) << lane;
+            for number in 0..3 {
+                feet.away[number] |= pack.away[number] << lane;
+                feet.beyond[number] |= pack.beyond[number] << lane;
             }
-            feet.inside |= pack.inside << lane;
         }
+        found.add_slopes(&leaf.triangles, slopes);
         let certain = CERTAIN * searched.error.into();
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
-            let (triangle, bit) = (leaf.triangles[lane], |lanes: u64| (lanes >> lane & 1) as u8);
+            let triangle = leaf.triangles[lane];
+            let bit = |lanes: u64| (lanes >> lane & 1) as u8;
+            let bits = |[first, second, third]: [u64; 3]| bit(first) | bit(second) << 1 | bit(third) << 2;
             // A leaf that is not full repeats its last triangle.
             if lane > 0 && leaf.triangles[lane - 1] == triangle {
                 continue;
             }
             let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
-            let away = bit(feet.away[0]) | bit(feet.away[1]) << 1 | bit(feet.away[2]) << 2;
             let is_apart = searched.radius.into() + certain < lower;
-            found.push(NearTriangle {
+            found.in_question.push(NearTriangle {
                 triangle,
                 lower: lower - certain,
                 upper,
-                away: if is_apart { away } else { 0 },
-                is_inside: bit(feet.inside) == 1,
+                away: if is_apart { bits(feet.away) } else { 0 },
+                beyond: bits(feet.beyond),
             });
         }
     }
