@@ -114,3 +114,106 @@ impl<L: Pack> LinkLanes<L> {
 fn choose<L: Pack>([first, second]: [L::Mask; 2], a: Vec3<L>, b: Vec3<L>, c: Vec3<L>) -> Vec3<L> {
     Vec3::select(first, a, Vec3::select(second, b, c))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::Scalar;
+    use crate::distance::lanes::{Lane, tests::levels};
+    use crate::proximity::mesh::Mesh;
+    use crate::proximity::placed::PlacedLink;
+    use crate::proximity::search_frame::{SearchFrame, SearchLink};
+    use crate::proximity::shared_parts::ends_of;
+    use crate::proximity::triangle_block::{BLOCK, load_vertices, place_points, place_triangle};
+    use crate::{Cap, ModifiedCylinder};
+    use continuum_testing::Random;
+    use fearless_simd::{Level, dispatch};
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// Which of a block's triangles are on a slope.
+    fn slopes_of(level: Level, searched: &SearchLink<f32>, rows: &[f32], across: &[f32]) -> u64 {
+        dispatch!(level, simd => slopes::<<f32 as Lane>::Pack<_>>(simd, searched, rows, across))
+    }
+
+    #[inline(always)]
+    fn slopes<L: Pack<Element = f32>>(
+        token: L::Token,
+        searched: &SearchLink<f32>,
+        rows: &[f32],
+        across: &[f32],
+    ) -> u64 {
+        let lanes = LinkLanes::<L>::new(token, searched);
+        let (mut slopes, error) = (0, L::splat(token, searched.error));
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let corners = load_vertices(token, rows, lane);
+            slopes |= lanes.on_slope(corners, load_vertices(token, across, lane), error) << lane;
+        }
+        slopes
+    }
+
+    /// A wall of 2 x 4 squares, cut in two, over a plane that tilts: level or steep, even or rough, with slivers or not.
+    fn wall(random: &mut Random) -> Mesh {
+        let size = [0.02, 0.3, 1.0][random.below(3) as usize];
+        let tilt = 10.0_f64.powi(-(random.below(7) as i32));
+        let (rough, thin) =
+            (tilt * [0.0, 0.1, 1.0][random.below(3) as usize], [1.0, 1e-4][random.below(2) as usize]);
+        let (slope_x, slope_y) = (random.between(-tilt, tilt), random.between(-tilt, tilt));
+        let corner = |k: u32| {
+            let (x, y) = (f64::from(k % 5) - 2.0, (f64::from(k / 5) - 1.0) * thin);
+            let (x, y) = (x + random.between(-0.3, 0.3), y + thin * random.between(-0.3, 0.3));
+            Vector::new(x, y, slope_x * x + slope_y * y + random.between(-rough, rough)) * size
+        };
+        let corners = (0..15).map(corner).collect();
+        let squares = (0..9).filter(|k| k % 5 < 4);
+        Mesh::of(corners, squares.flat_map(|k| [[k, k + 1, k + 6], [k, k + 6, k + 5]]).collect())
+    }
+
+    /// Not only is the nearest point on an edge: another triangle that has it is nearer, by more than measurements err.
+    #[test]
+    fn a_triangle_on_a_slope_has_a_nearer_neighbour() {
+        let (mut found, mut others, mut flat) = (0, 0, 0);
+        for seed in 0..6000 {
+            let mut random = Random::new(seed);
+            let mesh = wall(&mut random);
+            let caps = [Cap::Flat, Cap::Round];
+            let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
+            let size = [0.02, 0.3, 1.0][random.below(3) as usize];
+            let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0) * size) + random.point() * size;
+            let way = [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size;
+            let radius = random.between(0.0, 0.3) * size;
+            let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { continue };
+            let link = PlacedLink::new(&link, &Pose::IDENTITY);
+            let frame = SearchFrame::new(&mesh);
+            let Some(searched) = SearchLink::<f32>::new(&link, &frame) else { continue };
+            let (mut rows, mut across) = ([0.0; 9 * BLOCK], [0.0; 9 * BLOCK]);
+            for triangle in 0..BLOCK as u32 {
+                place_triangle(&frame, &mesh, triangle, &mut rows, triangle as usize);
+                place_points(&frame, mesh.corners_across(triangle), &mut across, triangle as usize);
+            }
+            for level in levels() {
+                let slopes = slopes_of(level, &searched, &rows, &across);
+                for triangle in 0..BLOCK as u32 {
+                    if slopes >> triangle & 1 == 0 {
+                        others += 1;
+                        continue;
+                    }
+                    let corners = mesh.corners(triangle);
+                    let rounding = 32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
+                    let distance = link.measure(0, corners).distance;
+                    let is_on_slope = (3..6).any(|edge| {
+                        let [from, to] = ends_of(corners, edge);
+                        let is_lower = |other: u32| {
+                            link.measure(0, mesh.corners(other)).distance + 4.0 * rounding < distance
+                        };
+                        link.measure(0, [from, to, to]).distance <= distance + rounding
+                            && mesh.parts().others(triangle, edge).any(is_lower)
+                    });
+                    assert!(is_on_slope, "{seed}, {level:?}: {triangle} at {distance}");
+                    found += 1;
+                    flat += usize::from(link.flat() != [false; 2]);
+                }
+            }
+        }
+        assert!(found > 20_000 && others > 20_000 && flat > 10_000, "{found} {others} {flat}");
+    }
+}

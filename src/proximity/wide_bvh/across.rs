@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 /// The corners beyond the edges of a leaf's triangles, in rows like those of their own corners; no numbers where an edge
 /// has no second triangle.
-type Corners<E> = [E; 9 * BLOCK];
+pub(super) type Corners<E> = [E; 9 * BLOCK];
 
 /// The corners beyond the edges of all triangles, found when a leaf is first asked for.
 #[derive(Clone)]

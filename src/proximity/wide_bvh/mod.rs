@@ -5,6 +5,7 @@ mod bound;
 mod build;
 mod engine;
 mod fit;
+mod gathering;
 mod hierarchy;
 mod joint;
 mod kept_distances;

@@ -8,15 +8,15 @@
 
 use super::across::Across;
 use super::build::WideBvh;
+use super::gathering::Gathering;
 use super::node::{Child, WIDTH};
 use crate::distance::Face;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::Work;
-use crate::proximity::feet::{CERTAIN, Feet};
 use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
+use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
@@ -63,13 +63,6 @@ enum Aim<'a, E> {
     Any(bool),
     /// Every triangle that may be within the limit.
     Every(Gathering<'a, E>),
-}
-
-/// Where triangles are gathered.
-struct Gathering<'a, E> {
-    found: &'a mut NearTriangles,
-    /// Tells which lie on a slope.
-    across: Option<&'a Across<E>>,
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -166,9 +159,12 @@ impl<E: Lane> Traversal<'_, E> {
         found: &mut NearTriangles,
     ) {
         let limit = searched.axis_limit(bound);
-        let aim = Aim::Every(Gathering { found, across });
+        let aim = Aim::Every(Gathering::new(self.level, searched, across, found));
         let mut target = Target { searched, limit, below: u32::MAX, aim };
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, &mut target, [None; 2]));
+        if let Aim::Every(gathering) = target.aim {
+            self.work.axis_distances += gathering.finish(limit);
+        }
     }
 
     #[inline(always)]
@@ -204,7 +200,10 @@ impl<E: Lane> Traversal<'_, E> {
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
                 Child::Leaf(leaf) => match &mut target.aim {
                     Aim::Every(gathering) => {
-                        self.gather_leaf(token, &lanes, leaf, target.searched, target.limit, gathering);
+                        self.work.visited += BLOCK as u64;
+                        let (leaf, corners) =
+                            (&self.tree.leaves[leaf as usize], gathering.across(leaf, self.tree, self.mesh));
+                        gathering.add(token, &lanes, leaf, corners, target.limit);
                     }
                     _ => self.visit_leaf(token, &lanes, leaf, target),
                 },
@@ -254,69 +253,6 @@ impl<E: Lane> Traversal<'_, E> {
                 place -= 1;
             }
             waiting[place] = entry;
-        }
-    }
-
-    /// Gathers the leaf's triangles that may be within the limit.
-    #[inline(always)]
-    fn gather_leaf<L: Pack<Element = E>>(
-        &mut self,
-        token: L::Token,
-        lanes: &LinkLanes<L>,
-        leaf: u32,
-        searched: &SearchLink<E>,
-        limit: E,
-        Gathering { found, across }: &mut Gathering<E>,
-    ) {
-        self.work.visited += BLOCK as u64;
-        let across = across.map(|across| across.of(leaf, self.tree, self.mesh));
-        let leaf = &self.tree.leaves[leaf as usize];
-        let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
-        let (mut near, mut slopes, mut feet) = (0, 0, Feet { away: [0; 3], beyond: [0; 3] });
-        let (limit, error) = (L::splat(token, limit), L::splat(token, searched.error));
-        for lane in (0..BLOCK).step_by(L::LANES) {
-            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            let mut in_question = lanes.not_behind_plane(vertices, limit);
-            if let Some(across) = across.filter(|_| in_question != 0) {
-                let across = load_vertices::<L>(token, across, lane);
-                let on_slope = in_question & lanes.on_slope(vertices, across, error);
-                slopes |= on_slope << lane;
-                in_question &= !on_slope;
-            }
-            if in_question == 0 {
-                continue;
-            }
-            self.work.axis_distances += L::LANES as u64;
-            let (bounds, pack) = lanes.nearer_and_feet(vertices, limit, error);
-            bounds.lower.store(&mut lower[lane..]);
-            bounds.upper.store(&mut upper[lane..]);
-            near |= (bounds.nearer & in_question) << lane;
-            for number in 0..3 {
-                feet.away[number] |= pack.away[number] << lane;
-                feet.beyond[number] |= pack.beyond[number] << lane;
-            }
-        }
-        found.add_slopes(&leaf.triangles, slopes);
-        let certain = CERTAIN * searched.error.into();
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
-            let triangle = leaf.triangles[lane];
-            let bit = |lanes: u64| (lanes >> lane & 1) as u8;
-            let bits = |[first, second, third]: [u64; 3]| bit(first) | bit(second) << 1 | bit(third) << 2;
-            // A leaf that is not full repeats its last triangle.
-            if lane > 0 && leaf.triangles[lane - 1] == triangle {
-                continue;
-            }
-            let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
-            let is_apart = searched.radius.into() + certain < lower;
-            found.in_question.push(NearTriangle {
-                triangle,
-                lower: lower - certain,
-                upper,
-                away: if is_apart { bits(feet.away) } else { 0 },
-                beyond: bits(feet.beyond),
-            });
         }
     }
 
