@@ -70,7 +70,8 @@ const NONE: u32 = u32::MAX;
 pub(super) struct LocalMinima {
     /// The triangles that may be within the margin of one link.
     triangles: NearTriangles,
-    /// For each of them that is in question its place among those within the margin, counted from 1, or that of all that are left out.
+    /// For each of them that is in question its place among those within the margin, counted from 1, or that of all that
+    /// are left out.
     places: Vec<u32>,
     /// For each triangle of the mesh where it stands among those in question, if it does.
     index_of: Vec<u32>,
