@@ -179,8 +179,10 @@ mod tests {
             let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
             let size = [0.02, 0.3, 1.0][random.below(3) as usize];
             let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0) * size) + random.point() * size;
-            let way = [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size;
-            let radius = random.between(0.0, 0.3) * size;
+            // A short link near a large triangle is where the way to it turns most.
+            let long = [1.0, 0.1, 0.01][random.below(3) as usize];
+            let way = [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size * long;
+            let radius = random.between(0.0, 0.3) * size * long;
             let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { continue };
             let link = PlacedLink::new(&link, &Pose::IDENTITY);
             let frame = SearchFrame::new(&mesh);
@@ -214,6 +216,6 @@ mod tests {
                 }
             }
         }
-        assert!(found > 20_000 && others > 20_000 && flat > 10_000, "{found} {others} {flat}");
+        assert!(found > 10_000 && others > 20_000 && flat > 5000, "{found} {others} {flat}");
     }
 }
