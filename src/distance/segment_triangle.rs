@@ -32,8 +32,8 @@ pub(crate) struct AxisTriangle<T> {
     pub s: T,
     /// The closest point of the triangle.
     pub on_triangle: Vec3<T>,
-    /// The squared distance of the triangle's edges alone.
-    pub edges_squared: T,
+    /// The squared distances of the triangle's edges, from the face's first vertex on.
+    pub edges_squared: [T; 3],
 }
 
 impl<T: Scalar> AxisTriangle<T> {
@@ -65,8 +65,9 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let (zero, one) = (end.x.zero(), end.x.one());
     let [a, b, c] = face.vertices;
     // Case 3.
-    let nearest = edge(end, a, b).nearer(edge(end, b, c)).nearer(edge(end, c, a));
-    let nearest = AxisTriangle { edges_squared: nearest.squared, ..nearest };
+    let (ab, bc, ca) = (edge(end, a, b), edge(end, b, c), edge(end, c, a));
+    let edges_squared = [ab.squared, bc.squared, ca.squared];
+    let nearest = AxisTriangle { edges_squared, ..ab.nearer(bc).nearer(ca) };
     // Case 2.
     let (low, high) = (face.project(Vec3::zero(zero)), face.project(end));
     let nearest = nearest
@@ -76,7 +77,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let (from, to) = (-face.across.dot(a), face.across.dot(end - a));
     let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
-    let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: zero };
+    let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: [zero; 3] };
     nearest.nearer_where(opposite & face.holds_point(end * s), pierced)
 }
 
@@ -88,7 +89,7 @@ fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> 
         squared: found.gap.norm_squared(),
         s: found.s,
         on_triangle: from.along(to - from, found.t),
-        edges_squared: found.gap.norm_squared(),
+        edges_squared: [found.gap.norm_squared(); 3],
     }
 }
 
@@ -96,5 +97,5 @@ fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> 
 #[inline(always)]
 fn above<T: Scalar>(face: &Face<T>, s: T, foot: &Projection<T>) -> AxisTriangle<T> {
     let squared = foot.residual.norm_squared();
-    AxisTriangle { squared, s, on_triangle: face.at(foot.alpha, foot.beta), edges_squared: squared }
+    AxisTriangle { squared, s, on_triangle: face.at(foot.alpha, foot.beta), edges_squared: [squared; 3] }
 }

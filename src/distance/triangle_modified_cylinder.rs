@@ -78,8 +78,8 @@ pub(crate) struct Axial<T: Scalar> {
     pub s: T,
     /// p*, the triangle's point.
     pub on_triangle: Vec3<T>,
-    /// The squared distance between the axis and the triangle's edges.
-    pub edges_squared: T,
+    /// The squared distances between the axis and the triangle's edges, from the face's first vertex on.
+    pub edges_squared: [T; 3],
     /// Whether the disc at the start, or at the end, decides (case 2).
     pub at_flat: [T::Mask; 2],
 }

@@ -43,8 +43,9 @@ use crate::distance::{Axial, Face, Scalar, Vec3};
 pub(super) struct Feet {
     /// Where each corner certainly has no share in the nearest point.
     pub away: [u64; 3],
-    /// Where all edges are certainly farther than the nearest point, by more than the rounding of measured distances.
-    pub inside: u64,
+    /// Where each edge is certainly farther than the nearest point, by more than the rounding of measured distances: the
+    /// edges from the first corner to the second, from the second to the third and from the third to the first.
+    pub beyond: [u64; 3],
 }
 
 /// How many times the link's `error` two computed axis distances differ if the measured distances certainly differ, by
@@ -63,8 +64,14 @@ impl<L: Pack> LinkLanes<L> {
         let away = self.corners_away(corners, &axial, error);
         // Of what may touch, all is equally near.
         let is_apart = (self.link.radius + certain).lt(nearer.lower);
-        let is_inside = is_apart & (nearer.upper + certain).lt(axial.edges_squared.sqrt());
-        (nearer, Feet { away, inside: L::bits(is_inside) })
+        let upper = nearer.upper + certain;
+        let [first, second, third] = Face::in_order_of(corners, axial.edges_squared);
+        let beyond = [
+            L::bits(is_apart & upper.lt(first.sqrt())),
+            L::bits(is_apart & upper.lt(second.sqrt())),
+            L::bits(is_apart & upper.lt(third.sqrt())),
+        ];
+        (nearer, Feet { away, beyond })
     }
 
     #[inline(always)]
@@ -131,7 +138,7 @@ mod tests {
 
     /// The feet of a block of triangles.
     fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[E]) -> [Feet; BLOCK] {
-        let mut feet = [(); BLOCK].map(|()| Feet { away: [0; 3], inside: 0 });
+        let mut feet = [(); BLOCK].map(|()| Feet { away: [0; 3], beyond: [0; 3] });
         dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
         feet
     }
@@ -151,15 +158,15 @@ mod tests {
         for lane in (0..BLOCK).step_by(L::LANES) {
             let (_, pack) = lanes.nearer_and_feet(load_vertices(token, rows, lane), far, error);
             for place in 0..L::LANES {
-                feet[lane + place] =
-                    Feet { away: pack.away.map(|away| away >> place & 1), inside: pack.inside >> place & 1 };
+                let lowest = |lanes: [u64; 3]| lanes.map(|lanes| lanes >> place & 1);
+                feet[lane + place] = Feet { away: lowest(pack.away), beyond: lowest(pack.beyond) };
             }
         }
     }
 
-    /// What was certain: that the nearest point lies on an edge, on a corner, or on none of the edges.
+    /// What was certain: that the nearest point lies on an edge, on a corner, or not on an edge; the last for each edge.
     #[derive(Debug, Default)]
-    struct Census([usize; 3]);
+    struct Census([usize; 5]);
 
     fn judge<E: Lane>(seed: u64, census: &mut Census) {
         let mut random = Random::new(seed);
@@ -197,13 +204,13 @@ mod tests {
                     assert!(beyond <= rounding, "{seed}, {level:?}, {lane}: {beyond} at {part}");
                     census.0[usize::from(part < 3)] += 1;
                 }
-                if feet.inside == 1 {
-                    let edges = to_part(3).min(to_part(4)).min(to_part(5));
+                for edge in (0..3).filter(|&edge| feet.beyond[edge] == 1) {
+                    let to_edge = to_part(3 + edge);
                     assert!(
-                        edges > distance + 4.0 * rounding,
-                        "{seed}, {level:?}, {lane}: {edges} {distance}"
+                        to_edge > distance + 4.0 * rounding,
+                        "{seed}, {level:?}, {lane}: {to_edge} {distance} at {edge}"
                     );
-                    census.0[2] += 1;
+                    census.0[2 + edge] += 1;
                 }
             }
         }

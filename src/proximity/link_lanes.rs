@@ -46,6 +46,11 @@ impl<L: Pack> LinkLanes<L> {
         }
     }
 
+    #[inline(always)]
+    pub(super) fn has_flat_cap(&self) -> bool {
+        self.has_flat_cap
+    }
+
     /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
     #[inline(always)]
     pub(super) fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {

@@ -37,13 +37,13 @@
 //!
 //! # What need not be measured
 //! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and that
-//! one is nearer by far more than 2 t. The search can tell so (`feet`). Such a triangle D is *left out*: at d(D) it joins
-//! a piece whose minimum is nearer by far more than 2 t, so that no piece ever ends for being that of D. For the
-//! others it still counts where they join it. A piece that has an f with D, and d(f) at most 2 t above its own minimum,
+//! one is nearer by far more than 2 t. The search can tell so, from a look at the neighbour (`slopes`) or from all that it
+//! found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far more than 2 t,
+//! so that no piece ever ends for being that of D. For the others it still counts where they join it. A piece that has an f with D, and d(f) at most 2 t above its own minimum,
 //! ends there: d(f) >= d(D), so that the minimum of D's piece is the nearer one. Which piece D is part of
 //! makes no difference, and all that are left out are taken for one, nearer than any.
 //!
-//! A triangle whose edges are certainly all farther than its nearest point joins nothing that is nearer.
+//! At an edge or a corner that is certainly farther than its nearest point a triangle joins nothing that is nearer.
 //!
 //! # Where link and wall overlap
 //! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its triangles the one
@@ -52,9 +52,9 @@
 use super::contact::Contact;
 use super::measure_lanes::measure_each;
 use super::mesh::Mesh;
-use super::near_triangle::NearTriangle;
+use super::near_triangle::NearTriangles;
 use super::placed::{Nearest, PlacedLink, PlacedRobot};
-use super::shared_parts::ends_of;
+use super::shared_parts::{PARTS, SharedParts, ends_of};
 use crate::distance::Scalar;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -69,17 +69,18 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Default)]
 pub(super) struct LocalMinima {
     /// The triangles that may be within the margin of one link.
-    triangles: Vec<NearTriangle>,
+    triangles: NearTriangles,
+    /// For each of them that is in question its place among those within the margin, counted from 1, or that of all that
+    /// are left out.
+    places: Vec<u32>,
+    /// For each triangle of the mesh where it stands among those in question, if it does.
+    index_of: Vec<u32>,
     /// Those that are measured.
     measured: Vec<u32>,
     /// Those within the margin, nearest first.
     near: Vec<Ranked>,
-    /// For each of them, counted from 1, an earlier one of the same piece, or itself.
+    /// For each place an earlier one of the same piece, or itself.
     piece: Vec<u32>,
-    /// What is known of each corner and edge.
-    parts: Vec<Part>,
-    /// The link for which it is known, counted through all queries.
-    turn: u64,
 }
 
 /// A triangle within the margin.
@@ -90,19 +91,6 @@ struct Ranked {
     nearest: Nearest,
     /// What rounding can do to the distance.
     rounding: Real,
-    known: NearTriangle,
-}
-
-/// A corner or an edge of triangles that may be within the margin of a link.
-#[derive(Clone, Copy)]
-struct Part {
-    turn: u64,
-    /// The least upper bound of their distances, as the search counts them.
-    upper: Real,
-    /// The least lower bound of those that are left out.
-    left_out: Real,
-    /// The nearest of the others so far.
-    first: u32,
 }
 
 /// The contacts of a robot, link by link, in `out`.
@@ -118,11 +106,7 @@ pub(super) struct RobotContacts<'a> {
 impl RobotContacts<'_> {
     /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
     /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
-    pub(super) fn add(
-        &mut self,
-        number: usize,
-        near: impl FnOnce(&PlacedLink, &mut Vec<NearTriangle>),
-    ) -> u64 {
+    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut NearTriangles)) -> u64 {
         let link = self.robot.link(number);
         self.minima.triangles.clear();
         near(&link, &mut self.minima.triangles);
@@ -145,15 +129,12 @@ impl LocalMinima {
     ) -> impl Iterator<Item = &Nearest> {
         self.leave_out(mesh);
         self.near.clear();
-        let mut known = self.triangles.iter();
         measure_each(level, link, mesh, &self.measured, |nearest| {
-            let Some(known) = known.find(|known| known.triangle == nearest.triangle) else { return };
             if nearest.distance <= margin {
                 let corners = mesh.corners(nearest.triangle);
                 let touches = nearest.distance <= 0.0;
                 let rank = if touches { link.axis_depth(corners).min(0.0) } else { nearest.distance };
-                let rounding = rounding(link, corners);
-                self.near.push(Ranked { rank, nearest, rounding, known: *known });
+                self.near.push(Ranked { rank, nearest, rounding: rounding(link, corners) });
             }
         });
         let order = |a: &Ranked, b: &Ranked| {
@@ -162,6 +143,9 @@ impl LocalMinima {
         self.near.sort_unstable_by(order);
         self.piece.clear();
         self.piece.push(LEFT_OUT);
+        for (place, ranked) in (1..).zip(&self.near) {
+            self.places[self.index_of[ranked.nearest.triangle as usize] as usize] = place;
+        }
         for place in 1..=self.near.len() {
             self.join(link, mesh, place as u32);
         }
@@ -172,65 +156,73 @@ impl LocalMinima {
     /// Leaves out the triangles that certainly lie on a slope towards a nearer one.
     fn leave_out(&mut self, mesh: &Mesh) {
         self.measured.clear();
-        if self.triangles.is_empty() {
+        self.places.clear();
+        let triangles = &self.triangles.in_question;
+        if triangles.is_empty() {
             return;
         }
-        self.turn += 1;
-        let (shared, turn) = (mesh.parts(), self.turn);
-        let unknown = Part { turn: 0, upper: Real::INFINITY, left_out: Real::INFINITY, first: NONE };
-        self.parts.resize(shared.count(), unknown);
-        for known in &self.triangles {
-            for &part in shared.of(known.triangle) {
-                let part = &mut self.parts[part as usize];
-                if part.turn != turn {
-                    *part = Part { turn, ..unknown };
-                }
-                part.upper = part.upper.min(known.upper);
+        // What stands there of earlier links does no harm: see `index`.
+        self.index_of.resize(mesh.len(), 0);
+        for (index, known) in (0..).zip(triangles) {
+            self.index_of[known.triangle as usize] = index;
+        }
+        let shared = mesh.parts();
+        for known in triangles {
+            let is_left_out = known.foot().is_some_and(|foot| {
+                let mut others = shared.others(known.triangle, foot);
+                others
+                    .any(|other| self.index(other).is_some_and(|other| triangles[other].upper < known.lower))
+            });
+            self.places.push(if is_left_out { LEFT_OUT } else { NONE });
+            if !is_left_out {
+                self.measured.push(known.triangle);
             }
         }
-        let (parts, measured) = (&mut self.parts, &mut self.measured);
-        self.triangles.retain(|known| {
-            let shared = shared.of(known.triangle);
-            let nearest_at = |foot: usize| parts[shared[foot] as usize].upper;
-            let is_left_out = known.foot().is_some_and(|foot| nearest_at(foot) < known.lower);
-            if is_left_out {
-                for &part in shared {
-                    let least = &mut parts[part as usize].left_out;
-                    *least = least.min(known.lower);
-                }
-            } else {
-                measured.push(known.triangle);
-            }
-            !is_left_out
-        });
+    }
+
+    /// Where a triangle stands among those in question.
+    #[inline(always)]
+    fn index(&self, triangle: u32) -> Option<usize> {
+        let index = self.index_of[triangle as usize] as usize;
+        self.triangles.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
     /// Joins a triangle with the pieces that nearer ones have made.
     fn join(&mut self, link: &PlacedLink, mesh: &Mesh, place: u32) {
-        let Ranked { nearest, rounding: own_rounding, known, .. } = self.near[place as usize - 1];
         self.piece.push(place);
+        let Ranked { nearest, rounding: own_rounding, .. } = self.near[place as usize - 1];
+        let Some(index) = self.index(nearest.triangle) else { return };
+        let (known, shared) = (self.triangles.in_question[index], mesh.parts());
         let corners = mesh.corners(nearest.triangle);
-        // The corners and edges that nearer triangles have, each by its two ends, and whether it holds the least point.
-        let (mut met, mut count) = ([([Vector::ZERO; 2], LEFT_OUT, false); 12], 0);
-        for (number, &part) in mesh.parts().of(nearest.triangle).iter().enumerate() {
-            let part = &mut self.parts[part as usize];
-            // An edge or a corner of what is certainly farther is itself farther.
-            let meets_left_out = part.left_out < known.upper;
-            let others = [meets_left_out.then_some(LEFT_OUT), (part.first != NONE).then_some(part.first)];
-            part.first = part.first.min(place);
-            if known.is_inside || others == [None; 2] {
+        // Whom it meets at its corners and edges, and whether at its least point.
+        let (mut met, mut count) = ([(0, LEFT_OUT, false); 2 * PARTS], 0);
+        for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
+            let (mut may_meet_left_out, mut first) = (false, NONE);
+            for other in shared.others(nearest.triangle, part) {
+                let place_of_other = self.index(other).map(|index| (index, self.places[index]));
+                match place_of_other {
+                    // An edge or a corner of what is certainly farther is itself farther.
+                    Some((other, LEFT_OUT)) => {
+                        may_meet_left_out |= self.triangles.in_question[other].lower < known.upper;
+                    }
+                    Some((_, other)) if other < place => first = first.min(other),
+                    Some(_) => {}
+                    None => may_meet_left_out |= self.triangles.has_slopes(),
+                }
+            }
+            let others = [may_meet_left_out.then_some(LEFT_OUT), (first != NONE).then_some(first)];
+            if others == [None; 2] {
                 continue;
             }
-            let ends = ends_of(corners, number);
-            let holds_least_point = is_on(nearest.on_mesh, ends, own_rounding);
+            let holds_least_point = is_on(nearest.on_mesh, ends_of(corners, part), own_rounding);
             for with in others.into_iter().flatten() {
-                met[count] = (ends, with, holds_least_point);
+                met[count] = (part, with, holds_least_point);
                 count += 1;
             }
         }
         // Those that hold its least point come first: they are met at its own distance.
         for met_there in [true, false] {
-            for &([from, to], with, holds_least_point) in &met[..count] {
+            for &(part, with, holds_least_point) in &met[..count] {
                 if holds_least_point != met_there {
                     continue;
                 }
@@ -238,13 +230,25 @@ impl LocalMinima {
                 if mine == other {
                     continue;
                 }
+                let [from, to] = ends_of(corners, part);
                 let farther = self.grown(mine).max(self.grown(other)) + rounding(link, [from, to, to]);
-                if nearest.distance <= farther && (met_there || link.comes_within(farther, from, to)) {
+                if nearest.distance <= farther
+                    && (met_there || link.comes_within(farther, from, to))
+                    && (with != LEFT_OUT || self.is_left_out_there(shared, nearest.triangle, part))
+                {
                     // The piece appeared where the nearer one did.
                     self.piece[mine.max(other) as usize] = mine.min(other);
                 }
             }
         }
+    }
+
+    /// Whether another triangle that has a part of a triangle is left out.
+    fn is_left_out_there(&self, shared: &SharedParts, triangle: u32, part: usize) -> bool {
+        shared.others(triangle, part).any(|other| match self.index(other) {
+            Some(index) => self.places[index] == LEFT_OUT,
+            None => self.triangles.is_on_slope(other),
+        })
     }
 
     /// How far the wall can rise from where a piece appeared before it has grown.
@@ -277,7 +281,9 @@ pub(crate) fn contacts_by_all_triangles(
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
-            near.extend((0..mesh.len() as u32).filter(may_meet).map(NearTriangle::unknown));
+            near.in_question.extend(
+                (0..mesh.len() as u32).filter(may_meet).map(super::near_triangle::NearTriangle::unknown),
+            );
         });
     }
 }

@@ -6,7 +6,7 @@ use super::parallel::each;
 use super::shared_parts::SharedParts;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::TriMesh;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Vertices and triangles.
 #[derive(Clone)]
@@ -15,8 +15,10 @@ pub(crate) struct Mesh {
     indices: Vec<[u32; 3]>,
     /// The vertices that triangles use, unless all are used.
     used: Option<Vec<u32>>,
-    /// For those who ask which triangles are joined, counted at the first question.
-    parts: OnceLock<SharedParts>,
+    /// For those who ask which triangles are joined, found at the first question.
+    parts: OnceLock<Arc<SharedParts>>,
+    /// What they were before the vertices moved.
+    parts_before: Option<Arc<SharedParts>>,
 }
 
 impl Mesh {
@@ -41,7 +43,7 @@ impl Mesh {
         let used = (!is_used.iter().all(|&is_used| is_used)).then(|| {
             (0..).zip(&is_used).filter(|(_, is_used)| **is_used).map(|(vertex, _)| vertex).collect()
         });
-        Self { vertices, indices, used, parts: OnceLock::new() }
+        Self { vertices, indices, used, parts: OnceLock::new(), parts_before: None }
     }
 
     /// Whether the vertices can move there.
@@ -59,9 +61,8 @@ impl Mesh {
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         let shares = self.vertices.chunks_mut(Mesh::SHARE).zip(vertices.chunks(Mesh::SHARE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
-        if self.parts.get().is_some_and(|parts| !parts.stay(vertices)) {
-            self.parts.take();
-        }
+        // Whether they stay the same is for those to find out who ask.
+        self.parts_before = self.parts.take().or(self.parts_before.take());
     }
 
     #[cfg(feature = "gpu")]
@@ -87,7 +88,18 @@ impl Mesh {
 
     /// The corners and edges that triangles share.
     pub(super) fn parts(&self) -> &SharedParts {
-        self.parts.get_or_init(|| SharedParts::new(&self.vertices, &self.indices))
+        self.parts.get_or_init(|| {
+            let before = self.parts_before.as_ref().filter(|before| before.stay(&self.vertices));
+            before.map_or_else(|| Arc::new(SharedParts::new(&self.vertices, &self.indices)), Arc::clone)
+        })
+    }
+
+    /// For each edge of a triangle the third corner of another that has it; not a number where there is none.
+    pub(super) fn corners_across(&self, triangle: u32) -> [Vector; 3] {
+        [3, 4, 5].map(|edge| {
+            let across = self.parts().across(triangle, edge);
+            across.map_or(Vector::NAN, |(other, corner)| self.corners(other)[corner])
+        })
     }
 
     /// The largest coordinate of a triangle.

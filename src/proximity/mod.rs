@@ -5,11 +5,11 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `engine` | what every engine answers: the trait [`Proximity`] |
-//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `traverse` finds the nearest triangle of a link, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `minimum` finds the closest of them, `joint` parts robot and mesh together, `kept_distances` knows what still holds after a small motion, `outline` how far it was and `widening` how far to look for the next, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `winding` sums up how the mesh winds around a point, `engine`, `tube_engine`, `motion_engine` and `side_engine` are [`BvhSearch`] |
+//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `across` knows the neighbours of a leaf's triangles, `traverse` finds the nearest triangle of a link, `gathering` collects all within a margin, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `minimum` finds the closest of them, `joint` parts robot and mesh together, `kept_distances` knows what still holds after a small motion, `outline` how far it was and `widening` how far to look for the next, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `winding` sums up how the mesh winds around a point, `engine`, `tube_engine`, `motion_engine` and `side_engine` are [`BvhSearch`] |
 //! | `tube/` | a tube in the mesh's frame: its pieces, convex bodies around them, points that are in it |
 //! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `pass` goes through a query's links, `engine` is [`Exhaustive`] |
 //! | `link_lanes` | a link against a pack of triangles, in the precision of the search |
-//! | `feet` | where on a pack of triangles the nearest points can lie, in the precision of the search |
+//! | `slopes`, `feet` | which of a pack of triangles lie on a slope towards a neighbour, and where on them the nearest points can lie, in the precision of the search |
 //! | `search_frame` | mesh and links near one, in the precision of the search, and what rounding can do there |
 //! | `triangle_block` | how triangles stand in memory, to be loaded in packs |
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
@@ -50,6 +50,7 @@ mod search_frame;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
 mod shared_parts;
+mod slopes;
 mod triangle_block;
 mod tube;
 mod wide_bvh;

@@ -1,7 +1,17 @@
-//! What a search tells of a triangle that may be within a margin of a link, before it is measured.
+//! What a search tells of the triangles that may be within a margin of a link, before they are measured.
 
 use super::shared_parts::PART_WITHOUT;
+use super::triangle_block::BLOCK;
 use parry3d_f64::math::Real;
+
+/// The triangles that may be within a margin of a link.
+#[derive(Clone, Default)]
+pub(super) struct NearTriangles {
+    /// Those that may hold a local minimum.
+    pub in_question: Vec<NearTriangle>,
+    /// Those that certainly lie on a slope.
+    slopes: Vec<Slopes>,
+}
 
 /// A triangle that may be within a margin of a link.
 #[derive(Clone, Copy)]
@@ -12,19 +22,60 @@ pub(super) struct NearTriangle {
     pub upper: Real,
     /// One bit for each corner that certainly has no share in the nearest point.
     pub away: u8,
-    /// Whether all edges are certainly farther than the nearest point, by more than the rounding of both distances.
-    pub is_inside: bool,
+    /// One bit for each edge, from the one between the first corners on, that is certainly farther than the nearest
+    /// point, by more than the rounding of both distances.
+    pub beyond: u8,
+}
+
+/// Those of a block that lie on a slope.
+#[derive(Clone, Copy)]
+struct Slopes {
+    triangles: [u32; BLOCK],
+    /// One bit for each that does.
+    lanes: u64,
+}
+
+impl NearTriangles {
+    pub(super) fn clear(&mut self) {
+        self.in_question.clear();
+        self.slopes.clear();
+    }
+
+    /// Adds those of a block that certainly lie on a slope, one bit for each.
+    pub(super) fn add_slopes(&mut self, triangles: &[u32; BLOCK], lanes: u64) {
+        if lanes != 0 {
+            self.slopes.push(Slopes { triangles: *triangles, lanes });
+        }
+    }
+
+    pub(super) fn has_slopes(&self) -> bool {
+        !self.slopes.is_empty()
+    }
+
+    /// Whether a triangle certainly lies on a slope.
+    pub(super) fn is_on_slope(&self, triangle: u32) -> bool {
+        self.slopes.iter().any(|slopes| {
+            let mut lanes = slopes.triangles.iter().enumerate();
+            lanes.any(|(lane, &other)| other == triangle && slopes.lanes >> lane & 1 == 1)
+        })
+    }
 }
 
 impl NearTriangle {
     /// A triangle of which nothing is known.
     pub(super) fn unknown(triangle: u32) -> Self {
         let everywhere = Real::INFINITY;
-        Self { triangle, lower: -everywhere, upper: everywhere, away: 0, is_inside: false }
+        Self { triangle, lower: -everywhere, upper: everywhere, away: 0, beyond: 0 }
     }
 
     /// The corner or edge on which the nearest point certainly lies, if there is one.
     pub(super) fn foot(&self) -> Option<usize> {
         PART_WITHOUT[self.away as usize].map(usize::from)
+    }
+
+    /// Whether a corner or an edge is certainly farther than the nearest point. A corner is where one of its edges is.
+    pub(super) fn is_beyond(&self, part: usize) -> bool {
+        let edge = |number: usize| self.beyond >> (number % 3) & 1 == 1;
+        if part < 3 { edge(part) || edge(part + 2) } else { edge(part) }
     }
 }

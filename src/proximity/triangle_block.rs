@@ -4,6 +4,7 @@ use super::mesh::Mesh;
 use super::search_frame::SearchFrame;
 use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
+use parry3d_f64::math::Vector;
 
 /// How many triangles stand together: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
@@ -16,10 +17,15 @@ pub(super) fn place_triangle<E: Lane>(
     rows: &mut [E],
     lane: usize,
 ) {
-    for (corner, point) in mesh.corners(triangle).into_iter().enumerate() {
+    place_points(frame, mesh.corners(triangle), rows, lane);
+}
+
+/// Writes three points into a lane of a block.
+pub(super) fn place_points<E: Lane>(frame: &SearchFrame, points: [Vector; 3], rows: &mut [E], lane: usize) {
+    for (number, point) in points.into_iter().enumerate() {
         let point: [E; 3] = frame.point(point).into();
         for (axis, value) in point.into_iter().enumerate() {
-            rows[(3 * corner + axis) * BLOCK + lane] = value;
+            rows[(3 * number + axis) * BLOCK + lane] = value;
         }
     }
 }

@@ -170,7 +170,7 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         let mut contacts = RobotContacts { level, mesh: &triangles.mesh, robot, margin, minima, out };
         for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
             let triangles = pairs.iter().map(|pair| NearTriangle::unknown(pair.1));
-            work.measured += contacts.add(pairs[0].0, |_, near| near.extend(triangles));
+            work.measured += contacts.add(pairs[0].0, |_, near| near.in_question.extend(triangles));
         }
         Ok(())
     }

@@ -1,12 +1,13 @@
 //! A mesh's hierarchies and the search through them for one convex piece, in the precision that resolves it.
 
+use super::across::Across;
 use super::build::WideBvh;
 use super::joint::{JointSearch, Pairs};
 use super::traverse::{Stack, Traversal};
 use super::winding::FarFields;
 use crate::proximity::Work;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::NearTriangle;
+use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
@@ -20,6 +21,8 @@ pub(super) struct Hierarchy {
     /// The largest coordinate of a triangle.
     pub reach: Real,
     single: WideBvh<f32>,
+    /// For those who ask for contacts, begun at the first question.
+    across: OnceLock<Across<f32>>,
     /// For links that single precision does not resolve, built when the first of them comes.
     double: OnceLock<WideBvh<f64>>,
     /// For those who ask on which side of the mesh a point is, built at the first question.
@@ -30,6 +33,7 @@ impl Hierarchy {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
         Self {
             single: WideBvh::new(level, &mesh),
+            across: OnceLock::new(),
             double: OnceLock::new(),
             far_fields: OnceLock::new(),
             reach: mesh.reach(),
@@ -64,6 +68,9 @@ impl Hierarchy {
         self.reach = self.mesh.reach();
         self.far_fields.take();
         self.single.refit(level, &self.mesh);
+        if let Some(across) = self.across.get_mut() {
+            across.forget();
+        }
         if let Some(double) = self.double.get_mut() {
             double.refit(level, &self.mesh);
         }
@@ -179,12 +186,17 @@ impl MeshSearch<'_> {
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.
-    pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut Vec<NearTriangle>) {
+    pub(super) fn within(&mut self, link: &PlacedLink, bound: Real, found: &mut NearTriangles) {
+        let Hierarchy { mesh, single, across, .. } = self.hierarchy;
         match self.hierarchy.searched(self.level, link) {
-            Searched::Single(searched) => self.single().within(&searched, bound, found),
-            Searched::Double(searched) => self.double().within(&searched, bound, found),
+            Searched::Single(searched) => {
+                let across = across.get_or_init(|| Across::new(single));
+                self.single().within(&searched, bound, Some(across), found);
+            }
+            // Such links are rare: they do without the corners beyond the edges.
+            Searched::Double(searched) => self.double().within(&searched, bound, None, found),
             Searched::OutOfReach => {
-                found.extend((0..self.hierarchy.mesh.len() as u32).map(NearTriangle::unknown))
+                found.in_question.extend((0..mesh.len() as u32).map(NearTriangle::unknown))
             }
         }
     }

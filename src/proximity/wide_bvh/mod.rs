@@ -1,9 +1,11 @@
 //! Search through a hierarchy 16 children wide, a pack of them at a time.
 
+mod across;
 mod bound;
 mod build;
 mod engine;
 mod fit;
+mod gathering;
 mod hierarchy;
 mod joint;
 mod kept_distances;

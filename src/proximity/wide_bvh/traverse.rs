@@ -6,16 +6,17 @@
 //! only win if its own lower bound is below u + 2 e. Such candidates are put off: at the end the few that are left are
 //! measured in double precision.
 
+use super::across::Across;
 use super::build::WideBvh;
+use super::gathering::Gathering;
 use super::node::{Child, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
-use crate::proximity::feet::{CERTAIN, Feet};
 use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::NearTriangle;
+use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
@@ -50,10 +51,10 @@ struct Target<'a, E> {
     limit: E,
     /// What its number must be below.
     below: u32,
-    aim: Aim<'a>,
+    aim: Aim<'a, E>,
 }
 
-enum Aim<'a> {
+enum Aim<'a, E> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
@@ -61,7 +62,7 @@ enum Aim<'a> {
     /// Whether any triangle may be within the limit.
     Any(bool),
     /// Every triangle that may be within the limit.
-    Every(&'a mut Vec<NearTriangle>),
+    Every(Gathering<'a, E>),
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -148,11 +149,22 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Aim::Any(true))
     }
 
-    /// Adds to `found` every triangle that may be at most `bound` from the link.
-    pub(super) fn within(&mut self, searched: &SearchLink<E>, bound: f64, found: &mut Vec<NearTriangle>) {
+    /// Adds to `found` every triangle that may be at most `bound` from the link. `across` tells which lie on a slope; it
+    /// is for single precision.
+    pub(super) fn within(
+        &mut self,
+        searched: &SearchLink<E>,
+        bound: f64,
+        across: Option<&Across<E>>,
+        found: &mut NearTriangles,
+    ) {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Every(found) };
+        let aim = Aim::Every(Gathering::new(self.level, searched, across, found));
+        let mut target = Target { searched, limit, below: u32::MAX, aim };
         self.search(&mut target, [None; 2]);
+        if let Aim::Every(gathering) = target.aim {
+            self.work.axis_distances += gathering.finish(limit);
+        }
     }
 
     #[inline(never)] // compiled for each instruction set, not for each aim as well
@@ -192,8 +204,11 @@ impl<E: Lane> Traversal<'_, E> {
                 Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
                 Child::Leaf(leaf) => match &mut target.aim {
-                    Aim::Every(found) => {
-                        self.gather_leaf(token, &lanes, leaf, target.searched, target.limit, found);
+                    Aim::Every(gathering) => {
+                        self.work.visited += BLOCK as u64;
+                        let (leaf, corners) =
+                            (&self.tree.leaves[leaf as usize], gathering.across(leaf, self.tree, self.mesh));
+                        gathering.add(token, &lanes, leaf, corners, target.limit);
                     }
                     _ => self.visit_leaf(token, &lanes, leaf, target),
                 },
@@ -243,59 +258,6 @@ impl<E: Lane> Traversal<'_, E> {
                 place -= 1;
             }
             waiting[place] = entry;
-        }
-    }
-
-    /// Gathers the leaf's triangles that may be within the limit.
-    #[inline(always)]
-    fn gather_leaf<L: Pack<Element = E>>(
-        &mut self,
-        token: L::Token,
-        lanes: &LinkLanes<L>,
-        leaf: u32,
-        searched: &SearchLink<E>,
-        limit: E,
-        found: &mut Vec<NearTriangle>,
-    ) {
-        self.work.visited += BLOCK as u64;
-        let leaf = &self.tree.leaves[leaf as usize];
-        let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
-        let (mut near, mut feet) = (0, Feet { away: [0; 3], inside: 0 });
-        let (limit, error) = (L::splat(token, limit), L::splat(token, searched.error));
-        for lane in (0..BLOCK).step_by(L::LANES) {
-            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.not_behind_plane(vertices, limit) == 0 {
-                continue;
-            }
-            self.work.axis_distances += L::LANES as u64;
-            let (bounds, pack) = lanes.nearer_and_feet(vertices, limit, error);
-            bounds.lower.store(&mut lower[lane..]);
-            bounds.upper.store(&mut upper[lane..]);
-            near |= bounds.nearer << lane;
-            for (away, pack) in feet.away.iter_mut().zip(pack.away) {
-                *away |= pack << lane;
-            }
-            feet.inside |= pack.inside << lane;
-        }
-        let certain = CERTAIN * searched.error.into();
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
-            let (triangle, bit) = (leaf.triangles[lane], |lanes: u64| (lanes >> lane & 1) as u8);
-            // A leaf that is not full repeats its last triangle.
-            if lane > 0 && leaf.triangles[lane - 1] == triangle {
-                continue;
-            }
-            let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
-            let away = bit(feet.away[0]) | bit(feet.away[1]) << 1 | bit(feet.away[2]) << 2;
-            let is_apart = searched.radius.into() + certain < lower;
-            found.push(NearTriangle {
-                triangle,
-                lower: lower - certain,
-                upper,
-                away: if is_apart { away } else { 0 },
-                is_inside: bit(feet.inside) == 1,
-            });
         }
     }
 

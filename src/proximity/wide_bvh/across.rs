@@ -1,0 +1,37 @@
+//! For each edge of each triangle the corner of a neighbour beyond it, as the leaves stand in memory.
+
+use super::build::WideBvh;
+use crate::distance::lanes::Lane;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::triangle_block::{BLOCK, place_points};
+use std::sync::OnceLock;
+
+/// The corners beyond the edges of a leaf's triangles, in rows like those of their own corners; no numbers where an edge
+/// has no second triangle.
+pub(super) type Corners<E> = [E; 9 * BLOCK];
+
+/// The corners beyond the edges of all triangles, found when a leaf is first asked for.
+#[derive(Clone)]
+pub(super) struct Across<E>(Vec<OnceLock<Corners<E>>>);
+
+impl<E: Lane> Across<E> {
+    pub(super) fn new(tree: &WideBvh<E>) -> Self {
+        Self(tree.leaves.iter().map(|_| OnceLock::new()).collect())
+    }
+
+    /// Forgets where the corners are.
+    pub(super) fn forget(&mut self) {
+        self.0.iter_mut().for_each(|leaf| *leaf = OnceLock::new());
+    }
+
+    /// Those of a leaf, in the frame of the search.
+    pub(super) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &Corners<E> {
+        self.0[leaf as usize].get_or_init(|| {
+            let mut rows = [E::round(f64::NAN); 9 * BLOCK];
+            for (lane, &triangle) in tree.leaves[leaf as usize].triangles.iter().enumerate() {
+                place_points(&tree.frame, mesh.corners_across(triangle), &mut rows, lane);
+            }
+            rows
+        })
+    }
+}

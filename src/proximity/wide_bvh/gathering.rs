@@ -1,0 +1,142 @@
+//! Every triangle within a margin of a link: those of a leaf that neither a plane nor a slope rules out wait until they
+//! fill a block, and are then looked at closely.
+
+use super::across::{Across, Corners};
+use super::build::WideBvh;
+use super::node::Leaf;
+use crate::distance::dispatch;
+use crate::distance::lanes::{Lane, Pack};
+use crate::proximity::feet::CERTAIN;
+use crate::proximity::link_lanes::LinkLanes;
+use crate::proximity::mesh::Mesh;
+use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
+use crate::proximity::search_frame::SearchLink;
+use crate::proximity::triangle_block::{BLOCK, load_vertices};
+use fearless_simd::Level;
+
+/// Where triangles are gathered.
+pub(super) struct Gathering<'a, E> {
+    level: Level,
+    searched: &'a SearchLink<E>,
+    /// Tells which lie on a slope.
+    across: Option<&'a Across<E>>,
+    found: &'a mut NearTriangles,
+    /// Those that wait, in rows like those of a leaf.
+    rows: [E; 9 * BLOCK],
+    triangles: [u32; BLOCK],
+    waiting: usize,
+    /// For how many the distance from the axis was computed.
+    computed: u64,
+}
+
+impl<'a, E: Lane> Gathering<'a, E> {
+    pub(super) fn new(
+        level: Level,
+        searched: &'a SearchLink<E>,
+        across: Option<&'a Across<E>>,
+        found: &'a mut NearTriangles,
+    ) -> Self {
+        let (rows, triangles) = ([E::default(); 9 * BLOCK], [0; BLOCK]);
+        Self { level, searched, across, found, rows, triangles, waiting: 0, computed: 0 }
+    }
+
+    /// The corners beyond the edges of a leaf's triangles, where they are to be looked at.
+    pub(super) fn across(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> Option<&'a Corners<E>> {
+        self.across.map(|across| across.of(leaf, tree, mesh))
+    }
+
+    /// Adds the leaf's triangles that may be within the limit.
+    #[inline(always)]
+    pub(super) fn add<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        lanes: &LinkLanes<L>,
+        leaf: &Leaf<E>,
+        across: Option<&Corners<E>>,
+        limit: E,
+    ) {
+        let (mut in_question, mut slopes) = (0, 0);
+        let (limit_of_all, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
+            let near = lanes.not_behind_plane(vertices, limit_of_all);
+            in_question |= near << lane;
+            if near != 0
+                && let Some(across) = across
+            {
+                let across = load_vertices::<L>(token, across, lane);
+                slopes |= (near & lanes.on_slope(vertices, across, error)) << lane;
+            }
+        }
+        self.found.add_slopes(&leaf.triangles, slopes);
+        in_question &= !slopes;
+        while in_question != 0 {
+            let lane = in_question.trailing_zeros() as usize;
+            in_question &= in_question - 1;
+            // A leaf that is not full repeats its last triangle.
+            if lane > 0 && leaf.triangles[lane - 1] == leaf.triangles[lane] {
+                continue;
+            }
+            for (row, from) in self.rows.chunks_exact_mut(BLOCK).zip(leaf.rows.chunks_exact(BLOCK)) {
+                row[self.waiting] = from[lane];
+            }
+            self.triangles[self.waiting] = leaf.triangles[lane];
+            self.waiting += 1;
+            if self.waiting == BLOCK {
+                self.look_closely(limit);
+            }
+        }
+    }
+
+    /// Looks at those that are left. Returns for how many the distance from the axis was computed.
+    pub(super) fn finish(mut self, limit: E) -> u64 {
+        if self.waiting > 0 {
+            self.look_closely(limit);
+        }
+        self.computed
+    }
+
+    /// Takes over those that wait and may be within the limit.
+    #[inline(never)] // compiled once for all that search
+    fn look_closely(&mut self, limit: E) {
+        dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd, limit));
+        self.waiting = 0;
+    }
+
+    #[inline(always)]
+    fn take<L: Pack<Element = E>>(&mut self, token: L::Token, limit: E) {
+        let lanes = LinkLanes::<L>::new(token, self.searched);
+        let (limit, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
+        let certain = CERTAIN * self.searched.error.into();
+        let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
+        for first in (0..self.waiting).step_by(L::LANES) {
+            self.computed += L::LANES as u64;
+            let vertices = load_vertices::<L>(token, &self.rows, first);
+            let (bounds, feet) = lanes.nearer_and_feet(vertices, limit, error);
+            bounds.lower.store(&mut lower);
+            bounds.upper.store(&mut upper);
+            // Behind those that wait there stands what was there before.
+            let mut near = bounds.nearer & ((1 << (self.waiting - first).min(L::LANES)) - 1);
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
+                let is_apart = self.searched.radius.into() + certain < lower;
+                self.found.in_question.push(NearTriangle {
+                    triangle: self.triangles[first + lane],
+                    lower: lower - certain,
+                    upper,
+                    away: if is_apart { three_bits(feet.away, lane) } else { 0 },
+                    beyond: three_bits(feet.beyond, lane),
+                });
+            }
+        }
+    }
+}
+
+/// A lane's bits, the first lowest.
+#[inline(always)]
+fn three_bits([first, second, third]: [u64; 3], lane: usize) -> u8 {
+    let bit = |lanes: u64| (lanes >> lane & 1) as u8;
+    bit(first) | bit(second) << 1 | bit(third) << 2
+}
