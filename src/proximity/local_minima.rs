@@ -36,12 +36,13 @@
 //! Where T's least point lies on f, d(f) is d(T) and need not be computed; that spares nearly all of them.
 //!
 //! # What need not be measured
-//! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and that
-//! one is nearer by far more than 2 t. The search can tell so, from a look at the neighbour (`slopes`) or from all that it
-//! found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far more than 2 t,
-//! so that no piece ever ends for being that of D. For the others it still counts where they join it. A piece that has an f with D, and d(f) at most 2 t above its own minimum,
-//! ends there: d(f) >= d(D), so that the minimum of D's piece is the nearer one. Which piece D is part of
-//! makes no difference, and all that are left out are taken for one, nearer than any.
+//! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and
+//! that one is nearer by far more than 2 t. The search can tell so, from a look at the neighbour (`slopes`) or from all
+//! that it found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far
+//! more than 2 t, so that no piece ever ends for being that of D. For the others it still counts where they join it. A
+//! piece that has an f with D, and d(f) at most 2 t above its own minimum, ends there: d(f) >= d(D), so that the
+//! minimum of D's piece is the nearer one. Which piece D is part of makes no difference, and all that are left out are
+//! taken for one, nearer than any.
 //!
 //! At an edge or a corner that is certainly farther than its nearest point a triangle joins nothing that is nearer.
 //!

@@ -168,6 +168,18 @@ mod tests {
         Mesh::of(corners, squares.flat_map(|k| [[k, k + 1, k + 6], [k, k + 6, k + 5]]).collect())
     }
 
+    /// An axis that crosses an edge at a small angle, over the triangle at one end and beside it at the other.
+    fn over_an_edge(random: &mut Random, mesh: &Mesh) -> (Vector, Vector) {
+        let corners = mesh.corners(random.below(BLOCK as u32));
+        let first = random.below(3) as usize;
+        let [from, to, beyond] = [0, 1, 2].map(|k| corners[(first + k) % 3]);
+        let (along, inwards) = (to - from, beyond - (from + to) * 0.5);
+        let up = along.cross(inwards).normalize_or_zero() * along.length();
+        let [low, high] = [random.between(0.0, 0.5), random.between(0.0, 0.5)];
+        let inside = from + along * random.between(-0.3, 0.3) + inwards * random.between(0.0, 0.5) + up * low;
+        (inside, to + along * random.between(-0.3, 0.3) - inwards * random.between(0.0, 0.5) + up * high)
+    }
+
     /// Not only is the nearest point on an edge: another triangle that has it is nearer, by more than measurements err.
     #[test]
     fn a_triangle_on_a_slope_has_a_nearer_neighbour() {
@@ -183,7 +195,9 @@ mod tests {
             let long = [1.0, 0.1, 0.01][random.below(3) as usize];
             let way = [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size * long;
             let radius = random.between(0.0, 0.3) * size * long;
-            let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { continue };
+            let (start, end) =
+                if seed % 3 == 0 { over_an_edge(&mut random, &mesh) } else { (start, start + way) };
+            let Ok(link) = ModifiedCylinder::new(start, end, radius, caps) else { continue };
             let link = PlacedLink::new(&link, &Pose::IDENTITY);
             let frame = SearchFrame::new(&mesh);
             let Some(searched) = SearchLink::<f32>::new(&link, &frame) else { continue };
