@@ -9,11 +9,10 @@ use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
 pub(super) struct Nearer<L> {
     /// Which may be nearer than a bound, one bit per lane.
     pub nearer: u64,
-    /// Bounds on how near they are: twice the axis distance where no flat cap decides.
+    /// Bounds on how near they are but for the link's `error`: twice the axis distance where no flat cap decides. The upper
+    /// one is no less than the radius wherever a flat cap may decide as far as this precision can tell.
     pub lower: L,
     pub upper: L,
-    /// The upper bound, and no less than the radius wherever a flat cap may decide as far as this precision can tell.
-    pub at_most: L,
 }
 
 /// A link in every lane.
@@ -123,16 +122,18 @@ impl<L: Pack> LinkLanes<L> {
         let axis = axial.axis_squared.sqrt();
         let nearer = L::bits(axis.lt(limit));
         if nearer == 0 || !self.has_flat_cap {
-            return Nearer { nearer, lower: axis, upper: axis, at_most: axis };
+            return Nearer { nearer, lower: axis, upper: axis };
         }
         let (lower, upper) = axial.cap_bounds(&self.link, face);
         let beyond_cap = axial.beyond_flat_cap();
         let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
-        // Where rounding alone puts p* behind a flat cap, the axis distance may be less than the radius and the gap not zero.
-        let behind = self.is_behind_flat_caps(axial.on_triangle);
-        let upper = beyond_cap.select(upper + self.link.radius, axis);
-        let at_most = behind.select(upper, upper.max(self.link.radius));
-        Nearer { nearer: L::bits(lower.lt(limit)), lower, upper, at_most }
+        let mut upper = beyond_cap.select(upper + self.link.radius, axis);
+        if L::bits(upper.lt(self.link.radius)) != 0 {
+            // Rounding alone may have put p* behind a flat cap: then there is a gap, however near the axis is.
+            let behind = self.is_behind_flat_caps(axial.on_triangle);
+            upper = behind.select(upper, upper.max(self.link.radius));
+        }
+        Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
     }
 
     /// The distances of triangles with every disc that decides one: the paper's work for a pair.

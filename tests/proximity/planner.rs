@@ -82,30 +82,42 @@ fn a_batch_of_shapes_is_its_shapes_one_by_one() {
     }
 }
 
-/// Small triangles whose centres are over a flat cap, from well inside the link to far ahead of it: however little the gap,
-/// the link keeps it.
+/// A small triangle whose centre is over a flat cap, from well inside the link to far ahead of it: however little the gap,
+/// the link keeps it, and where another triangle overlaps the link, no gap hides that.
 #[test]
-fn a_triangle_just_before_a_flat_cap_does_not_touch() {
+fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
     let mut random = Seeded::new(11);
-    let (mut gaps, mut touching) = (0, 0);
+    let (mut gaps, mut touching, mut hidden) = (0, 0, 0);
     for round in 0..3_000 {
         let (start, direction) = (random.point() * 3.0, random.direction());
         let (side, length) = (direction.any_orthonormal_vector(), random.between(0.05, 2.0));
         let (end, radius) = (start + direction * length, random.between(0.02, 0.5));
         let gap = 10.0_f64.powf(random.between(-12.0, -1.0)) * if round % 4 == 0 { -1.0 } else { 1.0 };
-        // In a plane across the axis, so that the gap is that to the cap.
-        let centre = end + direction * gap + side * (0.3 * radius);
         let other = direction.cross(side);
         let corners = [0.0, 2.0, 4.0].map(|turn: f64| (turn.cos(), turn.sin()));
-        let corners = corners.map(|(x, y)| centre + (side * x + other * y) * (0.2 * radius));
+        // In a plane across the axis, so that the gap is that to the cap.
+        let across = |ahead: f64| {
+            let centre = end + direction * ahead + side * (0.3 * radius);
+            corners.map(|(x, y)| centre + (side * x + other * y) * (0.2 * radius))
+        };
         let far = [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
-        let mesh = TriMesh::new([corners, far].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let robot = Chain::cylinders(&[start, end], &[radius]).unwrap();
-        let keeps = Exhaustive::<f64>::new(&mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap().distance;
-        let clears = BvhSearch::new(&mesh).unwrap().clears(&robot, &Pose::IDENTITY, 0.0).unwrap();
-        assert_eq!(clears, keeps > 0.0, "{round}: a gap of {gap}, {keeps} kept");
-        gaps += u32::from(keeps > 0.0 && gap < 1e-6);
-        touching += u32::from(keeps == 0.0);
+        for inside in [None, Some(-0.4 * length)] {
+            let second = inside.map_or(far, across);
+            let mesh =
+                TriMesh::new([across(gap), second, far].concat(), vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+            let mesh = mesh.unwrap();
+            let mut reference = Exhaustive::<f64>::new(&mesh).unwrap();
+            let keeps = reference.minimum(&robot, &Pose::IDENTITY).unwrap();
+            let mut search = BvhSearch::new(&mesh).unwrap();
+            let found = search.minimum(&robot, &Pose::IDENTITY).unwrap();
+            assert_eq!((found.distance, found.triangle), (keeps.distance, keeps.triangle), "{round}: {gap}");
+            let clears = search.clears(&robot, &Pose::IDENTITY, 0.0).unwrap();
+            assert_eq!(clears, keeps.distance > 0.0, "{round}: a gap of {gap}, {keeps:?}");
+            gaps += u32::from(keeps.distance > 0.0 && gap < 1e-6);
+            touching += u32::from(keeps.distance == 0.0);
+            hidden += u32::from(inside.is_some() && 0.0 < gap && gap < 1e-6);
+        }
     }
-    assert!(gaps > 500 && touching > 500, "{gaps} small gaps, {touching} touching");
+    assert!(gaps > 500 && touching > 500 && hidden > 500, "{gaps} small gaps, {touching} touching, {hidden}");
 }

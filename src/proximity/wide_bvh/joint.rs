@@ -254,7 +254,7 @@ impl<E: Lane> JointSearch<'_, E> {
             }
             self.work.axis_distances += L::LANES as u64;
             let bounds = lanes.may_be_nearer(&Face::new(vertices), limit);
-            if L::bits(bounds.at_most.lt(certain)) != 0 {
+            if L::bits(bounds.upper.lt(certain)) != 0 {
                 return true;
             }
             let mut near = bounds.nearer;
