@@ -164,3 +164,33 @@ fn the_adapter_is_named() {
         assert!(engine.device_time().is_none_or(|time| time.as_nanos() > 0));
     }
 }
+
+/// Where a triangle lies just before a flat cap and another overlaps the link, the gap does not hide the overlap.
+#[test]
+fn a_gap_before_a_flat_cap_hides_no_overlap() {
+    let mut random = Random::new(11);
+    for (name, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        for round in 0..100 {
+            let (start, direction) = (random.point() * 3.0, random.direction());
+            let (side, length) = (direction.any_orthonormal_vector(), random.between(0.5, 2.0));
+            let (end, radius) = (start + direction * length, random.between(0.1, 0.5));
+            let other = direction.cross(side);
+            let across = |ahead: f64, aside: f64| {
+                [0.0, 2.0, 4.0].map(|turn: f64| {
+                    let (sin, cos) = turn.sin_cos();
+                    end + direction * ahead
+                        + side * (aside * radius)
+                        + (side * cos + other * sin) * (0.1 * radius)
+                })
+            };
+            let far = [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
+            let gap = 10.0_f64.powf(random.between(-12.0, -7.0));
+            let corners = [across(gap, 0.1), across(-0.4 * length, 0.6), far].concat();
+            let mesh = TriMesh::new(corners, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
+            let robot = Chain::cylinders(&[start, end], &[radius]).unwrap();
+            let answer = GpuExhaustive::on(gpu, &mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
+            assert_eq!((answer.distance, answer.triangle), (0.0, 1), "{name}, {round}: a gap of {gap}");
+        }
+    }
+}

@@ -70,7 +70,8 @@ fn near_bounds(placed: DeviceLink, face: Face) -> Bounds {
     let axial = axial_new(placed.link, seen);
     let axis = sqrt(axial.axis_squared);
     if (!axial_beyond_flat_cap(axial)) {
-        return Bounds(axis, axis);
+        let beside = beside_barrel(placed, axial, axis);
+        return Bounds(beside, beside);
     }
     let cap = axial_cap_bounds(axial, placed.link, seen);
     return Bounds(max(axis, cap.lower + placed.link.radius), cap.upper + placed.link.radius);
@@ -83,5 +84,14 @@ fn full_distance(placed: DeviceLink, face: Face) -> real {
     if (axial_beyond_flat_cap(axial)) {
         return axial_with_caps(axial, placed.link, seen).distance + placed.link.radius;
     }
-    return sqrt(axial.axis_squared);
+    return beside_barrel(placed, axial, sqrt(axial.axis_squared));
+}
+
+// The axis distance where no flat cap decides. Rounding alone may have put p* behind a flat cap: then there is a gap,
+// however near the axis is, and nothing is counted nearer than what touches.
+fn beside_barrel(placed: DeviceLink, axial: Axial, axis: real) -> real {
+    let along = dot(axial.on_triangle, placed.link.axis);
+    let before = placed.link.flat_start && along <= placed.error;
+    let beyond = placed.link.flat_end && placed.length - placed.error <= along;
+    return select(axis, max(axis, placed.link.radius), before || beyond);
 }
