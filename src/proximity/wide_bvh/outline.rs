@@ -22,6 +22,13 @@ impl Outline {
         Self { ends, radius, flat }
     }
 
+    /// The robot as one link from its base to its tip, with the radius and the caps of its last one.
+    pub(super) fn of_whole(robot: PlacedRobot) -> Self {
+        let (ends, _, _) = robot.outline(&robot.link_tree()[0]);
+        let tip = &robot.links()[robot.links().len() - 1];
+        Self { ends, radius: tip.radius(), flat: tip.flat() }
+    }
+
     /// All links from the tip to the base, each end placed once where two share it.
     pub(super) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = Self> {
         let mut shared: Option<(Vector, Vector)> = None;

@@ -4,10 +4,9 @@
 //! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
 //! more rarely.
 
-use super::outline::ROUNDING;
+use super::outline::{Outline, ROUNDING};
 use crate::proximity::placed::PlacedRobot;
-use crate::robot::length;
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::Real;
 
 /// How many queries a wider search is to speak for at the most.
 const QUERIES: Real = 8.0;
@@ -18,8 +17,8 @@ const REST_WITHOUT_PAY: u32 = 255;
 
 #[derive(Clone)]
 pub(super) struct Widening {
-    /// Where base and tip were at the last query.
-    before: Option<[Vector; 2]>,
+    /// The robot of the last query, as one link from its base to its tip.
+    before: Option<Outline>,
     /// How many queries the next wider search is to speak for.
     queries: Real,
     /// How many queries are not to try one, and how many it was after the last that did not pay.
@@ -37,20 +36,14 @@ impl Widening {
     /// By how much a query about this robot is to widen its search. `reach` is the largest coordinate of the mesh. None
     /// where it is better not to.
     pub(super) fn next(&mut self, robot: PlacedRobot, reach: Real) -> Option<Real> {
-        let (ends, radius, _) = robot.outline(&robot.link_tree()[0]);
-        let before = self.before.replace(ends)?;
+        let now = Outline::of_whole(robot);
+        let before = self.before.replace(now)?;
         if self.rest > 0 {
             self.rest -= 1;
             return None;
         }
-        let [base, tip] = [ends[0] - before[0], ends[1] - before[1]];
-        // A thick, short robot may turn where it stands: its caps move then, and its ends do not.
-        let thick = robot.links().last().map_or(radius, |link| link.radius());
-        let [long, longer] = [before, ends].map(|[base, tip]| length(tip - base));
-        let turned = 2.0 * thick * (length(tip - base) / (long + longer));
-        let moved = length(base).max(length(tip)) + if turned > 0.0 { turned } else { 0.0 };
-        let extent = ends[0].abs().max(ends[1].abs()).max_element() + radius;
-        Some(self.queries * moved + 4.0 * ROUNDING * (reach + 2.0 * extent))
+        let rounding = ROUNDING * (reach + 2.0 * now.extent());
+        Some(self.queries * now.moved_from(&before) + 4.0 * rounding)
     }
 
     /// Takes over that the last wider search paid.
