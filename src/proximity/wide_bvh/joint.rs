@@ -27,7 +27,7 @@ const NODE_SHARE: f64 = 1.0;
 const LEAF_SHARE: f64 = 3.0;
 
 /// The root of the hierarchy.
-const WHOLE_MESH: u32 = 0;
+const WHOLE_MESH: u32 = Child::Node(0).pack();
 
 /// Memory that is used again.
 #[derive(Clone, Default)]

@@ -22,7 +22,7 @@ pub(super) enum Child {
 impl Child {
     const LEAF: u32 = 1 << 31;
 
-    pub(super) fn pack(self) -> u32 {
+    pub(super) const fn pack(self) -> u32 {
         match self {
             Self::Node(node) => node,
             Self::Leaf(leaf) => leaf | Self::LEAF,
