@@ -282,9 +282,7 @@ pub(crate) fn contacts_by_all_triangles(
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
-            near.in_question.extend(
-                (0..mesh.len() as u32).filter(may_meet).map(super::near_triangle::NearTriangle::unknown),
-            );
+            near.add_unknown((0..mesh.len() as u32).filter(may_meet));
         });
     }
 }

@@ -41,6 +41,11 @@ impl NearTriangles {
         self.slopes.clear();
     }
 
+    /// Adds triangles of which nothing is known.
+    pub(super) fn add_unknown(&mut self, triangles: impl Iterator<Item = u32>) {
+        self.in_question.extend(triangles.map(NearTriangle::unknown));
+    }
+
     /// Adds those of a block that certainly lie on a slope, one bit for each.
     pub(super) fn add_slopes(&mut self, triangles: &[u32; BLOCK], lanes: u64) {
         if lanes != 0 {
@@ -63,7 +68,7 @@ impl NearTriangles {
 
 impl NearTriangle {
     /// A triangle of which nothing is known.
-    pub(super) fn unknown(triangle: u32) -> Self {
+    fn unknown(triangle: u32) -> Self {
         let everywhere = Real::INFINITY;
         Self { triangle, lower: -everywhere, upper: everywhere, away: 0, beyond: 0 }
     }

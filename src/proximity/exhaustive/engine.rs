@@ -7,7 +7,6 @@ use crate::proximity::checks::check_margin;
 use crate::proximity::engine::pairs;
 use crate::proximity::local_minima::{LocalMinima, RobotContacts};
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::NearTriangle;
 use crate::proximity::placed::{PlacedLink, PlacedRobot};
 use crate::proximity::{Contact, LinkProximity, MeshError, Proximity, ProximityError, Work};
 use fearless_simd::Level;
@@ -169,8 +168,8 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         let robot = PlacedRobot::new(robot, pose)?;
         let mut contacts = RobotContacts { level, mesh: &triangles.mesh, robot, margin, minima, out };
         for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
-            let triangles = pairs.iter().map(|pair| NearTriangle::unknown(pair.1));
-            work.measured += contacts.add(pairs[0].0, |_, near| near.in_question.extend(triangles));
+            let triangles = pairs.iter().map(|pair| pair.1);
+            work.measured += contacts.add(pairs[0].0, |_, near| near.add_unknown(triangles));
         }
         Ok(())
     }

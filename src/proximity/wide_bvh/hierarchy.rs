@@ -7,7 +7,7 @@ use super::traverse::{Stack, Traversal};
 use super::winding::FarFields;
 use crate::proximity::Work;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
+use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
@@ -195,9 +195,7 @@ impl MeshSearch<'_> {
             }
             // Such links are rare: they do without the corners beyond the edges.
             Searched::Double(searched) => self.double().within(&searched, bound, None, found),
-            Searched::OutOfReach => {
-                found.in_question.extend((0..mesh.len() as u32).map(NearTriangle::unknown))
-            }
+            Searched::OutOfReach => found.add_unknown(0..mesh.len() as u32),
         }
     }
 
