@@ -11,7 +11,7 @@ use super::checks::{check_ends, check_vertex};
 use super::report::corners;
 use super::{LinkProximity, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
-use crate::robot::{Chain, ModifiedCylinder, distance_to_segment, has_direction};
+use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -132,10 +132,10 @@ impl CertifiedLink {
         if !pose.is_finite() {
             return Err(ProximityError::PoseNotFinite);
         }
-        let (start, end) = (pose * link.start(), pose * link.end());
+        let link = link.transformed(pose);
+        let (start, end) = (link.start(), link.end());
         check_ends(number, [start, end])?;
-        let flat = link.flat().map(|flat| flat && has_direction(start, end, link.radius()));
-        Ok(Self { start, end, radius: link.radius(), flat })
+        Ok(Self { start, end, radius: link.radius(), flat: link.flat() })
     }
 
     /// The power of two that brings link and triangle near one.

@@ -65,12 +65,13 @@ impl<'a> PlacedRobot<'a> {
     /// are flat.
     #[inline]
     pub(super) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
-        let ends = |start: Vector, end: Vector| [self.pose * start, self.pose * end];
         match node {
-            LinkNode::Inner { bound, .. } => (ends(bound.start, bound.end), bound.radius, [false; 2]),
+            LinkNode::Inner { bound, .. } => {
+                ([self.pose * bound.start, self.pose * bound.end], bound.radius, [false; 2])
+            }
             LinkNode::Leaf(link) => {
-                let link = &self.robot.links()[*link];
-                (ends(link.start(), link.end()), link.radius(), link.flat())
+                let link = self.robot.links()[*link].transformed(self.pose);
+                ([link.start(), link.end()], link.radius(), link.flat())
             }
         }
     }
@@ -112,7 +113,8 @@ pub(crate) struct Nearest {
 impl PlacedLink {
     /// The link at `pose`.
     pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose) -> Self {
-        Self::between(pose * link.start(), pose * link.end(), link.radius(), link.flat())
+        let link = link.transformed(pose);
+        Self::between(link.start(), link.end(), link.radius(), link.flat())
     }
 
     pub(super) fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {

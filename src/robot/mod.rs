@@ -27,8 +27,8 @@ pub use chain::Chain;
 pub use constant_curvature::{BendingSection, ConstantCurvature};
 pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
+pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
-pub(crate) use modified_cylinder::{COORDINATE_LIMIT, has_direction};
 pub use motion::{
     BendingMotion, BendingRates, LinearMotion, Motion, RigidMotion, Speed, bending_speed, verify_motion,
 };

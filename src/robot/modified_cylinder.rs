@@ -109,6 +109,7 @@ impl ModifiedCylinder {
     ///
     /// If a short link is moved so far out that rounding makes its two ends one, its caps become round: the ball
     /// holds the link whichever way its lost axis pointed.
+    #[inline]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let (start, end) = (pose * self.start, pose * self.end);
         let caps = if has_direction(start, end, self.radius) { self.caps } else { [Cap::Round; 2] };
