@@ -157,9 +157,10 @@ impl CertifiedLink {
     }
 
     fn bounds(&self, triangle: [Vector; 3]) -> Certificate {
-        // From the link's start every coordinate is an exact double-double, and the largest is brought near one.
+        // From the link's start every coordinate is an exact double-double, and the largest is brought near one. What is
+        // small beside far coordinates must not vanish first, so these are never made smaller.
         let [a, b, c] = triangle;
-        let coarse = self.unit(triangle);
+        let coarse = self.unit(triangle).max(1.0);
         let start = self.start * coarse;
         let offset = |p: Vector| p * coarse - start;
         let radius = self.radius * coarse;

@@ -7,6 +7,10 @@ use crate::proximity::placed::PlacedLink;
 use crate::robot::{COORDINATE_LIMIT, Face, Lasting, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
+/// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it falls below the range of
+/// numbers, so a length by 2^-536; and no centreline adds up as many as would make 2^-500 of it.
+const LEAST_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
+
 /// A tube at a pose in the frame of a mesh.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedTube<'a> {
@@ -16,7 +20,8 @@ pub(crate) struct PlacedTube<'a> {
     ///
     /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and the mesh's. A measured
     /// distance errs by 16 u for each unit of extent, which is at most 2 reach; a placed point by less than 16 u reach;
-    /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them.
+    /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them. Beside it stands what
+    /// lengths lose whose squares vanish.
     pub(super) slack: Real,
     /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
     is_moving: bool,
@@ -38,7 +43,7 @@ impl<'a> PlacedTube<'a> {
         if tube.sections().is_empty() {
             return Err(ProximityError::EmptyTube);
         }
-        let slack = 128.0 * Real::UNIT_ROUNDOFF * (reach + mesh_reach);
+        let slack = 128.0 * Real::UNIT_ROUNDOFF * (reach + mesh_reach) + LEAST_LENGTH;
         Ok(Self { tube, pose, slack, is_moving: false })
     }
 
