@@ -95,9 +95,10 @@ impl<E: Lane> SearchLink<E> {
         frame: &SearchFrame,
     ) -> Option<Self> {
         let along = end - start;
-        let squared = (along * frame.scale).length_squared();
+        let scaled = along * frame.scale;
+        let squared = scaled.length_squared();
         let has_direction = gives_direction(squared) && squared < Real::INFINITY;
-        let axis = if has_direction { along * (frame.scale * (1.0 / squared.sqrt())) } else { Vector::ZERO };
+        let axis = if has_direction { scaled * (1.0 / squared.sqrt()) } else { Vector::ZERO };
         Self::of([start, end], along, axis, radius, flat, frame)
     }
 
