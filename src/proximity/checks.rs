@@ -14,17 +14,16 @@ pub(super) fn check_tolerance(tolerance: Real) -> Result<(), ProximityError> {
     if tolerance >= 0.0 { Ok(()) } else { Err(ProximityError::BadTolerance { tolerance }) }
 }
 
-/// A pose that keeps every link within range.
-pub(super) fn check_pose(robot: &Chain, pose: &Pose) -> Result<(), ProximityError> {
+/// A pose that keeps every link within range. `ends` are base and tip in the mesh's frame.
+pub(super) fn check_pose(robot: &Chain, pose: &Pose, [base, tip]: [Vector; 2]) -> Result<(), ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
-    // The capsule around all links spares looking at each.
-    if let Some(LinkNode::Inner { bound, .. }) = robot.link_tree().first() {
-        let reach = |point: Vector| (pose * point).abs().max_element();
-        if reach(bound.start).max(reach(bound.end)) + bound.radius <= COORDINATE_LIMIT {
-            return Ok(());
-        }
+    // The capsule around all links, from base to tip, spares looking at each.
+    if let Some(LinkNode::Inner { bound, .. }) = robot.link_tree().first()
+        && base.abs().max(tip.abs()).max_element() + bound.radius <= COORDINATE_LIMIT
+    {
+        return Ok(());
     }
     for (link, place) in robot.links().iter().enumerate() {
         check_ends(link, [pose * place.start(), pose * place.end()])?;

@@ -4,7 +4,7 @@ use super::MeshError;
 use super::checks::check_vertices;
 use super::parallel::each;
 use super::shared_parts::SharedParts;
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 use std::sync::{Arc, OnceLock};
 
@@ -100,11 +100,6 @@ impl Mesh {
             let across = self.parts().across(triangle, edge);
             across.map_or(Vector::NAN, |(other, corner)| self.corners(other)[corner])
         })
-    }
-
-    /// The largest coordinate of a triangle.
-    pub(super) fn reach(&self) -> Real {
-        self.bounds().map(|corner| corner.abs().max_element()).into_iter().fold(0.0, Real::max)
     }
 
     /// The corners of the box around all triangles. Vertices that no triangle uses do not count: exported meshes have

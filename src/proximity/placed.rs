@@ -22,14 +22,18 @@ const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
 pub(crate) struct PlacedRobot<'a> {
     robot: &'a Chain,
     pose: &'a Pose,
+    /// Base and tip in the mesh's frame.
+    ends: [Vector; 2],
 }
 
 impl<'a> PlacedRobot<'a> {
     /// # Errors
     /// The pose is not finite or moves a link out of range.
     pub(crate) fn new(robot: &'a Chain, pose: &'a Pose) -> Result<Self, ProximityError> {
-        check_pose(robot, pose)?;
-        Ok(Self { robot, pose })
+        let links = robot.links();
+        let ends = [pose * links[0].start(), pose * links[links.len() - 1].end()];
+        check_pose(robot, pose, ends)?;
+        Ok(Self { robot, pose, ends })
     }
 
     /// The links in the robot's frame.
@@ -61,9 +65,14 @@ impl<'a> PlacedRobot<'a> {
         PlacedLink::between(self.pose * bound.start, self.pose * bound.end, bound.radius, [false; 2])
     }
 
+    /// Base and tip in the mesh's frame.
+    pub(super) fn ends(&self) -> [Vector; 2] {
+        self.ends
+    }
+
     /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame; the radius; which caps
     /// are flat.
-    #[inline]
+    #[inline(always)] // what it hands over is used at once
     pub(super) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
         match node {
             LinkNode::Inner { bound, .. } => {

@@ -61,6 +61,21 @@ fn append(links: &[ModifiedCylinder], first: usize, nodes: &mut Vec<LinkNode>) {
     nodes[place] = LinkNode::Inner { bound, below };
 }
 
+/// Where the leaf of a link stands in the tree over so many links.
+pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
+    let mut place = 0;
+    while links > 1 {
+        let low = links / 2;
+        if link < low {
+            (place, links) = (place + 1, low);
+        } else {
+            // Over the node and the 2 low - 1 nodes of its first half.
+            (place, link, links) = (place + 2 * low, link - low, links - low);
+        }
+    }
+    place
+}
+
 impl BoundingCapsule {
     /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the balls around
     /// the link's ends.
@@ -91,4 +106,23 @@ pub(crate) fn distance_to_segment(point: Vector, start: Vector, end: Vector) -> 
     // 0 / 0 where the segment is a point: the comparisons turn it into 0.
     let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
     (point - start - axis * along).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_leaf_is_where_it_is_said_to_be() {
+        for count in 1..70 {
+            let point = |k: usize| Vector::X * k as Real;
+            let link = |k| ModifiedCylinder::capsule(point(k), point(k + 1), 0.1).unwrap();
+            let (links, mut nodes): (Vec<_>, _) = ((0..count).map(link).collect(), Vec::new());
+            build(&links, &mut nodes);
+            for link in 0..count {
+                let place = place_of_leaf(link, count);
+                assert!(matches!(nodes[place], LinkNode::Leaf(found) if found == link), "{link} of {count}");
+            }
+        }
+    }
 }

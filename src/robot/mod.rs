@@ -26,7 +26,7 @@ pub use cap::Cap;
 pub use chain::Chain;
 pub use constant_curvature::{BendingSection, ConstantCurvature};
 pub use error::RobotError;
-pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment};
+pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
 pub use motion::{

@@ -3,6 +3,7 @@
 use super::across::Across;
 use super::build::WideBvh;
 use super::joint::{JointSearch, Pairs};
+use super::rough_sides::RoughSides;
 use super::traverse::{Stack, Traversal};
 use super::winding::FarFields;
 use crate::proximity::Work;
@@ -11,8 +12,11 @@ use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 use std::sync::OnceLock;
+
+/// The sides of the mesh are found when so many robots were met: a planner meets more, a controller never does.
+const ROBOTS_MET: u32 = 64;
 
 /// A mesh and its hierarchies.
 #[derive(Clone)]
@@ -27,6 +31,8 @@ pub(super) struct Hierarchy {
     double: OnceLock<WideBvh<f64>>,
     /// For those who ask on which side of the mesh a point is, built at the first question.
     far_fields: OnceLock<FarFields>,
+    /// For those who often ask about robots that do not keep away.
+    sides: OnceLock<RoughSides>,
 }
 
 impl Hierarchy {
@@ -36,7 +42,8 @@ impl Hierarchy {
             across: OnceLock::new(),
             double: OnceLock::new(),
             far_fields: OnceLock::new(),
-            reach: mesh.reach(),
+            sides: OnceLock::new(),
+            reach: reach(mesh.bounds()),
             mesh,
         }
     }
@@ -65,8 +72,12 @@ impl Hierarchy {
 
     /// Takes over that the vertices of the mesh have moved.
     pub(super) fn refit(&mut self, level: Level) {
-        self.reach = self.mesh.reach();
+        let bounds = self.mesh.bounds();
+        self.reach = reach(bounds);
         self.far_fields.take();
+        if self.sides.get().is_some_and(|sides| !sides.still_fit(bounds)) {
+            self.sides.take();
+        }
         self.single.refit(level, &self.mesh);
         if let Some(across) = self.across.get_mut() {
             across.forget();
@@ -75,6 +86,11 @@ impl Hierarchy {
             double.refit(level, &self.mesh);
         }
     }
+}
+
+/// The largest coordinate of what lies in a box.
+fn reach([low, high]: [Vector; 2]) -> Real {
+    low.abs().max(high.abs()).max_element()
 }
 
 /// A link in the frame of a search.
@@ -92,6 +108,8 @@ pub(super) struct Scratch {
     double: Stack<f64>,
     single_pairs: Pairs<f32>,
     double_pairs: Pairs<f64>,
+    /// How many robots did not keep away.
+    met: u32,
     pub work: Work,
 }
 
@@ -168,17 +186,21 @@ impl MeshSearch<'_> {
 
     /// Whether every link of a robot keeps more than `margin` away.
     pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
-        let Hierarchy { single, .. } = self.hierarchy;
-        let Scratch { single_pairs, work, .. } = &mut *self.scratch;
-        let search =
-            JointSearch { level: self.level, tree: single, robot, margin, pairs: single_pairs, work };
-        if let Some(keeps_away) = search.keeps_away(&self.hierarchy.mesh) {
-            return keeps_away;
+        let Hierarchy { mesh, single, sides, .. } = self.hierarchy;
+        let level = self.level;
+        let Scratch { single_pairs, double_pairs, met, work, .. } = &mut *self.scratch;
+        let sides =
+            if *met < ROBOTS_MET { sides.get() } else { Some(sides.get_or_init(|| RoughSides::new(mesh))) };
+        let first = sides.and_then(|sides| sides.crossing(robot));
+        let search = JointSearch { level, tree: single, robot, margin, first, pairs: single_pairs, work };
+        let mut answer = search.keeps_away(mesh);
+        if answer.is_none() {
+            let tree = self.hierarchy.double(level);
+            let search = JointSearch { level, tree, robot, margin, first, pairs: double_pairs, work };
+            answer = search.keeps_away(mesh);
         }
-        let tree = self.hierarchy.double(self.level);
-        let Scratch { double_pairs, work, .. } = &mut *self.scratch;
-        let search = JointSearch { level: self.level, tree, robot, margin, pairs: double_pairs, work };
-        if let Some(keeps_away) = search.keeps_away(&self.hierarchy.mesh) {
+        if let Some(keeps_away) = answer {
+            *met = met.saturating_add(u32::from(!keeps_away));
             return keeps_away;
         }
         let mut links = robot.placed_links();

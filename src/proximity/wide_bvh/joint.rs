@@ -17,7 +17,7 @@ use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{Best, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
-use crate::robot::LinkNode;
+use crate::robot::{LinkNode, place_of_leaf};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
@@ -90,6 +90,8 @@ pub(super) struct JointSearch<'a, E> {
     pub tree: &'a WideBvh<E>,
     pub robot: PlacedRobot<'a>,
     pub margin: Real,
+    /// The link that is likely to meet the mesh, if one is.
+    pub first: Option<usize>,
     pub pairs: &'a mut Pairs<E>,
     pub work: &'a mut Work,
 }
@@ -126,7 +128,11 @@ impl<E: Lane> JointSearch<'_, E> {
         doubtful.clear();
         waiting.clear();
         // The mesh is between one and two long.
-        waiting.push(Pair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero });
+        let whole = Pair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
+        waiting.push(whole);
+        if let Some(first) = self.first {
+            waiting.push(Pair { run: place_of_leaf(first, links.len().div_ceil(2)) as u32, ..whole });
+        }
         if let Some((run, leaf)) = *last
             && let Some(LinkNode::Leaf(_)) = links.get(run as usize)
         {

@@ -16,6 +16,7 @@ mod motion_queries;
 mod node;
 mod outline;
 mod queries;
+mod rough_sides;
 mod side_engine;
 mod traverse;
 mod tube_engine;

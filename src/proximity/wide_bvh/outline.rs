@@ -24,9 +24,8 @@ impl Outline {
 
     /// The robot as one link from its base to its tip, with the radius and the caps of its last one.
     pub(super) fn of_whole(robot: PlacedRobot) -> Self {
-        let (ends, _, _) = robot.outline(&robot.link_tree()[0]);
         let tip = &robot.links()[robot.links().len() - 1];
-        Self { ends, radius: tip.radius(), flat: tip.flat() }
+        Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
     }
 
     /// All links from the tip to the base, each end placed once where two share it.
