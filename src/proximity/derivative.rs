@@ -1,6 +1,6 @@
 //! How a distance changes with the points that link and triangle are made of.
 
-use super::nearest_features::NearestFeatures;
+use super::nearest_features::NearPair;
 use super::{LinkProximity, ProximityError};
 use crate::Chain;
 use crate::distance::{DoubleDouble, Scalar, Vec3};
@@ -78,30 +78,31 @@ impl LinkProximity {
         mesh: &TriMesh,
     ) -> Result<Option<Derivative>, ProximityError> {
         let (link, corners) = (self.placed_link(robot, pose)?, self.corners(mesh)?);
-        Ok(NearestFeatures::exactly(&link, corners).derivative())
+        Ok(NearPair::exactly(&link, corners).derivative())
     }
 }
 
-impl NearestFeatures<DoubleDouble> {
+impl NearPair<DoubleDouble> {
     fn derivative(&self) -> Option<Derivative> {
-        let (normal, one) = (self.normal?, DoubleDouble::from(1.0));
+        let (link, parts, one) = (&self.link, &self.parts, DoubleDouble::from(1.0));
+        if !parts.has_normal || parts.cap_touches {
+            return None;
+        }
         let rounded = |v: Vec3<DoubleDouble>| Vector::new(v.x.rounded(), v.y.rounded(), v.z.rounded());
-        let (mut start, mut end) = (normal * (one - self.fraction), normal * self.fraction);
+        let normal = parts.normal;
+        let (mut start, mut end) = (normal * (one - parts.fraction), normal * parts.fraction);
         let mut radius = -one;
-        if let Some(cap) = self.flat_cap {
-            if cap.touches {
-                return None;
-            }
-            let turn = self.lever * normal.dot(cap.axis).over(cap.length);
+        if parts.at_flat_cap {
+            let turn = parts.lever * normal.dot(link.axis).over(link.end.norm());
             (start, end) = (start + turn, end - turn);
-            radius = -normal.cross(cap.axis).norm();
+            radius = -normal.cross(link.axis).norm();
         }
         Some(Derivative {
             start: rounded(start),
             end: rounded(end),
             radius: radius.rounded(),
-            vertices: self.weights.map(|weight| rounded(-normal * weight)),
-            kink: self.kink || !self.has_area,
+            vertices: self.weights().map(|weight| rounded(-normal * weight)),
+            kink: self.kink || !self.has_area(),
         })
     }
 }

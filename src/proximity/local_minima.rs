@@ -50,15 +50,17 @@
 //! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its triangles the one
 //! nearest to the axis comes first and stands for it, the lowest of equals.
 
+use super::LinkProximity;
 use super::contact::Contact;
-use super::measure_lanes::measure_each;
+use super::contact_lanes::{Place, add_contacts};
 use super::mesh::Mesh;
-use super::near_triangle::NearTriangles;
+use super::near_triangle::{End, NearLink, NearTriangles};
 use super::placed::{Nearest, PlacedLink, PlacedRobot};
+use super::ranked::{Ranked, rank_each, rounding};
 use super::shared_parts::{PARTS, SharedParts, ends_of};
-use crate::distance::Scalar;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
+use std::ops::Range;
 
 /// The place of all that are left out.
 const LEFT_OUT: u32 = 0;
@@ -69,111 +71,111 @@ const NONE: u32 = u32::MAX;
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct LocalMinima {
-    /// The triangles that may be within the margin of one link.
+    /// The links that something may be near to.
+    links: Vec<LinkAtWall>,
+    /// The triangles that may be within the margin, link by link.
     triangles: NearTriangles,
-    /// For each of them that is in question its place among those within the margin, counted from 1, or that of all that
-    /// are left out.
+    /// For each of them that is in question its place among those within the margin of its link, counted from 1, or that
+    /// of all that are left out.
     places: Vec<u32>,
-    /// For each triangle of the mesh where it stands among those in question, if it does.
+    /// For each triangle of the mesh where it stands among those in question for the link at hand, if it does.
     index_of: Vec<u32>,
-    /// Those that are measured.
+    /// Those that are measured, link by link.
     measured: Vec<u32>,
-    /// Those within the margin, nearest first.
-    near: Vec<Ranked>,
+    /// What was measured of them.
+    ranked: Vec<Ranked>,
     /// For each place an earlier one of the same piece, or itself.
     piece: Vec<u32>,
+    /// The minima that were found.
+    found: Vec<LinkProximity>,
 }
 
-/// A triangle within the margin.
-#[derive(Clone, Copy)]
-struct Ranked {
-    /// The distance, or where it is 0 the axis distance less the radius.
-    rank: Real,
-    nearest: Nearest,
-    /// What rounding can do to the distance.
-    rounding: Real,
+/// A link that something may be near to.
+#[derive(Clone)]
+struct LinkAtWall {
+    number: usize,
+    link: PlacedLink,
+    /// Where its triangles begin and end.
+    triangles: [End; 2],
+    measured: Range<usize>,
 }
 
 /// The contacts of a robot, link by link, in `out`.
 pub(super) struct RobotContacts<'a> {
-    pub level: Level,
-    pub mesh: &'a Mesh,
-    pub robot: PlacedRobot<'a>,
-    pub margin: Real,
-    pub minima: &'a mut LocalMinima,
-    pub out: &'a mut Vec<Contact>,
+    level: Level,
+    mesh: &'a Mesh,
+    robot: PlacedRobot<'a>,
+    margin: Real,
+    minima: &'a mut LocalMinima,
 }
 
-impl RobotContacts<'_> {
-    /// Adds the contacts of a link behind the last one, nearest first. `near` adds the triangles that may be within the
-    /// margin; some may be farther away, and none may stand there twice. Returns how many of them were measured.
-    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut NearTriangles)) -> u64 {
-        let link = self.robot.link(number);
-        self.minima.triangles.clear();
-        near(&link, &mut self.minima.triangles);
-        let (mesh, before) = (self.mesh, self.robot.length_before(number));
-        self.out.extend(self.minima.find(self.level, &link, mesh, self.margin).map(|nearest| {
-            Contact::new(number as u32, &link, mesh.corners(nearest.triangle), nearest, before)
-        }));
-        self.minima.measured.len() as u64
+impl<'a> RobotContacts<'a> {
+    /// Nothing yet.
+    pub(super) fn new(
+        level: Level,
+        mesh: &'a Mesh,
+        robot: PlacedRobot<'a>,
+        margin: Real,
+        minima: &'a mut LocalMinima,
+    ) -> Self {
+        minima.clear();
+        Self { level, mesh, robot, margin, minima }
+    }
+
+    /// Looks at a link, behind the last one. `near` adds the triangles that may be within the margin; some may be farther
+    /// away, and none may stand there twice.
+    pub(super) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut NearTriangles)) {
+        let (link, minima) = (self.robot.link(number), &mut *self.minima);
+        let (begin, measured) = (minima.triangles.end(), minima.measured.len());
+        near(&link, &mut minima.triangles);
+        let triangles = [begin, minima.triangles.end()];
+        minima.leave_out(self.mesh, triangles);
+        let measured = measured..minima.measured.len();
+        minima.links.push(LinkAtWall { number, link, triangles, measured });
+    }
+
+    /// The contacts of all links, nearest first for each. Returns how many triangles were measured.
+    pub(super) fn finish(self, out: &mut Vec<Contact>) -> u64 {
+        let Self { level, mesh, robot, margin, minima } = self;
+        minima.find(level, mesh, margin);
+        let place = |found: &LinkProximity| {
+            let link = robot.link(found.link as usize);
+            Place {
+                ends: [link.start(), link.end()],
+                radius: link.radius(),
+                flat: link.flat(),
+                corners: mesh.corners(found.triangle),
+                before: robot.length_before(found.link as usize),
+            }
+        };
+        add_contacts(level, &minima.found, place, out);
+        minima.measured.len() as u64
     }
 }
 
 impl LocalMinima {
-    /// The local minima of a link, nearest first.
-    fn find(
-        &mut self,
-        level: Level,
-        link: &PlacedLink,
-        mesh: &Mesh,
-        margin: Real,
-    ) -> impl Iterator<Item = &Nearest> {
-        self.leave_out(mesh);
-        self.near.clear();
-        measure_each(level, link, mesh, &self.measured, |nearest| {
-            if nearest.distance <= margin {
-                let corners = mesh.corners(nearest.triangle);
-                let touches = nearest.distance <= 0.0;
-                let rank = if touches { link.axis_depth(corners).min(0.0) } else { nearest.distance };
-                self.near.push(Ranked { rank, nearest, rounding: rounding(link, corners) });
-            }
-        });
-        let order = |a: &Ranked, b: &Ranked| {
-            a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle))
-        };
-        self.near.sort_unstable_by(order);
-        self.piece.clear();
-        self.piece.push(LEFT_OUT);
-        for (place, ranked) in (1..).zip(&self.near) {
-            self.places[self.index_of[ranked.nearest.triangle as usize] as usize] = place;
-        }
-        for place in 1..=self.near.len() {
-            self.join(link, mesh, place as u32);
-        }
-        let places = self.near.iter().zip(&self.piece[1..]).zip(1..);
-        places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
+    fn clear(&mut self) {
+        self.links.clear();
+        self.triangles.clear();
+        self.places.clear();
+        self.measured.clear();
     }
 
-    /// Leaves out the triangles that certainly lie on a slope towards a nearer one.
-    fn leave_out(&mut self, mesh: &Mesh) {
-        self.measured.clear();
-        self.places.clear();
-        let triangles = &self.triangles.in_question;
-        if triangles.is_empty() {
+    /// Leaves out the triangles of a link that certainly lie on a slope towards a nearer one.
+    fn leave_out(&mut self, mesh: &Mesh, triangles: [End; 2]) {
+        let near = self.triangles.between(triangles);
+        if near.in_question.is_empty() {
             return;
         }
-        // What stands there of earlier links does no harm: see `index`.
-        self.index_of.resize(mesh.len(), 0);
-        for (index, known) in (0..).zip(triangles) {
-            self.index_of[known.triangle as usize] = index;
-        }
+        number(&mut self.index_of, mesh, near);
         let shared = mesh.parts();
-        for known in triangles {
-            let is_left_out = known.foot().is_some_and(|foot| {
-                let mut others = shared.others(known.triangle, foot);
-                others
-                    .any(|other| self.index(other).is_some_and(|other| triangles[other].upper < known.lower))
-            });
+        for known in near.in_question {
+            let is_nearer = |other: u32| {
+                let index = index_among(near, &self.index_of, other);
+                index.is_some_and(|index| near.in_question[index].upper < known.lower)
+            };
+            let is_left_out =
+                known.foot().is_some_and(|foot| shared.others(known.triangle, foot).any(is_nearer));
             self.places.push(if is_left_out { LEFT_OUT } else { NONE });
             if !is_left_out {
                 self.measured.push(known.triangle);
@@ -181,20 +183,93 @@ impl LocalMinima {
         }
     }
 
+    /// Finds the local minima of all links, nearest first for each.
+    fn find(&mut self, level: Level, mesh: &Mesh, margin: Real) {
+        self.ranked.clear();
+        let of_link = |at: &LinkAtWall| self.measured[at.measured.clone()].iter();
+        let pairs = self.links.iter().flat_map(|at| of_link(at).map(|&triangle| (&at.link, triangle)));
+        rank_each(level, mesh, pairs, |ranked| self.ranked.push(ranked));
+        self.found.clear();
+        for LinkAtWall { number: link_number, link, triangles, measured } in &self.links {
+            let near = self.triangles.between(*triangles);
+            let ranked = nearest_first(&mut self.ranked[measured.clone()], margin);
+            if ranked.is_empty() {
+                continue;
+            }
+            number(&mut self.index_of, mesh, near);
+            let places = &mut self.places[triangles[0].in_question..triangles[1].in_question];
+            for (place, ranked) in (1..).zip(ranked) {
+                places[self.index_of[ranked.nearest.triangle as usize] as usize] = place;
+            }
+            let index_of = &self.index_of;
+            let mut pieces = Pieces { link, mesh, near, places, index_of, ranked, piece: &mut self.piece };
+            self.found.extend(pieces.first_triangles().map(|nearest| nearest.report(*link_number)));
+        }
+    }
+}
+
+/// Those within the margin, nearest first.
+fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
+    // Those beyond it come last: their rank is their distance.
+    ranked
+        .sort_unstable_by(|a, b| a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle)));
+    let count = ranked.partition_point(|ranked| ranked.nearest.distance <= margin);
+    &ranked[..count]
+}
+
+/// Writes down where each triangle stands among those in question for a link. What stands there of other links does no
+/// harm: see [`index_among`].
+fn number(index_of: &mut Vec<u32>, mesh: &Mesh, near: NearLink) {
+    index_of.resize(mesh.len(), 0);
+    for (index, known) in (0..).zip(near.in_question) {
+        index_of[known.triangle as usize] = index;
+    }
+}
+
+/// Where a triangle stands among those in question.
+#[inline(always)]
+fn index_among(near: NearLink, index_of: &[u32], triangle: u32) -> Option<usize> {
+    let index = index_of[triangle as usize] as usize;
+    near.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
+}
+
+/// The pieces of wall within the margin of one link, as they grow and join.
+struct Pieces<'a> {
+    link: &'a PlacedLink,
+    mesh: &'a Mesh,
+    near: NearLink<'a>,
+    places: &'a [u32],
+    index_of: &'a [u32],
+    /// The triangles within the margin, nearest first.
+    ranked: &'a [Ranked],
+    piece: &'a mut Vec<u32>,
+}
+
+impl Pieces<'_> {
+    /// The triangles at which the pieces appeared that are left, nearest first.
+    fn first_triangles(&mut self) -> impl Iterator<Item = &Nearest> {
+        self.piece.clear();
+        self.piece.push(LEFT_OUT);
+        for place in 1..=self.ranked.len() {
+            self.join(place as u32);
+        }
+        let places = self.ranked.iter().zip(&self.piece[1..]).zip(1..);
+        places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
+    }
+
     /// Where a triangle stands among those in question.
     #[inline(always)]
     fn index(&self, triangle: u32) -> Option<usize> {
-        let index = self.index_of[triangle as usize] as usize;
-        self.triangles.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
+        index_among(self.near, self.index_of, triangle)
     }
 
     /// Joins a triangle with the pieces that nearer ones have made.
-    fn join(&mut self, link: &PlacedLink, mesh: &Mesh, place: u32) {
+    fn join(&mut self, place: u32) {
         self.piece.push(place);
-        let Ranked { nearest, rounding: own_rounding, .. } = self.near[place as usize - 1];
+        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[place as usize - 1];
         let Some(index) = self.index(nearest.triangle) else { return };
-        let (known, shared) = (self.triangles.in_question[index], mesh.parts());
-        let corners = mesh.corners(nearest.triangle);
+        let (known, shared) = (self.near.in_question[index], self.mesh.parts());
+        let corners = self.mesh.corners(nearest.triangle);
         // Whom it meets at its corners and edges, and whether at its least point.
         let (mut met, mut count) = ([(0, LEFT_OUT, false); 2 * PARTS], 0);
         for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
@@ -204,11 +279,11 @@ impl LocalMinima {
                 match place_of_other {
                     // An edge or a corner of what is certainly farther is itself farther.
                     Some((other, LEFT_OUT)) => {
-                        may_meet_left_out |= self.triangles.in_question[other].lower < known.upper;
+                        may_meet_left_out |= self.near.in_question[other].lower < known.upper;
                     }
                     Some((_, other)) if other < place => first = first.min(other),
                     Some(_) => {}
-                    None => may_meet_left_out |= self.triangles.has_slopes(),
+                    None => may_meet_left_out |= self.near.has_slopes(),
                 }
             }
             let others = [may_meet_left_out.then_some(LEFT_OUT), (first != NONE).then_some(first)];
@@ -232,9 +307,10 @@ impl LocalMinima {
                     continue;
                 }
                 let [from, to] = ends_of(corners, part);
-                let farther = self.grown(mine).max(self.grown(other)) + rounding(link, [from, to, to]);
+                let farther =
+                    self.grown(mine).max(self.grown(other)) + rounding(self.link.extent_with([from, to, to]));
                 if nearest.distance <= farther
-                    && (met_there || link.comes_within(farther, from, to))
+                    && (met_there || self.link.comes_within(farther, from, to))
                     && (with != LEFT_OUT || self.is_left_out_there(shared, nearest.triangle, part))
                 {
                     // The piece appeared where the nearer one did.
@@ -248,13 +324,13 @@ impl LocalMinima {
     fn is_left_out_there(&self, shared: &SharedParts, triangle: u32, part: usize) -> bool {
         shared.others(triangle, part).any(|other| match self.index(other) {
             Some(index) => self.places[index] == LEFT_OUT,
-            None => self.triangles.is_on_slope(other),
+            None => self.near.is_on_slope(other),
         })
     }
 
     /// How far the wall can rise from where a piece appeared before it has grown.
     fn grown(&self, place: u32) -> Real {
-        let ranked = (place as usize).checked_sub(1).map(|place| &self.near[place]);
+        let ranked = (place as usize).checked_sub(1).map(|place| &self.ranked[place]);
         ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
     }
 
@@ -277,19 +353,15 @@ pub(crate) fn contacts_by_all_triangles(
     margin: Real,
     out: &mut Vec<Contact>,
 ) {
-    let (level, minima) = (Level::new(), &mut LocalMinima::default());
-    let mut contacts = RobotContacts { level, mesh, robot, margin, minima, out };
+    let mut minima = LocalMinima::default();
+    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima);
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
             near.add_unknown((0..mesh.len() as u32).filter(may_meet));
         });
     }
-}
-
-/// What rounding can do to the distance between a link and a triangle.
-fn rounding(link: &PlacedLink, corners: [Vector; 3]) -> Real {
-    32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners)
+    contacts.finish(out);
 }
 
 /// Whether a point lies on the segment between two, as far as rounding can tell.

@@ -40,23 +40,6 @@ impl Best {
     }
 }
 
-/// Measures triangles, however many.
-pub(super) fn measure_each(
-    level: Level,
-    link: &PlacedLink,
-    mesh: &Mesh,
-    triangles: &[u32],
-    mut take: impl FnMut(Nearest),
-) {
-    for together in triangles.chunks(TOGETHER) {
-        if together.len() < WORTH_A_PACK {
-            together.iter().for_each(|&triangle| take(link.measure(triangle, mesh.corners(triangle))));
-        } else {
-            measure_pack(level, link, mesh, together, Real::INFINITY, &mut take);
-        }
-    }
-}
-
 /// Measures up to [`TOGETHER`] triangles in packs. `take` gets those that are at most `bound` away.
 #[inline(always)]
 fn measure_pack(

@@ -18,7 +18,8 @@
 //! | `winding/` | how the mesh winds around a point, and on which side of it that is; `wide_bvh/winding` sums it up |
 //! | `certificate` | proofs of an answer |
 //! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
-//! | `local_minima` | the local minima of a link's distance: one contact for each |
+//! | `contact_lanes`, `pair_lanes` | contacts of many answers, a pack of pairs at a time |
+//! | `local_minima`, `ranked` | the local minima of a link's distance: one contact for each |
 //! | `near_triangle`, `shared_parts` | what the search tells of a triangle within the margin, and which corners and edges triangles share |
 //! | `derivative` | how it changes with the points that link and triangle are made of |
 //! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
@@ -28,6 +29,7 @@
 mod certificate;
 mod checks;
 mod contact;
+mod contact_lanes;
 mod derivative;
 mod engine;
 mod error;
@@ -43,8 +45,10 @@ mod motion;
 mod motion_serialised;
 mod near_triangle;
 mod nearest_features;
+mod pair_lanes;
 mod parallel;
 mod placed;
+mod ranked;
 mod report;
 mod search_frame;
 #[cfg(feature = "serde-serialize")]

@@ -4,13 +4,27 @@ use super::shared_parts::PART_WITHOUT;
 use super::triangle_block::BLOCK;
 use parry3d_f64::math::Real;
 
-/// The triangles that may be within a margin of a link.
+/// The triangles that may be within a margin of the links of a robot, link by link.
 #[derive(Clone, Default)]
 pub(super) struct NearTriangles {
     /// Those that may hold a local minimum.
     pub in_question: Vec<NearTriangle>,
     /// Those that certainly lie on a slope.
     slopes: Vec<Slopes>,
+}
+
+/// Where the triangles of one link end.
+#[derive(Clone, Copy, Default)]
+pub(super) struct End {
+    pub in_question: usize,
+    slopes: usize,
+}
+
+/// The triangles that may be within a margin of one link.
+#[derive(Clone, Copy)]
+pub(super) struct NearLink<'a> {
+    pub in_question: &'a [NearTriangle],
+    slopes: &'a [Slopes],
 }
 
 /// A triangle that may be within a margin of a link.
@@ -53,6 +67,21 @@ impl NearTriangles {
         }
     }
 
+    /// Where those of the next link will stand.
+    pub(super) fn end(&self) -> End {
+        End { in_question: self.in_question.len(), slopes: self.slopes.len() }
+    }
+
+    /// Those of one link.
+    pub(super) fn between(&self, [from, to]: [End; 2]) -> NearLink<'_> {
+        NearLink {
+            in_question: &self.in_question[from.in_question..to.in_question],
+            slopes: &self.slopes[from.slopes..to.slopes],
+        }
+    }
+}
+
+impl NearLink<'_> {
     pub(super) fn has_slopes(&self) -> bool {
         !self.slopes.is_empty()
     }

@@ -122,7 +122,11 @@ pub(crate) struct Nearest {
 impl PlacedLink {
     /// The link at `pose`.
     pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose) -> Self {
-        let link = link.transformed(pose);
+        Self::of(&link.transformed(pose))
+    }
+
+    /// A link that is in the mesh's frame.
+    pub(super) fn of(link: &ModifiedCylinder) -> Self {
         Self::between(link.start(), link.end(), link.radius(), link.flat())
     }
 
@@ -204,13 +208,6 @@ impl PlacedLink {
         };
         let nearest = Pair::report(pair.unit, self.start, triangle, closest);
         (nearest.distance <= bound).then_some(nearest)
-    }
-
-    /// The distance between the axis and a triangle, less the radius.
-    pub(super) fn axis_depth(&self, corners: [Vector; 3]) -> Real {
-        let pair = self.pair(corners);
-        let axial = Axial::new(&pair.link, &Face::new(pair.triangle));
-        (axial.axis_squared.sqrt() - pair.link.radius) * pair.unit
     }
 
     /// Whether the link is at most `bound` from the segment between two points.

@@ -46,14 +46,26 @@ impl LinkProximity {
     ///
     /// # Errors
     /// The robot does not have it, or the pose is not finite or moves it out of range.
-    pub(super) fn placed_link(&self, robot: &Chain, pose: &Pose) -> Result<PlacedLink, ProximityError> {
+    pub(super) fn transformed_link(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+    ) -> Result<ModifiedCylinder, ProximityError> {
         let link = self.find_link(robot)?;
         if !pose.is_finite() {
             return Err(ProximityError::PoseNotFinite);
         }
-        let placed = PlacedLink::new(link, pose);
-        check_ends(self.link as usize, [placed.start(), placed.end()])?;
-        Ok(placed)
+        let link = link.transformed(pose);
+        check_ends(self.link as usize, [link.start(), link.end()])?;
+        Ok(link)
+    }
+
+    /// The same, ready to be measured.
+    ///
+    /// # Errors
+    /// As [`transformed_link`](Self::transformed_link).
+    pub(super) fn placed_link(&self, robot: &Chain, pose: &Pose) -> Result<PlacedLink, ProximityError> {
+        Ok(PlacedLink::of(&self.transformed_link(robot, pose)?))
     }
 
     /// The corners of the triangle that this answer is about.

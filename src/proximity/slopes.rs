@@ -22,8 +22,11 @@
 //!    Where the right side is positive, let z be f's nearest point. Any point of T is z' + g h, with z' on f and g >= 0;
 //!    <W(z), z' - z> >= 0, z being the nearest of f, and <W(z), h> > 0: so none of T is nearer than z. F is the foot of C
 //!    on f, which makes <AB, h> zero but for rounding; it must lie on f.
-//! 2. *A neighbour is nearer.* D being convex, it is at least D(M) - |<W(M), AB>| / (2 D(M)) on all of f, which is what
-//!    T keeps. Another triangle that has f reaches to its own third corner C', and is nearer if D(C') is less.
+//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: it is at least D(M) - |<W(M), AB>| / (2 D(M)) on
+//!    all of f, and with E the end of f that <W(M), AB> leads down to and O the other end, at least
+//!    D(E) - max(0, -<W(E), O - E>) / D(E). T keeps the greater of the two. Another triangle that has f reaches to its own
+//!    third corner C' and holds the way from E to it. It is nearer if D is less at C', or at the point P a quarter of the way:
+//!    near a link that is closer than the triangles are long D may rise again on the way to C'.
 //!
 //! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as `local_minima` says. Of T's
 //! edges the one opposite to the corner that is farthest from the axis is tried.
@@ -39,9 +42,10 @@
 //! ```
 //!
 //! where the true products differ by t |h| + (|W(M)| + t) e / 4 + 3 e (|AB| + |h|) / 8 at most, and t < 11 e + |W(M)| / 2; 2 x
-//! is never more than 1 + x^2. In condition 2 the slope errs by t |AB| / |W(M)|, and each length by 2 e: with 8 e in all,
-//! 4 e are left by which the neighbour is nearer, far above what a measurement in double precision errs by. T must keep as
-//! much, lest it touch.
+//! is never more than 1 + x^2. In condition 2 each slope errs by t |AB| / |W|, with the t and the W of its point, and each
+//! length by 2 e: with 8 e in all, 4 e are left by which the neighbour is nearer, far above what a measurement in double
+//! precision errs by. T must keep as much, lest it touch. Any end may be taken for E. P errs by less than e / 8, its
+//! corners' errors and its own roundings together, and so its length by less than 2 e too.
 
 use super::link_lanes::LinkLanes;
 use crate::distance::lanes::Pack;
@@ -69,9 +73,7 @@ impl<L: Pack> LinkLanes<L> {
         let rise = (top - from).along(edge, -share);
         let (way, radius) = self.way_to((from + to) * error.lit(0.5));
         let (apart, length) = (way.norm(), squared.sqrt());
-        let eight = error * error.lit(8.0);
-        let turn =
-            error * error.lit(4.0) + ((apart + error * error.lit(4.0)) * error * error.lit(9.0)).sqrt();
+        let turn = turn_at(apart, error);
         let rise_squared = rise.norm_squared();
         let sizes = apart + one + (squared + rise_squared) * error.lit(0.5);
         let steep = way.dot(rise) - error * sizes;
@@ -81,10 +83,22 @@ impl<L: Pack> LinkLanes<L> {
             & zero.lt(steep)
             & (rise_squared * least * least).lt(steep * steep);
 
-        let fall = (way.dot(edge).abs() * error.lit(0.5) + turn * length).over(apart);
-        let kept = apart - fall - eight;
+        let eight = error * error.lit(8.0);
+        let along = way.dot(edge);
+        let kept = apart - (along.abs() * error.lit(0.5) + turn * length).over(apart) - eight;
         let is_lower = radius.lt(kept) & self.way_to(beyond).0.norm().lt(kept);
-        L::bits(is_at_edge & is_lower)
+        if L::bits(is_at_edge & !is_lower) == 0 {
+            return L::bits(is_at_edge & is_lower);
+        }
+        let falls = along.lt(zero);
+        let (low, to_high) = (Vec3::select(falls, to, from), Vec3::select(falls, -edge, edge));
+        let way = self.way_to(low).0;
+        let apart = way.norm();
+        let fall = (turn_at(apart, error) * length - way.dot(to_high)).max(zero).over(apart);
+        let kept = kept.max(apart - fall - eight);
+        let on_the_way = low.along(beyond - low, error.lit(0.25));
+        let nearest = self.way_to(beyond).0.norm().min(self.way_to(on_the_way).0.norm());
+        L::bits(is_at_edge & radius.lt(kept) & nearest.lt(kept))
     }
 
     /// The way to a point from the nearest point of the axis, if both caps are round, else of the link; and the length of
@@ -106,6 +120,13 @@ impl<L: Pack> LinkLanes<L> {
         let share = radius.lt(reach).select(radius.over(reach), zero.one());
         (from_axis.along(arm, -share), zero)
     }
+}
+
+/// By how much the way to a point errs that is so long, beside the error of the point.
+#[inline(always)]
+fn turn_at<L: Pack>(apart: L, error: L) -> L {
+    let four = error * error.lit(4.0);
+    four + ((apart + four) * error * error.lit(9.0)).sqrt()
 }
 
 /// The first where the first mask is true, the second where only the second one is, else the third. (A function, because

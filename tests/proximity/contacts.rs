@@ -8,7 +8,7 @@ use parry_continuum::Chain;
 use parry_continuum::distance::{Vec3, point_triangle};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, Proximity};
+use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Cap, ModifiedCylinder};
 
 /// What rounding may do to a distance: the room that the definition of a local minimum has.
@@ -301,4 +301,29 @@ fn the_minimum_within_a_bound() {
         }
     }
     assert!(within > 1000 && beyond > 300 && touching > 300, "{within} {beyond} {touching}");
+}
+
+/// What is computed together is what is computed alone, and an error leaves nothing behind.
+#[test]
+fn the_contacts_of_all_answers_are_those_of_each() {
+    let (mut answers, mut together, mut kinks, mut touching) = (Vec::new(), Vec::new(), 0, 0);
+    for seed in 0..600 {
+        let random = &mut Random::new(seed);
+        let (mesh, robot) = (small_mesh(random), small_robot(random));
+        // What is level or parallel stays so where it is not turned.
+        let pose = if seed % 3 == 0 { random.pose(0.3) } else { Pose::IDENTITY };
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        search.per_link(&robot, &pose, &mut answers).unwrap();
+        LinkProximity::contacts(&answers, &robot, &pose, &mesh, &mut together).unwrap();
+        let alone = answers.iter().map(|answer| answer.contact(&robot, &pose, &mesh).unwrap());
+        assert_eq!(together, alone.collect::<Vec<_>>(), "{seed}");
+        kinks += together.iter().filter(|contact| contact.kink).count();
+        touching += together.iter().filter(|contact| contact.distance <= 0.0).count();
+
+        let shorter = Chain::capsules(&[Vector::ZERO, Vector::X], &[0.1]).unwrap();
+        let result = LinkProximity::contacts(&answers, &shorter, &pose, &mesh, &mut together);
+        assert_eq!(result.is_err(), answers.len() > 1, "{seed}");
+        assert_eq!(together.len(), usize::from(answers.len() == 1), "{seed}");
+    }
+    assert!(kinks > 5 && touching > 100, "{kinks} {touching}");
 }

@@ -29,7 +29,7 @@ impl RobotSearch<'_> {
     pub(super) fn within(&mut self, margin: Real, minima: &mut LocalMinima, out: &mut Vec<Contact>) {
         let Self { search, robot } = self;
         let (level, mesh, robot) = (search.level, &search.hierarchy.mesh, *robot);
-        let mut contacts = RobotContacts { level, mesh, robot, margin, minima, out };
+        let mut contacts = RobotContacts::new(level, mesh, robot, margin, minima);
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
@@ -39,12 +39,12 @@ impl RobotSearch<'_> {
                     }
                 }
                 LinkNode::Leaf(link) => {
-                    let count = contacts.add(*link, |link, near| search.within(link, margin, near));
-                    search.scratch.work.measured += count;
+                    contacts.add(*link, |link, near| search.within(link, margin, near));
                 }
             }
             place += 1;
         }
+        search.scratch.work.measured += contacts.finish(out);
     }
 
     /// Whether every link keeps more than `margin` away from the mesh.

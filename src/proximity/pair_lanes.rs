@@ -1,0 +1,108 @@
+//! Pairs of links and triangles in double precision, a pack at a time, each in coordinates of its own: those of
+//! [`PlacedLink::pair`](super::placed::PlacedLink::pair), with the same bits on every instruction set.
+
+use crate::distance::lanes::Pack;
+use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
+use parry3d_f64::math::{Real, Vector};
+
+/// How many pairs are computed together: the widest pack of `f64`.
+pub(super) const TOGETHER: usize = 8;
+
+/// What is known of each of several pairs, each number in a row of its own.
+pub(super) type Rows<const N: usize> = [[Real; TOGETHER]; N];
+
+/// Pairs in the mesh's frame: the corners of the triangle, the ends of the link's axis, the radius, and 1 for each flat
+/// cap.
+pub(super) type PairRows = Rows<18>;
+
+/// Writes a pair with a link between two points in the mesh's frame.
+pub(super) fn put_pair(
+    rows: &mut PairRows,
+    lane: usize,
+    corners: [Vector; 3],
+    ends: [Vector; 2],
+    radius: Real,
+    flat: [bool; 2],
+) {
+    for (place, point) in corners.into_iter().chain(ends).enumerate() {
+        let [x, y, z] = point.to_array();
+        rows[3 * place][lane] = x;
+        rows[3 * place + 1][lane] = y;
+        rows[3 * place + 2][lane] = z;
+    }
+    rows[15][lane] = radius;
+    let [start, end] = flat.map(Real::from);
+    rows[16][lane] = start;
+    rows[17][lane] = end;
+}
+
+/// Three coordinates from the rows `row` to `row + 2`.
+#[inline(always)]
+fn point<L: Pack<Element = f64>>(token: L::Token, rows: &PairRows, row: usize, lane: usize) -> Vec3<L> {
+    let [x, y, z] = [&rows[row], &rows[row + 1], &rows[row + 2]];
+    Vec3::new(L::load(token, &x[lane..]), L::load(token, &y[lane..]), L::load(token, &z[lane..]))
+}
+
+/// Writes three coordinates to the rows `row` to `row + 2`.
+#[inline(always)]
+pub(super) fn store<L: Pack<Element = f64>, const N: usize>(
+    rows: &mut Rows<N>,
+    row: usize,
+    lane: usize,
+    point: Vec3<L>,
+) {
+    point.x.store(&mut rows[row][lane..]);
+    point.y.store(&mut rows[row + 1][lane..]);
+    point.z.store(&mut rows[row + 2][lane..]);
+}
+
+/// A pack of pairs, from the links' starts and near one.
+pub(super) struct PairLanes<L: Scalar> {
+    pub triangle: [Vec3<L>; 3],
+    pub link: Link<L>,
+    pub axial: Axial<L>,
+    /// The closest points.
+    pub closest: Closest<L>,
+    /// What 1 is in the mesh's unit.
+    pub unit: L,
+    /// The largest coordinate of link and triangle from the link's start, or the radius, in the mesh's unit.
+    pub extent: L,
+    /// The start of the link in the mesh's frame.
+    start: Vec3<L>,
+}
+
+impl<L: Pack<Element = f64>> PairLanes<L> {
+    /// Those from the lane `lane` on.
+    #[inline(always)]
+    pub(super) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
+        let (start, end) = (point::<L>(token, rows, 9, lane), point::<L>(token, rows, 12, lane));
+        let a = point::<L>(token, rows, 0, lane) - start;
+        let b = point::<L>(token, rows, 3, lane) - start;
+        let c = point::<L>(token, rows, 6, lane) - start;
+        let radius = L::load(token, &rows[15][lane..]);
+        let zero = radius.zero();
+        let flat = [zero.lt(L::load(token, &rows[16][lane..])), zero.lt(L::load(token, &rows[17][lane..]))];
+        let along = end - start;
+        let extent = a.largest().max(b.largest()).max(c.largest()).max(along.largest()).max(radius);
+        let scale = extent.power_of_two_to_unity();
+        let triangle = [a * scale, b * scale, c * scale];
+        let end = along * scale;
+        let axis = Vec3::select(gives_direction(end.norm_squared()), along.normalised(), Vec3::zero(zero));
+        let link = Link { end, axis, radius: radius * scale, flat };
+        let face = Face::new(triangle);
+        let axial = Axial::new(&link, &face);
+        // Where no lane is beyond a flat cap the discs decide nothing.
+        let closest = if L::bits(axial.beyond_flat_cap()) == 0 {
+            axial.without_caps(&link)
+        } else {
+            axial.with_caps(&link, &face)
+        };
+        Self { triangle, link, axial, closest, unit: scale.one() / scale, extent, start }
+    }
+
+    /// A point in the mesh's frame.
+    #[inline(always)]
+    pub(super) fn placed(&self, point: Vec3<L>) -> Vec3<L> {
+        self.start + point * self.unit
+    }
+}
