@@ -30,7 +30,8 @@ pub(crate) trait Pack: Scalar {
 }
 
 /// Whether the instructions for the larger and the smaller of two numbers are those of x86, which are [`Scalar::max`] and
-/// [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros.
+/// [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
+/// such thing; a test does.
 const COMPARES_AND_SELECTS: bool = cfg!(all(target_arch = "x86_64", target_feature = "sse2"));
 
 macro_rules! lanes {
