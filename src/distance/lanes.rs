@@ -29,6 +29,11 @@ pub(crate) trait Pack: Scalar {
     fn bits(mask: Self::Mask) -> u64;
 }
 
+/// Whether the instructions for the larger and the smaller of two numbers are those of x86, which are [`Scalar::max`] and
+/// [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
+/// such thing; a test does.
+const COMPARES_AND_SELECTS: bool = cfg!(all(target_arch = "x86_64", target_feature = "sse2"));
+
 macro_rules! lanes {
     ($Lanes:ident, $LaneMask:ident, $element:ty, $vector:ident, $mask:ident, $bits:ty, $mantissa_bits:literal,
      $bias:literal, $cbrt_bits:ident) => {
@@ -102,6 +107,19 @@ macro_rules! lanes {
             #[inline(always)]
             fn mul_add(self, factor: Self, addend: Self) -> Self {
                 Self(self.0.mul_add(factor.0, addend.0))
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if COMPARES_AND_SELECTS { Self(self.0.max(other.0)) } else { other.lt(self).select(self, other) }
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if COMPARES_AND_SELECTS { Self(self.0.min(other.0)) } else { self.lt(other).select(self, other) }
+            }
+            #[inline(always)]
+            fn over(self, divisor: Self) -> Self {
+                // What comes of a divisor that is not positive does no harm here.
+                self.zero().lt(divisor).select(self / divisor, self.zero())
             }
             #[inline(always)]
             fn cbrt_estimate(self) -> Self {

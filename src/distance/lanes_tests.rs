@@ -87,6 +87,41 @@ fn every_level_agrees_in_double_precision() {
     compare::<f64>();
 }
 
+/// The larger and the smaller of two numbers, and their quotient where it is one.
+#[inline(always)]
+fn choices<L: Pack>(token: L::Token, one: L::Element, other: L::Element) -> [L::Element; 3]
+where
+    L::Element: Default,
+{
+    let (one, other) = (L::splat(token, one), L::splat(token, other));
+    [one.max(other), one.min(other), one.over(other)].map(|pack| {
+        let mut lanes = vec![L::Element::default(); L::LANES];
+        pack.store(&mut lanes);
+        lanes[0]
+    })
+}
+
+fn compare_choices<E: Lane>() {
+    let numbers = [0.0, -0.0, 1.0, -1.5, 3.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(E::round);
+    // Numbers that are not are all alike.
+    let bits = |number: E| Some(number.into().to_bits()).filter(|_| !number.into().is_nan());
+    for one in numbers {
+        for other in numbers {
+            let expected = [one.max(other), one.min(other), one.over(other)].map(bits);
+            for level in levels() {
+                let found = dispatch!(level, simd => choices::<E::Pack<_>>(simd, one, other)).map(bits);
+                assert_eq!(found, expected, "{level:?}: {} {}", one.into(), other.into());
+            }
+        }
+    }
+}
+
+#[test]
+fn lanes_choose_as_single_numbers_do() {
+    compare_choices::<f32>();
+    compare_choices::<f64>();
+}
+
 #[inline(always)]
 fn helpers<L: Pack>(token: L::Token, value: L::Element) -> [L::Element; 2]
 where

@@ -81,6 +81,18 @@ impl<S: Simd> Scalar for Unfused<S> {
         self * factor + addend
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+    #[inline(always)]
+    fn over(self, divisor: Self) -> Self {
+        Self(self.0.over(divisor.0))
+    }
+    #[inline(always)]
     fn cbrt_estimate(self) -> Self {
         let mut lanes = [0.0; WIDEST];
         self.0.store(&mut lanes);

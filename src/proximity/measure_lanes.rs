@@ -2,23 +2,22 @@
 //! [`PlacedLink::measure`], on every instruction set.
 
 use super::mesh::Mesh;
+use super::pair_lanes::{self, PairLanes, PlacedLanes, Rows, TOGETHER, put_corners, store};
 use super::placed::{Best, Nearest, Pair, PlacedLink};
+use super::triangle_block::splat;
 use crate::distance::lanes::Pack;
-use crate::distance::{Axial, Closest, Face, Link, Unfused, Vec3, dispatch};
+use crate::distance::{Closest, Unfused, Vec3, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// How many triangles are measured together: the widest pack of `f64`.
-pub(super) const TOGETHER: usize = 8;
+/// Fewer are measured one by one: half a pack takes less time than two of them.
+const WORTH_A_PACK: usize = 2;
 
-/// Fewer are measured one by one: a pack takes about as long as two of them.
-const WORTH_A_PACK: usize = 3;
-
-/// Numbers of up to [`TOGETHER`] pairs, each in a row of its own: the corners of the triangle, then the end, the axis and
-/// the radius of the link.
-type Pairs = [[f64; TOGETHER]; 16];
-/// Numbers of their answers: the distance, and the points of triangle and link.
-type Answers = [[f64; TOGETHER]; 7];
+/// The corners of up to [`TOGETHER`] triangles in the mesh's frame, each coordinate in a row of its own.
+type Corners = Rows<9>;
+/// Numbers of their answers in each pair's own coordinates: the distance, the points of triangle and link, and what 1
+/// is in the mesh's unit.
+type Answers = Rows<8>;
 
 impl Best {
     /// Measures up to [`TOGETHER`] triangles. True if one of them is the best so far.
@@ -35,12 +34,21 @@ impl Best {
             return triangles.iter().fold(false, measure);
         }
         let mut is_best = false;
-        measure_pack(level, link, mesh, triangles, self.bound(), |nearest| is_best |= self.take(nearest));
+        let mut answers = [[0.0; TOGETHER]; 8];
+        let mut near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
+        while near != 0 {
+            let lane = near.trailing_zeros() as usize;
+            near &= near - 1;
+            // Most that are not farther than the bound are as far, and most of these need no report.
+            if self.is_worse_than(answers[0][lane] * answers[7][lane], triangles[lane]) {
+                is_best |= self.take(report(link, triangles[lane], &answers, lane));
+            }
+        }
         is_best
     }
 }
 
-/// Measures up to [`TOGETHER`] triangles in packs. `take` gets those that are at most `bound` away.
+/// Measures up to [`TOGETHER`] triangles. Returns which are at most `bound` away, one bit for each.
 #[inline(always)]
 fn measure_pack(
     level: Level,
@@ -48,91 +56,77 @@ fn measure_pack(
     mesh: &Mesh,
     triangles: &[u32],
     bound: Real,
-    mut take: impl FnMut(Nearest),
-) {
-    let (mut pairs, mut answers) = ([[0.0; TOGETHER]; 16], [[0.0; TOGETHER]; 7]);
-    let mut units = [0.0; TOGETHER];
+    answers: &mut Answers,
+) -> u64 {
+    let mut corners = [[0.0; TOGETHER]; 9];
     for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
-        let pair = link.pair(mesh.corners(triangle));
-        let [a, b, c] = pair.triangle;
-        put(&mut pairs, 0, lane, a);
-        put(&mut pairs, 3, lane, b);
-        put(&mut pairs, 6, lane, c);
-        put(&mut pairs, 9, lane, pair.link.end);
-        put(&mut pairs, 12, lane, pair.link.axis);
-        pairs[15][lane] = pair.link.radius;
-        units[lane] = pair.unit;
+        put_corners(&mut corners, lane, mesh.corners(triangle));
     }
-    let (flat, count) = (link.flat(), triangles.len());
-    closest_at(level, &pairs, flat, count, &mut answers);
-    for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
-        let distance = answers[0][lane];
-        if distance * units[lane] <= bound {
-            let point =
-                |row: usize| Vec3::new(answers[row][lane], answers[row + 1][lane], answers[row + 2][lane]);
-            let closest = Closest { distance, point1: point(1), point2: point(4) };
-            take(Pair::report(units[lane], link.start(), triangle, closest));
-        }
-    }
+    closest_at(narrowed(level, triangles.len()), link, &corners, triangles.len(), bound, answers)
 }
 
-/// Writes three coordinates to the rows `row` to `row + 2`.
-fn put(pairs: &mut Pairs, row: usize, lane: usize, point: Vec3<f64>) {
-    pairs[row][lane] = point.x;
-    pairs[row + 1][lane] = point.y;
-    pairs[row + 2][lane] = point.z;
+/// The answer of a lane.
+fn report(link: &PlacedLink, triangle: u32, answers: &Answers, lane: usize) -> Nearest {
+    let point = |row: usize| Vec3::new(answers[row][lane], answers[row + 1][lane], answers[row + 2][lane]);
+    let closest = Closest { distance: answers[0][lane], point1: point(1), point2: point(4) };
+    Pair::report(answers[7][lane], link.start(), triangle, closest)
+}
+
+/// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
+fn narrowed(level: Level, count: usize) -> Level {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if 2 * count <= TOGETHER
+        && let Some(avx2) = level.as_avx2()
+    {
+        return Level::Avx2(avx2);
+    }
+    level
 }
 
 #[inline(never)] // compiled for each instruction set, not for each use as well
-fn closest_at(level: Level, pairs: &Pairs, flat: [bool; 2], count: usize, answers: &mut Answers) {
-    dispatch!(level, simd => closest::<Unfused<_>>(simd, pairs, flat, count, answers));
+fn closest_at(
+    level: Level,
+    link: &PlacedLink,
+    corners: &Corners,
+    count: usize,
+    bound: Real,
+    answers: &mut Answers,
+) -> u64 {
+    dispatch!(level, simd => closest::<Unfused<_>>(simd, link, corners, count, bound, answers))
 }
 
+/// [`PlacedLink::measure`] in lanes, step by step.
 #[inline(always)]
 fn closest<L: Pack<Element = f64>>(
     token: L::Token,
-    pairs: &Pairs,
-    flat: [bool; 2],
+    link: &PlacedLink,
+    corners: &Corners,
     count: usize,
+    bound: Real,
     answers: &mut Answers,
-) {
-    let zero = L::splat(token, 0.0);
+) -> u64 {
+    let (zero, bound) = (L::splat(token, 0.0), L::splat(token, bound));
     let (yes, no) = (zero.le(zero), zero.lt(zero));
+    let flat = [if link.flat()[0] { yes } else { no }, if link.flat()[1] { yes } else { no }];
+    let link = PlacedLanes {
+        start: splat::<L>(token, link.start().into()),
+        along: splat::<L>(token, link.along().into()),
+        axis: splat::<L>(token, link.axis()),
+        radius: L::splat(token, link.radius()),
+        flat,
+        extent: L::splat(token, link.extent()),
+    };
+    let mut near = 0;
     for lane in (0..count).step_by(L::LANES) {
-        let face = Face::new([
-            point::<L>(token, pairs, 0, lane),
-            point::<L>(token, pairs, 3, lane),
-            point::<L>(token, pairs, 6, lane),
-        ]);
-        let link = Link {
-            end: point::<L>(token, pairs, 9, lane),
-            axis: point::<L>(token, pairs, 12, lane),
-            radius: L::load(token, &pairs[15][lane..]),
-            flat: [if flat[0] { yes } else { no }, if flat[1] { yes } else { no }],
-        };
-        let axial = Axial::new(&link, &face);
-        // Where no lane is beyond a flat cap the discs decide nothing.
-        let closest = if L::bits(axial.beyond_flat_cap()) == 0 {
-            axial.without_caps(&link)
-        } else {
-            axial.with_caps(&link, &face)
-        };
+        let PairLanes { closest, unit, .. } = link.with(pair_lanes::corners::<L, 9>(token, corners, lane));
         let Closest { distance, point1, point2 } = closest;
+        near |= L::bits((distance * unit).le(bound)) << lane;
         distance.store(&mut answers[0][lane..]);
-        point1.x.store(&mut answers[1][lane..]);
-        point1.y.store(&mut answers[2][lane..]);
-        point1.z.store(&mut answers[3][lane..]);
-        point2.x.store(&mut answers[4][lane..]);
-        point2.y.store(&mut answers[5][lane..]);
-        point2.z.store(&mut answers[6][lane..]);
+        store(answers, 1, lane, point1);
+        store(answers, 4, lane, point2);
+        unit.store(&mut answers[7][lane..]);
     }
-}
-
-/// Three coordinates from the rows `row` to `row + 2`.
-#[inline(always)]
-fn point<L: Pack<Element = f64>>(token: L::Token, pairs: &Pairs, row: usize, lane: usize) -> Vec3<L> {
-    let [x, y, z] = [&pairs[row], &pairs[row + 1], &pairs[row + 2]];
-    Vec3::new(L::load(token, &x[lane..]), L::load(token, &y[lane..]), L::load(token, &z[lane..]))
+    near & ((1 << count) - 1)
 }
 
 #[cfg(test)]

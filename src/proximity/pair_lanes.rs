@@ -24,12 +24,9 @@ pub(super) fn put_pair(
     radius: Real,
     flat: [bool; 2],
 ) {
-    for (place, point) in corners.into_iter().chain(ends).enumerate() {
-        let [x, y, z] = point.to_array();
-        rows[3 * place][lane] = x;
-        rows[3 * place + 1][lane] = y;
-        rows[3 * place + 2][lane] = z;
-    }
+    put_corners(rows, lane, corners);
+    put(rows, 9, lane, ends[0]);
+    put(rows, 12, lane, ends[1]);
     rows[15][lane] = radius;
     let [start, end] = flat.map(Real::from);
     rows[16][lane] = start;
@@ -38,9 +35,40 @@ pub(super) fn put_pair(
 
 /// Three coordinates from the rows `row` to `row + 2`.
 #[inline(always)]
-fn point<L: Pack<Element = f64>>(token: L::Token, rows: &PairRows, row: usize, lane: usize) -> Vec3<L> {
+fn point<L: Pack<Element = f64>>(
+    token: L::Token,
+    rows: &[[Real; TOGETHER]],
+    row: usize,
+    lane: usize,
+) -> Vec3<L> {
     let [x, y, z] = [&rows[row], &rows[row + 1], &rows[row + 2]];
     Vec3::new(L::load(token, &x[lane..]), L::load(token, &y[lane..]), L::load(token, &z[lane..]))
+}
+
+/// The corners of triangles, in the first nine rows.
+#[inline(always)]
+pub(super) fn corners<L: Pack<Element = f64>, const N: usize>(
+    token: L::Token,
+    rows: &Rows<N>,
+    lane: usize,
+) -> [Vec3<L>; 3] {
+    [point::<L>(token, rows, 0, lane), point::<L>(token, rows, 3, lane), point::<L>(token, rows, 6, lane)]
+}
+
+/// Writes the corners of a triangle to the first nine rows.
+#[inline(always)]
+pub(super) fn put_corners<const N: usize>(rows: &mut Rows<N>, lane: usize, corners: [Vector; 3]) {
+    for (place, point) in corners.into_iter().enumerate() {
+        put(rows, 3 * place, lane, point);
+    }
+}
+
+/// Writes three coordinates to the rows `row` to `row + 2`.
+#[inline(always)]
+fn put<const N: usize>(rows: &mut Rows<N>, row: usize, lane: usize, point: Vector) {
+    rows[row][lane] = point.x;
+    rows[row + 1][lane] = point.y;
+    rows[row + 2][lane] = point.z;
 }
 
 /// Writes three coordinates to the rows `row` to `row + 2`.
@@ -75,19 +103,45 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
     /// Those from the lane `lane` on.
     #[inline(always)]
     pub(super) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
-        let (start, end) = (point::<L>(token, rows, 9, lane), point::<L>(token, rows, 12, lane));
-        let a = point::<L>(token, rows, 0, lane) - start;
-        let b = point::<L>(token, rows, 3, lane) - start;
-        let c = point::<L>(token, rows, 6, lane) - start;
+        let start = point::<L>(token, rows, 9, lane);
+        let along = point::<L>(token, rows, 12, lane) - start;
         let radius = L::load(token, &rows[15][lane..]);
         let zero = radius.zero();
         let flat = [zero.lt(L::load(token, &rows[16][lane..])), zero.lt(L::load(token, &rows[17][lane..]))];
-        let along = end - start;
-        let extent = a.largest().max(b.largest()).max(c.largest()).max(along.largest()).max(radius);
+        let extent = along.largest().max(radius);
+        let placed = PlacedLanes { start, along, axis: along.normalised(), radius, flat, extent };
+        placed.with(corners::<L, 18>(token, rows, lane))
+    }
+
+    /// A point in the mesh's frame.
+    #[inline(always)]
+    pub(super) fn placed(&self, point: Vec3<L>) -> Vec3<L> {
+        self.start + point * self.unit
+    }
+}
+
+/// Links in the mesh's frame, as [`PlacedLink`](super::placed::PlacedLink).
+#[derive(Clone, Copy)]
+pub(super) struct PlacedLanes<L: Scalar> {
+    pub start: Vec3<L>,
+    pub along: Vec3<L>,
+    pub axis: Vec3<L>,
+    pub radius: L,
+    pub flat: [L::Mask; 2],
+    pub extent: L,
+}
+
+impl<L: Pack<Element = f64>> PlacedLanes<L> {
+    /// The pairs with triangles in the mesh's frame.
+    #[inline(always)]
+    pub(super) fn with(&self, [a, b, c]: [Vec3<L>; 3]) -> PairLanes<L> {
+        let Self { start, along, axis, radius, flat, extent } = *self;
+        let [a, b, c] = [a - start, b - start, c - start];
+        let extent = a.largest().max(b.largest()).max(c.largest()).max(extent);
         let scale = extent.power_of_two_to_unity();
         let triangle = [a * scale, b * scale, c * scale];
         let end = along * scale;
-        let axis = Vec3::select(gives_direction(end.norm_squared()), along.normalised(), Vec3::zero(zero));
+        let axis = Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
         let link = Link { end, axis, radius: radius * scale, flat };
         let face = Face::new(triangle);
         let axial = Axial::new(&link, &face);
@@ -97,12 +151,6 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
         } else {
             axial.with_caps(&link, &face)
         };
-        Self { triangle, link, axial, closest, unit: scale.one() / scale, extent, start }
-    }
-
-    /// A point in the mesh's frame.
-    #[inline(always)]
-    pub(super) fn placed(&self, point: Vec3<L>) -> Vec3<L> {
-        self.start + point * self.unit
+        PairLanes { triangle, link, axial, closest, unit: scale.one() / scale, extent, start }
     }
 }

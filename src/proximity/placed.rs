@@ -171,6 +171,11 @@ impl PlacedLink {
         self.flat
     }
 
+    /// The largest coordinate from the start, or the radius.
+    pub(super) fn extent(&self) -> Real {
+        self.extent
+    }
+
     /// The nearest points of the link and a triangle.
     pub(crate) fn measure(&self, triangle: u32, corners: [Vector; 3]) -> Nearest {
         let pair = self.pair(corners);
@@ -363,14 +368,19 @@ impl Best {
         link.measure_within(self.bound, triangle, corners).is_some_and(|nearest| self.take(nearest))
     }
 
+    /// Whether a triangle so far away would be the best so far.
+    #[inline(always)]
+    pub(super) fn is_worse_than(&self, distance: Real, triangle: u32) -> bool {
+        distance <= self.bound
+            && self.nearest.is_none_or(|mine| {
+                distance < mine.distance || (distance <= mine.distance && triangle < mine.triangle)
+            })
+            && (distance > 0.0 || triangle < self.below)
+    }
+
     /// Takes over a triangle if it is the best so far.
     pub(crate) fn take(&mut self, other: Nearest) -> bool {
-        let is_better = other.distance <= self.bound
-            && self.nearest.is_none_or(|mine| {
-                other.distance < mine.distance
-                    || (other.distance <= mine.distance && other.triangle < mine.triangle)
-            });
-        let is_better = is_better && (other.distance > 0.0 || other.triangle < self.below);
+        let is_better = self.is_worse_than(other.distance, other.triangle);
         if is_better {
             let below = if other.distance > 0.0 { self.below } else { other.triangle };
             *self = Self { bound: other.distance, nearest: Some(other), below };

@@ -3,6 +3,7 @@
 mod across;
 mod bound;
 mod build;
+mod candidates;
 mod engine;
 mod fit;
 mod gathering;

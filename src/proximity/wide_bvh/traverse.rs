@@ -8,15 +8,16 @@
 
 use super::across::Across;
 use super::build::WideBvh;
+use super::candidates::bring_forward;
 use super::gathering::Gathering;
 use super::node::{Child, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
 use crate::proximity::link_lanes::LinkLanes;
-use crate::proximity::measure_lanes::TOGETHER;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::near_triangle::NearTriangles;
+use crate::proximity::pair_lanes::TOGETHER;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::triangle_block::{BLOCK, load_vertices};
@@ -330,10 +331,7 @@ impl<E: Lane> Traversal<'_, E> {
         let candidates = &mut self.stack.candidates;
         let (limit, below) = (target.limit, target.below);
         candidates.retain(|candidate| candidate.0 < limit && candidate.1 < below);
-        if candidates.len() > TOGETHER {
-            let lower = |candidate: &(E, u32)| -> f64 { candidate.0.into() };
-            candidates.select_nth_unstable_by(TOGETHER - 1, |a, b| lower(a).total_cmp(&lower(b)));
-        }
+        bring_forward(candidates, TOGETHER);
         let (mut limit, mut place) = (target.limit, 0);
         while place < candidates.len() {
             let (mut together, mut count) = ([0; TOGETHER], 0);
