@@ -68,6 +68,9 @@ const LEFT_OUT: u32 = 0;
 /// The place of no triangle.
 const NONE: u32 = u32::MAX;
 
+/// Links are put off while no more triangles than these are to be measured, so that packs are full and memory is small.
+const PUT_OFF: usize = 1 << 12;
+
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct LocalMinima {
@@ -107,6 +110,9 @@ pub(super) struct RobotContacts<'a> {
     robot: PlacedRobot<'a>,
     margin: Real,
     minima: &'a mut LocalMinima,
+    out: &'a mut Vec<Contact>,
+    /// How many triangles were measured.
+    measured: u64,
 }
 
 impl<'a> RobotContacts<'a> {
@@ -117,9 +123,10 @@ impl<'a> RobotContacts<'a> {
         robot: PlacedRobot<'a>,
         margin: Real,
         minima: &'a mut LocalMinima,
+        out: &'a mut Vec<Contact>,
     ) -> Self {
         minima.clear();
-        Self { level, mesh, robot, margin, minima }
+        Self { level, mesh, robot, margin, minima, out, measured: 0 }
     }
 
     /// Looks at a link, behind the last one. `near` adds the triangles that may be within the margin; some may be farther
@@ -132,12 +139,21 @@ impl<'a> RobotContacts<'a> {
         minima.leave_out(self.mesh, triangles);
         let measured = measured..minima.measured.len();
         minima.links.push(LinkAtWall { number, link, triangles, measured });
+        if minima.measured.len() > PUT_OFF {
+            self.catch_up();
+        }
     }
 
     /// The contacts of all links, nearest first for each. Returns how many triangles were measured.
-    pub(super) fn finish(self, out: &mut Vec<Contact>) -> u64 {
-        let Self { level, mesh, robot, margin, minima } = self;
-        minima.find(level, mesh, margin);
+    pub(super) fn finish(mut self) -> u64 {
+        self.catch_up();
+        self.measured
+    }
+
+    /// Finds the contacts of the links that were put off.
+    fn catch_up(&mut self) {
+        let Self { level, mesh, robot, margin, .. } = *self;
+        self.minima.find(level, mesh, margin);
         let place = |found: &LinkProximity| {
             let link = robot.link(found.link as usize);
             Place {
@@ -148,8 +164,9 @@ impl<'a> RobotContacts<'a> {
                 before: robot.length_before(found.link as usize),
             }
         };
-        add_contacts(level, &minima.found, place, out);
-        minima.measured.len() as u64
+        add_contacts(level, &self.minima.found, place, self.out);
+        self.measured += self.minima.measured.len() as u64;
+        self.minima.clear();
     }
 }
 
@@ -354,14 +371,14 @@ pub(crate) fn contacts_by_all_triangles(
     out: &mut Vec<Contact>,
 ) {
     let mut minima = LocalMinima::default();
-    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima);
+    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima, out);
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
             near.add_unknown((0..mesh.len() as u32).filter(may_meet));
         });
     }
-    contacts.finish(out);
+    contacts.finish();
 }
 
 /// Whether a point lies on the segment between two, as far as rounding can tell.

@@ -130,14 +130,20 @@ impl<T: Scalar> NearestParts<T> {
     }
 
     /// Where [`is_kink`] must be asked, or the gap is too short for these digits. A kink needs two corners that are
-    /// foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's.
+    /// foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside a link also
+    /// the third corner or an edge along it.
     #[inline(always)]
     pub(super) fn needs_closer_look(&self, triangle: &[Vec3<T>; 3], link: &Link<T>) -> T::Mask {
         let tie = self.gap.lit(TIE);
-        let [a, b, c] = are_foremost(triangle, self.normal, tie);
+        let [a, b, c] = *triangle;
+        let [a_is_foremost, b_is_foremost, c_is_foremost] = are_foremost(triangle, self.normal, tie);
+        let [ab, bc] = [a_is_foremost & b_is_foremost, b_is_foremost & c_is_foremost];
+        let ca = c_is_foremost & a_is_foremost;
         let is_level = self.normal.dot(link.end).abs().le(tie);
-        let faces_cap = self.at_flat_cap & (across(self.normal, link) * link.radius).le(tie);
-        let may_be_kink = ((a & b) | (b & c) | (c & a)) & (is_level | faces_cap);
+        let edge = Vec3::select(ab, b - a, Vec3::select(bc, c - b, a - c));
+        let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap));
+        let faces_cap = (across(self.normal, link) * link.radius).le(tie);
+        let may_be_kink = (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
         self.gap.lt(self.gap.lit(SHORT)) | (may_be_kink & self.has_normal & !self.cap_touches)
     }
 }
@@ -301,8 +307,13 @@ fn is_kink<T: Scalar<Mask = bool>>(
         [_, true, true] => [triangle[1], triangle[2]],
         _ => [triangle[2], triangle[0]],
     };
-    let edge = to - from;
+    is_along(to - from, link, apart)
+}
+
+/// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can tell.
+#[inline(always)]
+fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T) -> T::Mask {
     let sine = edge.cross(link.axis).norm().over(edge.norm());
     let rise = edge.norm().min(link.end.norm()) * sine;
-    (rise * rise).le(tie * apart * apart.lit(2.0))
+    (rise * rise).le(apart.lit(TIE) * apart * apart.lit(2.0))
 }

@@ -166,12 +166,12 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         self.run(std::iter::once((robot, pose)), Aim::Every(margin))?;
         let Self { level, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
         let robot = PlacedRobot::new(robot, pose)?;
-        let mut contacts = RobotContacts::new(level, &triangles.mesh, robot, margin, minima);
+        let mut contacts = RobotContacts::new(level, &triangles.mesh, robot, margin, minima, out);
         for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
             let triangles = pairs.iter().map(|pair| pair.1);
             contacts.add(pairs[0].0, |_, near| near.add_unknown(triangles));
         }
-        work.measured += contacts.finish(out);
+        work.measured += contacts.finish();
         Ok(())
     }
 

@@ -29,7 +29,7 @@ impl RobotSearch<'_> {
     pub(super) fn within(&mut self, margin: Real, minima: &mut LocalMinima, out: &mut Vec<Contact>) {
         let Self { search, robot } = self;
         let (level, mesh, robot) = (search.level, &search.hierarchy.mesh, *robot);
-        let mut contacts = RobotContacts::new(level, mesh, robot, margin, minima);
+        let mut contacts = RobotContacts::new(level, mesh, robot, margin, minima, out);
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
@@ -44,7 +44,7 @@ impl RobotSearch<'_> {
             }
             place += 1;
         }
-        search.scratch.work.measured += contacts.finish(out);
+        search.scratch.work.measured += contacts.finish();
     }
 
     /// Whether every link keeps more than `margin` away from the mesh.
