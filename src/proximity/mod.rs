@@ -5,7 +5,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `engine` | what every engine answers: the trait [`Proximity`] |
-//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `across` knows the neighbours of a leaf's triangles, `traverse` finds the nearest triangle of a link, `gathering` collects all within a margin, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `minimum` finds the closest of them, `joint` parts robot and mesh together, `kept_distances` knows what still holds after a small motion, `outline` how far it was and `widening` how far to look for the next, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `winding` sums up how the mesh winds around a point, `engine`, `tube_engine`, `motion_engine` and `side_engine` are [`BvhSearch`] |
+//! | `wide_bvh/` | the search: `build` makes the hierarchy, `bound` is what a node knows of a child, `fit` puts a box around one, `across` knows the neighbours of a leaf's triangles, `traverse` finds the nearest triangle of a link and `candidates` orders what it leaves in question, `gathering` collects all within a margin, `hierarchy` chooses the precision for it, `queries` goes through a robot's links, `minimum` finds the closest of them, `joint` parts robot and mesh together and `rough_sides` guesses where they meet, `kept_distances` knows what still holds after a small motion, `outline` how far it was and `widening` how far to look for the next, `tube_queries` goes through a tube's pieces, `motion_queries` through the shapes of a motion and `moment` through the pieces of one, `winding` sums up how the mesh winds around a point, `engine`, `tube_engine`, `motion_engine` and `side_engine` are [`BvhSearch`] |
 //! | `tube/` | a tube in the mesh's frame: its pieces, convex bodies around them, points that are in it |
 //! | `exhaustive/` | every triangle: `blocks` holds them, `scan` is the loop, `pass` goes through a query's links, `engine` is [`Exhaustive`] |
 //! | `link_lanes` | a link against a pack of triangles, in the precision of the search |
@@ -13,12 +13,12 @@
 //! | `search_frame` | mesh and links near one, in the precision of the search, and what rounding can do there |
 //! | `triangle_block` | how triangles stand in memory, to be loaded in packs |
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
-//! | `measure_lanes` | the same measurement, several triangles together |
+//! | `measure_lanes`, `pair_lanes` | the same measurement, several triangles or pairs together |
 //! | `mesh` | the mesh as every engine keeps it |
 //! | `winding/` | how the mesh winds around a point, and on which side of it that is; `wide_bvh/winding` sums it up |
 //! | `certificate` | proofs of an answer |
 //! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
-//! | `contact_lanes`, `pair_lanes` | contacts of many answers, a pack of pairs at a time |
+//! | `contact_lanes` | contacts of many answers, a pack of pairs at a time |
 //! | `local_minima`, `ranked` | the local minima of a link's distance: one contact for each |
 //! | `near_triangle`, `shared_parts` | what the search tells of a triangle within the margin, and which corners and edges triangles share |
 //! | `derivative` | how it changes with the points that link and triangle are made of |

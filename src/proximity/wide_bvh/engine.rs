@@ -29,6 +29,10 @@ use std::sync::Arc;
 /// The engine remembers its last answers, which bound the next query: any robot and pose may follow, and small motions
 /// are answered fastest. [`BvhSearch::forget`] drops them.
 ///
+/// Once some tens of robots did not keep away from the mesh, as is common for a planner, the engine notes roughly which
+/// space lies on which side of the wall, so that [`clears`](Proximity::clears) looks first where a robot passes through it.
+/// That takes milliseconds once, 30 for a million triangles, and at most 300 kB.
+///
 /// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread costs nothing. Where
 /// [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others keep theirs.
 ///
