@@ -206,7 +206,7 @@ mod tests {
 
     const RADIUS: Real = 3.0;
 
-    /// A ball, the same without its poles, and the size of what is wall to each.
+    /// A ball, and the same without its poles.
     fn walls(size: Real) -> [Mesh; 2] {
         let (vertices, triangles) = Ball::new(RADIUS).to_trimesh(48, 24);
         let is_near_equator = |triangle: &[u32; 3]| {
@@ -225,8 +225,8 @@ mod tests {
 
     #[test]
     fn sides_are_seldom_mistaken_away_from_the_wall() {
-        for (is_open, mesh) in [(false, &walls(1.0)[0]), (true, &walls(1.0)[1])] {
-            let sides = RoughSides::new(mesh);
+        for (is_open, mesh) in [false, true].into_iter().zip(walls(1.0)) {
+            let sides = RoughSides::new(&mesh);
             let (mut known, mut close, mut wrong) = (0, 0, 0);
             for point in places().filter(|point| !is_open || point.y.abs() < 0.5 * RADIUS) {
                 let height = point.length() - RADIUS;
