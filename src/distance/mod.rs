@@ -2,8 +2,9 @@
 //!
 //! One public function per pair, in a file of its own with its derivation. All are branch-free and generic
 //! over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each scales its problem by an exact power
-//! of two, so finite input of any size gives a finite answer. Errors stay within a few units in the last place
-//! of the problem's extent, the largest difference between two of its coordinates or its radius.
+//! of two, so finite input of any size gives a finite answer, unless the distance itself is beyond the largest
+//! number: then it is infinite. Errors stay within a few units in the last place of the problem's extent, the
+//! largest difference between two of its coordinates or its radius.
 //!
 //! ```
 //! use parry_continuum::distance::{Vec3, triangle_modified_cylinder};

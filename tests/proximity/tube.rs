@@ -5,7 +5,7 @@ use continuum_scene::ventricle;
 use continuum_testing::{Arcs, Random, Stretch};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Clearance, Decision, Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, Certificate, Clearance, Decision, Proximity, ProximityError};
 use parry_continuum::{Chain, RobotError, Tube, TubeSection};
 use std::sync::Arc;
 
@@ -194,6 +194,32 @@ fn chains_are_tubes_of_straight_pieces() {
         free += usize::from(truth > 0.0);
     }
     assert!(free > 30 && free < 270);
+}
+
+/// Rounding turns the body around a piece at a face, the more the shorter the piece.
+#[test]
+fn links_as_short_as_rounding_keep_their_faces() {
+    let mut random = Random::new(11);
+    let (mut shortest, mut apart) = (0, 0);
+    for round in 0..4000 {
+        let length = 10.0_f64.powf(random.between(-16.0, -1.0));
+        let start = random.point();
+        let (end, radius) = (start + random.direction() * length, random.between(0.01, 1.0));
+        let Ok(chain) = Chain::cylinders(&[start, end], &[radius]) else { continue };
+        // A point, which the rim of a disc is mostly nearest to, or a triangle.
+        let point = random.point() * 3.0;
+        let corners =
+            if round % 2 == 0 { [point; 3] } else { [point, random.point() * 3.0, random.point() * 3.0] };
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        let truth = Certificate::between(&chain.links()[0], &Pose::IDENTITY, corners).unwrap();
+        let found = search.clearance(&Tube::from(&chain), &Pose::IDENTITY, 1e-6).unwrap();
+        shortest += u32::from(length < 1e-13);
+        apart += u32::from(found.lower > 0.1);
+        assert!(found.lower <= truth.upper, "{found:?} {truth:?} {chain:?} {corners:?}");
+        assert!(truth.lower <= found.upper, "{found:?} {truth:?} {chain:?} {corners:?}");
+    }
+    assert!(shortest > 500 && apart > 2000, "{shortest} {apart}");
 }
 
 #[test]

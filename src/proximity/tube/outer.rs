@@ -24,6 +24,12 @@
 //! r sin a ahead of the plane and r + k l^2 / 2 + a l beside the normal. Where the other end must be flat too, x is at
 //! most l + r sin(k l + a) behind.
 //!
+//! Such a body is led from the face to its back, A = ahead + behind long. Rounding moves its two ends against one another
+//! by at most 2 u (reach + A) in each coordinate, so it turns the axis by up to 4 u (reach / A + 1), and the flat ends dip
+//! by r times that where they should hold all. 4 u r is within `slack`, of which 4 u reach is less than a sixteenth. For
+//! the rest both ends lie farther out by x = min(e / A, sqrt(e)) with e = r slack / 16: the body is then longer than
+//! A + x, and e / (A + x) is at most x. The back moves aside by less than a slack.
+//!
 //! Points are known to `error`: a chord is then turned by up to 2 error / |chord|, and everything is `error` wider.
 
 use super::{Piece, PlacedTube};
@@ -71,14 +77,17 @@ impl PlacedTube<'_> {
             let other = if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
             let over = sideways + face.tilt * (length + section.radius) + other;
             if over <= by_chord && bend + face.tilt <= FRAC_PI_2 {
-                let wider = sideways + face.tilt * length + self.tube.error() + self.slack;
-                let beyond = section.radius * face.tilt + self.tube.error() + self.slack;
+                let wider = sideways + face.tilt * length + self.tube.error() + 2.0 * self.slack;
+                let mut beyond = section.radius * face.tilt + self.tube.error() + self.slack;
+                let mut behind = length;
+                if exposed[1 - end] {
+                    behind += section.radius * (bend + face.tilt) + self.tube.error() + self.slack;
+                }
+                let turning = section.radius * self.slack / 16.0;
+                let turned = turning / (beyond + behind).max(turning.sqrt());
+                beyond += turned;
+                behind += turned;
                 let face = self.face(&face);
-                let behind = if exposed[1 - end] {
-                    length + section.radius * (bend + face.tilt) + self.tube.error() + self.slack
-                } else {
-                    length
-                };
                 let tip = face.centre + face.outward * beyond;
                 let back = face.centre - face.outward * behind;
                 let (ends, flat) = if end == 0 {
