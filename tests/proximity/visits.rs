@@ -1,7 +1,7 @@
 //! How much of a mesh a query looks at: figures that do not depend on the machine, and that no change may exceed unnoticed.
 
 use continuum_scene::steer::Random;
-use continuum_scene::{cavity, ctr, ventricle};
+use continuum_scene::{cavity, ctr, lumen, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -74,5 +74,16 @@ fn a_planners_shape_visits_few_nodes_and_leaves() {
             let is_few = visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
             assert!(is_few, "{visits:?}");
         }
+    }
+}
+
+/// Beside triangles larger than its links a robot is measured in long runs.
+#[test]
+fn a_planners_shape_beside_large_triangles_visits_few_leaves() {
+    let mut search = BvhSearch::new(&lumen::mesh(8)).unwrap();
+    let visits = visits_of_shapes(&mut search, lumen::entry());
+    for (visited, counted) in visits.into_iter().zip([[2.21, 16.3], [1.72, 5.45]]) {
+        let is_few = visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
+        assert!(is_few, "{visits:?}");
     }
 }

@@ -233,7 +233,8 @@ impl<E: Lane> JointSearch<'_, E> {
     }
 
     /// Whether a triangle of a leaf is within the margin of a link for certain. A run is parted, unless it is too far
-    /// from all of them.
+    /// from all of them: from their planes, and if it is no longer than the leaf, from the triangles themselves. (A long one
+    /// is about as wide as the triangles are large, so that their planes tell as much.)
     #[inline(always)]
     fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, pair: Pair<E>) -> bool {
         self.work.visited += BLOCK as u64;
@@ -241,25 +242,32 @@ impl<E: Lane> JointSearch<'_, E> {
         let placed = &self.pairs.runs[pair.run as usize];
         let lanes = LinkLanes::<L>::new(token, &placed.searched);
         let (limit, certain) = (L::splat(token, placed.limit), L::splat(token, placed.certain));
-        let LinkNode::Leaf(link) = self.robot.link_tree()[pair.run as usize] else {
-            for lane in (0..BLOCK).step_by(L::LANES) {
-                if lanes.not_behind_plane(load_vertices::<L>(token, &leaf.rows, lane), limit) != 0 {
-                    self.part(pair);
-                    break;
-                }
-            }
-            return false;
+        let link = match self.robot.link_tree()[pair.run as usize] {
+            LinkNode::Leaf(link) => Some(link),
+            LinkNode::Inner { .. } => None,
         };
+        let is_long = link.is_none() && pair.size <= placed.size;
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.has_centre_within(vertices, certain) {
+            if link.is_some() && lanes.has_centre_within(vertices, certain) {
                 return true;
             }
             if lanes.not_behind_plane(vertices, limit) == 0 {
                 continue;
             }
+            if is_long {
+                self.part(pair);
+                return false;
+            }
             self.work.axis_distances += L::LANES as u64;
             let bounds = lanes.may_be_nearer(&Face::new(vertices), limit);
+            let Some(link) = link else {
+                if bounds.nearer != 0 {
+                    self.part(pair);
+                    return false;
+                }
+                continue;
+            };
             if L::bits(bounds.upper.lt(certain)) != 0 {
                 return true;
             }
