@@ -16,6 +16,18 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync
     items.iter_mut().enumerate().for_each(|(place, item)| work(place, item));
 }
 
+/// Does two things, on two cores if it is worth it.
+pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    #[cfg(feature = "parallel")]
+    if is_worth_it {
+        rayon::join(one, other);
+        return;
+    }
+    let _ = is_worth_it;
+    one();
+    other();
+}
+
 /// Answers questions in shares, each share with a memory of its own.
 ///
 /// # Errors

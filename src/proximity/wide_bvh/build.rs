@@ -8,10 +8,11 @@ use super::node::{Child, Leaf, Node, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Scalar, dispatch};
 use crate::proximity::mesh::Mesh;
-use crate::proximity::parallel::each;
+use crate::proximity::parallel::{both, each};
 use crate::proximity::search_frame::SearchFrame;
 use crate::proximity::triangle_block::BLOCK;
 use fearless_simd::Level;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// How many leaves one thread takes over at a time.
@@ -36,49 +37,34 @@ impl<E: Lane> WideBvh<E> {
             leaves: Vec::with_capacity(mesh.len().div_ceil(BLOCK / 2)),
             leaf_of: vec![0; mesh.len()],
         };
-        let centroid = |triangle: u32| {
-            let [a, b, c] = mesh.corners(triangle);
-            // Halved first, lest the sum of three far corners overflow.
-            (a * 0.5 + b * 0.5 + c * 0.5).to_array()
-        };
-        let mut items: Vec<_> =
-            (0..mesh.len() as u32).map(|triangle| (triangle, centroid(triangle))).collect();
-        tree.split(0, &mut items);
+        let mut items = items(&tree.frame, mesh);
+        arrange(&mut items, WIDTH, full_subtree(mesh.len()));
+        tree.split(0, &items);
         tree.refit(level, mesh);
         tree
     }
 
-    /// Divides the triangles of a node among its children: the largest part in two, until there are 16 parts or
-    /// all are of the size of a full subtree.
-    fn split(&mut self, node: usize, items: &mut [Item]) {
-        let unit = full_subtree(items.len());
-        let mut parts = vec![items];
-        while parts.len() < WIDTH {
-            let Some(largest) = (0..parts.len()).max_by_key(|&part| parts[part].len()) else { break };
-            if parts[largest].len() <= unit {
-                break;
-            }
-            let part = parts.swap_remove(largest);
-            let (low, high) = halve(part, unit);
-            parts.extend([low, high]);
-        }
+    /// Gives a node its children, for triangles that stand in order: a leaf each for up to 16 of them, a node for more.
+    /// Returns the lowest number of a triangle.
+    fn split(&mut self, node: usize, items: &[Item<E>]) -> u32 {
         let first = self.leaves.len();
-        for part in parts {
-            let lowest = part.iter().map(|&(triangle, _)| triangle).min().unwrap_or(u32::MAX);
-            let child = if part.len() <= BLOCK {
+        let mut lowest = u32::MAX;
+        for part in parts(items) {
+            let (child, lowest_of_part) = if part.len() <= BLOCK {
                 self.leaves.push(Leaf::of(|lane| part[lane].0, part.len()));
                 let leaf = self.leaves.len() as u32 - 1;
                 part.iter().for_each(|&(triangle, _)| self.leaf_of[triangle as usize] = leaf);
-                Child::Leaf(leaf)
+                (Child::Leaf(leaf), part.iter().fold(u32::MAX, |lowest, &(triangle, _)| lowest.min(triangle)))
             } else {
                 self.nodes.push(Node::empty());
                 let child = self.nodes.len() - 1;
-                self.split(child, part);
-                Child::Node(child as u32)
+                (Child::Node(child as u32), self.split(child, part))
             };
-            self.nodes[node].push(child, lowest);
+            self.nodes[node].push(child, lowest_of_part);
+            lowest = lowest.min(lowest_of_part);
         }
         self.nodes[node].leaves = first..self.leaves.len();
+        lowest
     }
 
     /// The triangles below a child.
@@ -122,8 +108,20 @@ fn bound_children<L: Pack>(
     }
 }
 
-/// A triangle and (one and a half times) its centroid.
-type Item = (u32, [f64; 3]);
+/// A triangle and three times its centroid.
+type Item<E> = (u32, [E; 3]);
+
+/// All triangles of a mesh.
+fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
+    let mut items = vec![Item::default(); mesh.len()];
+    each(&mut items.chunks_mut(Mesh::SHARE).collect::<Vec<_>>(), |share, items| {
+        for (triangle, item) in (share * Mesh::SHARE..).zip(items.iter_mut()) {
+            let [a, b, c] = mesh.corners(triangle as u32).map(|corner| frame.point(corner));
+            *item = (triangle as u32, (a + b + c).into());
+        }
+    });
+    items
+}
 
 /// How many triangles each child of a node with `count` triangles should hold, so that the nodes near the leaves,
 /// which are nearly all, are full: 16, 256, 4096 ...
@@ -136,17 +134,51 @@ fn full_subtree(count: usize) -> usize {
     unit
 }
 
-/// Two halves along the longest side of the centroids' box; the lower one is a multiple of `unit`.
-fn halve(items: &mut [Item], unit: usize) -> (&mut [Item], &mut [Item]) {
-    let side = |axis: usize| {
-        let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), item| {
-            (low.min(item.1[axis]), high.max(item.1[axis]))
-        });
-        high - low
+/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child. `most` tells how many
+/// children may come of them.
+fn middle(count: usize, most: usize, unit: usize) -> Option<usize> {
+    (most > 1 && count > unit).then(|| (count / 2).next_multiple_of(unit).min(count - 1))
+}
+
+/// Brings the triangles below a node into an order in which those of a child stand together, and so on below: they are
+/// divided along the longest side of their centroids' box, again and again.
+fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
+    let Some(middle) = middle(items.len(), most, unit) else {
+        if items.len() > BLOCK {
+            arrange(items, WIDTH, full_subtree(items.len()));
+        }
+        return;
     };
-    let sides = [side(0), side(1), side(2)];
-    let axis = (0..3).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
-    let middle = (items.len() / 2).next_multiple_of(unit).min(items.len() - 1);
-    items.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]));
-    items.split_at_mut(middle)
+    let axis = longest_side(items);
+    items.select_nth_unstable_by(middle, |a, b| {
+        // Every coordinate in this frame is a number.
+        a.1[axis].partial_cmp(&b.1[axis]).unwrap_or(Ordering::Equal)
+    });
+    let is_worth_it = items.len() >= Mesh::SHARE;
+    let (low, high) = items.split_at_mut(middle);
+    both(is_worth_it, || arrange(low, most / 2, unit), || arrange(high, most / 2, unit));
+}
+
+/// The parts of a node's triangles that [`arrange`] made of them.
+fn parts<E>(items: &[Item<E>]) -> Vec<&[Item<E>]> {
+    fn divide<'a, E>(items: &'a [Item<E>], most: usize, unit: usize, parts: &mut Vec<&'a [Item<E>]>) {
+        let Some(middle) = middle(items.len(), most, unit) else { return parts.push(items) };
+        let (low, high) = items.split_at(middle);
+        divide(low, most / 2, unit, parts);
+        divide(high, most / 2, unit, parts);
+    }
+    let mut parts = Vec::with_capacity(WIDTH);
+    divide(items, WIDTH, full_subtree(items.len()), &mut parts);
+    parts
+}
+
+/// The axis along which centroids are spread most.
+fn longest_side<E: Lane>(items: &[Item<E>]) -> usize {
+    let first = items[0].1;
+    let (low, high) = items.iter().fold((first, first), |(low, high), (_, centroid)| {
+        let axes = [0, 1, 2];
+        (axes.map(|axis| low[axis].min(centroid[axis])), axes.map(|axis| high[axis].max(centroid[axis])))
+    });
+    let [x, y, z] = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    if z >= x && z >= y { 2 } else { usize::from(y >= x) }
 }
