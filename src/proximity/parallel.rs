@@ -17,13 +17,19 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync
 }
 
 /// Does two things, on two cores if it is worth it.
+#[cfg(feature = "parallel")]
 pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
-    #[cfg(feature = "parallel")]
     if is_worth_it {
         rayon::join(one, other);
-        return;
+    } else {
+        one();
+        other();
     }
-    let _ = is_worth_it;
+}
+
+/// Does two things.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
     one();
     other();
 }
