@@ -145,7 +145,23 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// The same, and what the link keeps from all triangles at the least, with a triangle about as near if one was met.
+    /// The same without a bound, unless few triangles are in question: they are then added to `few`, the likeliest first, and
+    /// not measured.
+    pub(super) fn nearest_or_few(
+        &mut self,
+        link: &PlacedLink,
+        start: [Option<u32>; 2],
+        few: &mut Vec<u32>,
+    ) -> Option<Best> {
+        match self.hierarchy.searched(self.level, link) {
+            Searched::Single(searched) => self.single().nearest_or_few(link, &searched, start, few),
+            Searched::Double(searched) => self.double().nearest_or_few(link, &searched, start, few),
+            Searched::OutOfReach => Some(self.nearest(link, Best::within(Real::INFINITY), start)),
+        }
+    }
+
+    /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the least, with a triangle about as
+    /// near if one was met.
     /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
     pub(super) fn nearest_and_kept(
         &mut self,
