@@ -27,6 +27,10 @@ use fearless_simd::Level;
 /// another.
 const LEAVES_FOR_A_GUESS: u32 = 8;
 
+/// So many triangles in question or fewer share their packs with those of other links. Measured: more fill packs of their
+/// own well enough.
+const FEW: usize = TOGETHER / 2;
+
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct Stack<E> {
@@ -119,7 +123,7 @@ impl<E: Lane> Traversal<'_, E> {
         let (limit, candidates) = (target.limit, &mut self.stack.candidates);
         candidates.retain(|candidate| candidate.0 < limit);
         if matches!(target.aim, Aim::Nearest(_, best) if best.nearest().is_none())
-            && (1..TOGETHER).contains(&candidates.len())
+            && (1..=FEW).contains(&candidates.len())
         {
             bring_forward(candidates, 1);
             few.extend(candidates.iter().map(|candidate| candidate.1));
