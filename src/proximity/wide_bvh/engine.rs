@@ -224,13 +224,16 @@ impl<'a> Query<'a> {
             return true;
         }
         if let Some(wider) = kept.wider(robot, margin, reach) {
-            if self.search().clears(margin + wider) {
-                self.context.memory.kept_by_clears.keep_all(robot, margin + wider, reach);
+            let [clears, even_capsule] = self.search().clears(margin + wider);
+            let kept = &mut self.context.memory.kept_by_clears;
+            if clears {
+                kept.keep_all(robot, margin + wider, even_capsule, reach);
                 return true;
             }
-            self.context.memory.kept_by_clears.miss();
+            kept.miss();
         }
-        self.search().clears(margin)
+        let [clears, _] = self.search().clears(margin);
+        clears
     }
 
     fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {

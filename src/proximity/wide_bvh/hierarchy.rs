@@ -200,8 +200,9 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// Whether every link of a robot keeps more than `margin` away.
-    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
+    /// Whether every link of a robot keeps more than `margin` away, and whether the capsule around all of them is known to do
+    /// so too.
+    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> [bool; 2] {
         let Hierarchy { mesh, single, sides, .. } = self.hierarchy;
         let level = self.level;
         let Scratch { single_pairs, double_pairs, met, work, .. } = &mut *self.scratch;
@@ -210,17 +211,19 @@ impl MeshSearch<'_> {
         let first = sides.and_then(|sides| sides.crossing(robot));
         let search = JointSearch { level, tree: single, robot, margin, first, pairs: single_pairs, work };
         let mut answer = search.keeps_away(mesh);
+        let mut even_capsule = single_pairs.speak_for_capsule();
         if answer.is_none() {
             let tree = self.hierarchy.double(level);
             let search = JointSearch { level, tree, robot, margin, first, pairs: double_pairs, work };
             answer = search.keeps_away(mesh);
+            even_capsule = double_pairs.speak_for_capsule();
         }
         if let Some(keeps_away) = answer {
             *met = met.saturating_add(u32::from(!keeps_away));
-            return keeps_away;
+            return [keeps_away, keeps_away && even_capsule];
         }
         let mut links = robot.placed_links();
-        links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none())
+        [links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none()), false]
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.

@@ -61,8 +61,9 @@ impl RobotSearch<'_> {
         search.scratch.work.measured += contacts.finish();
     }
 
-    /// Whether every link keeps more than `margin` away from the mesh.
-    pub(super) fn clears(&mut self, margin: Real) -> bool {
+    /// Whether every link keeps more than `margin` away from the mesh, and whether the capsule around all of them is known to
+    /// do so too.
+    pub(super) fn clears(&mut self, margin: Real) -> [bool; 2] {
         self.search.keeps_away(self.robot, margin)
     }
 }

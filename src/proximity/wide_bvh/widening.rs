@@ -4,7 +4,7 @@
 //! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
 //! more rarely.
 
-use super::outline::{Outline, ROUNDING};
+use super::outline::{Origin, Outline, ROUNDING};
 use crate::proximity::placed::PlacedRobot;
 use parry3d_f64::math::Real;
 
@@ -43,7 +43,7 @@ impl Widening {
             return None;
         }
         let rounding = ROUNDING * (reach + 2.0 * now.extent());
-        Some(self.queries * now.moved_from(&before) + 4.0 * rounding)
+        Some(self.queries * Origin::new(before, reach).moved_to(&now) + 4.0 * rounding)
     }
 
     /// Takes over that the last wider search paid.
