@@ -149,6 +149,7 @@ impl Kept {
     }
 
     /// What the link keeps at least when it has become `now`. Not a number where that can't be told.
+    #[inline(always)] // where links are looked at one after another
     fn still(&self, now: &Outline) -> Real {
         self.apart - (1.0 + ROUNDING) * self.link.moved_to(now)
     }

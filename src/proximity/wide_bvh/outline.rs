@@ -93,7 +93,7 @@ impl Origin {
     /// Rounding: d and d' err by u of them, and so x by less than 3 u up to 1/2: 18 u r, for which the extent has room.
     /// Squares vanish where what is measured is below 2^-537 of the extent and the mesh; a flat cap's radius is less than
     /// 2^400 lengths of its axis, so that 2^-136 of them is lost.
-    #[inline]
+    #[inline(always)] // where links are looked at one after another
     pub(super) fn moved_to(&self, now: &Outline) -> Real {
         let then = &self.link;
         if now.flat != then.flat {
