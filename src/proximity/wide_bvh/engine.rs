@@ -223,7 +223,7 @@ impl<'a> Query<'a> {
         if kept.all_keep(robot, margin) {
             return true;
         }
-        if let Some(wider) = kept.wider(robot, margin, reach) {
+        if let Some(wider) = kept.wider(robot, margin, Real::INFINITY, reach) {
             let [clears, even_capsule] = self.search().clears(margin + wider);
             let kept = &mut self.context.memory.kept_by_clears;
             if clears {

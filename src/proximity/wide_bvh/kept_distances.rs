@@ -11,8 +11,11 @@ use crate::proximity::placed::PlacedRobot;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// A wider search pays if it spares the next query the search of one link in so many.
+/// A wider search pays only if it spares the next query the search of one link in so many.
 const SHARE_THAT_PAYS: usize = 4;
+
+/// To make out what so many links keep takes about as long as to visit a node.
+const LINKS_FOR_A_NODE: usize = 4;
 
 /// Distances that the links of a robot kept.
 #[derive(Clone, Default)]
@@ -76,23 +79,34 @@ impl KeptDistances {
     }
 
     /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too. None where it is better
-    /// not to be. `reach` is the largest coordinate of the mesh.
-    pub(super) fn wider(&mut self, robot: PlacedRobot, bound: Real, reach: Real) -> Option<Real> {
-        let wider = self.widening.next(robot, reach).filter(|wider| bound + wider < Real::INFINITY);
+    /// not to be, as where it would be `most` or more. `reach` is the largest coordinate of the mesh.
+    pub(super) fn wider(&mut self, robot: PlacedRobot, bound: Real, most: Real, reach: Real) -> Option<Real> {
+        let wider = self.widening.next(robot, reach);
+        let wider = wider.filter(|&wider| wider < most && bound + wider < Real::INFINITY);
         self.is_new = wider.is_some();
         wider
     }
 
     /// Takes over whether what the last query kept, if anything, speaks for this one about so many links.
-    pub(super) fn judge(&mut self, count: usize, bound: Real) {
-        if !self.is_new {
-            return;
-        }
-        if SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count {
+    pub(super) fn judge_speaking(&mut self, count: usize, bound: Real) {
+        if self.is_new && SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count
+        {
             self.links.clear();
             self.widening.failed();
+        }
+    }
+
+    /// Takes over how many nodes and leaves this query about so many links has visited.
+    pub(super) fn judge_cost(&mut self, visited: u64, links: usize) {
+        if self.is_new {
+            if !self.widening.went_with(visited + (links / LINKS_FOR_A_NODE) as u64) {
+                self.links.clear();
+            }
+        } else if self.now.is_empty() {
+            self.widening.went_without(visited);
         } else {
-            self.widening.paid();
+            // It still made use of what others had kept.
+            self.links.clear();
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! A search for a little more costs little more. How much more pays follows from how far the robot moves from one query to
 //! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
-//! more rarely.
+//! more rarely. Whether it pays tells what queries with it and one without it have cost.
 
 use super::outline::{Origin, Outline, ROUNDING};
 use crate::proximity::placed::PlacedRobot;
@@ -10,6 +10,10 @@ use parry3d_f64::math::Real;
 
 /// How many queries a wider search is to speak for at the most.
 const QUERIES: Real = 8.0;
+/// So many queries with a wider search are a trial, and after so many trials that paid it is found out again what one without
+/// it costs.
+const TRIAL: u32 = 16;
+const TRIALS: u32 = 16;
 /// A search that met something is tried again after so many queries at the latest, one that did not pay after so many: it
 /// takes as long as several others.
 const REST_AFTER_MEETING: u32 = 63;
@@ -24,11 +28,26 @@ pub(super) struct Widening {
     /// How many queries are not to try one, and how many it was after the last that did not pay.
     rest: u32,
     last_rest: u32,
+    /// What a query without a wider search has cost of late.
+    plain_cost: Option<u64>,
+    /// What the queries of this trial have cost after its first, how many they are with it, and how many trials have paid.
+    trial_cost: u64,
+    tried: u32,
+    trials: u32,
 }
 
 impl Default for Widening {
     fn default() -> Self {
-        Self { before: None, queries: QUERIES, rest: 0, last_rest: 0 }
+        Self {
+            before: None,
+            queries: QUERIES,
+            rest: 0,
+            last_rest: 0,
+            plain_cost: None,
+            trial_cost: 0,
+            tried: 0,
+            trials: 0,
+        }
     }
 }
 
@@ -46,17 +65,47 @@ impl Widening {
         Some(self.queries * Origin::new(before, reach).moved_to(&now) + 4.0 * rounding)
     }
 
+    /// Takes over what a query without a wider search has cost.
+    pub(super) fn went_without(&mut self, cost: u64) {
+        self.plain_cost = Some(self.plain_cost.map_or(cost, |before| (3 * before + cost) / 4));
+    }
+
+    /// Takes over what a query with a wider search has cost. False if the next one is better off without it, and without what
+    /// it has found.
+    ///
+    /// The first of a row pays for the others. These must not cost more than as many queries without it, and one.
+    pub(super) fn went_with(&mut self, cost: u64) -> bool {
+        if self.tried > 0 {
+            self.trial_cost += cost;
+        }
+        self.tried += 1;
+        if self.plain_cost.is_some_and(|plain| self.trial_cost > plain * u64::from(self.tried)) {
+            self.failed();
+            return false;
+        }
+        if self.tried > TRIAL {
+            self.paid();
+            (self.trial_cost, self.tried, self.trials) = (0, 1, self.trials + 1);
+        }
+        if self.trials == TRIALS {
+            (self.rest, self.tried, self.trials) = (1, 0, 0);
+            return false;
+        }
+        true
+    }
+
     /// Takes over that the last wider search paid.
     pub(super) fn paid(&mut self) {
         self.last_rest = 0;
     }
 
-    /// Takes over that it did not.
+    /// Takes over that wider searches do not pay.
     pub(super) fn failed(&mut self) {
+        (self.trial_cost, self.tried, self.trials) = (0, 0, 0);
         self.rest_longer(REST_WITHOUT_PAY);
     }
 
-    /// Takes over that it met what a search less wide may not meet.
+    /// Takes over that the last wider search met what a search less wide may not meet.
     pub(super) fn too_wide(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
         self.rest_longer(REST_AFTER_MEETING);
