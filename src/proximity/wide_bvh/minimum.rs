@@ -68,8 +68,10 @@ impl<'a> MinimumSearch<'a> {
             self.take(first, nearest);
         }
         self.kept.judge_speaking(count, self.bound);
-        // A robot that jumps would make it so wide that nothing of the mesh is left out.
-        self.wider = self.kept.wider(robot, self.bound, reach, reach);
+        // A robot that jumps would make it so wide that nothing of the mesh is left out, or no link of the robot.
+        let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
+        let size = before + last.length() + 2.0 * last.radius();
+        self.wider = self.kept.wider(robot, self.bound, size.min(reach), reach);
         if self.wider.is_some()
             && let Some((_, nearest)) = self.best
         {

@@ -113,3 +113,61 @@ impl Origin {
         start.max(end).sqrt() * self.unit + turned + grown
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::{Vec3, point_modified_cylinder};
+    use continuum_testing::Random;
+
+    /// A point of a link on its rims, or on the balls around its ends where they are round.
+    fn extreme(random: &mut Random, link: &Outline) -> Vector {
+        let end = random.below(2) as usize;
+        let (direction, along) = (random.direction(), link.along().normalize());
+        let out =
+            if link.flat[end] { (direction - along * direction.dot(along)).normalize() } else { direction };
+        link.ends[end] + out * link.radius
+    }
+
+    /// No point of a link that has moved is farther from where the link was than it tells, in any unit, and some are nearly as
+    /// far.
+    #[test]
+    fn no_point_has_moved_farther_than_told() {
+        let (mut nearly, mut turned, mut jumps) = (0, 0, 0);
+        for seed in 0..20_000_u64 {
+            let random = &mut Random::new(seed);
+            let size = [1.0, 2.0_f64.powi(-460), 2.0_f64.powi(300)][seed as usize % 3];
+            let flat = [0; 2].map(|_| random.below(2) == 0);
+            let (start, way) =
+                (random.point(), random.direction() * 10.0_f64.powf(random.between(-2.0, 0.5)));
+            let radius = 10.0_f64.powf(random.between(-2.0, 0.5));
+            let step = 10.0_f64.powf(random.between(-4.0, 0.5));
+            let (shift, turn) = match random.below(3) {
+                0 => (Vector::ZERO, random.direction()),
+                1 => (random.direction(), Vector::ZERO),
+                _ => (random.point(), random.point()),
+            };
+            let grown = if random.below(3) == 0 { random.between(-0.5, 0.5) * radius } else { 0.0 };
+            let link = |from: Vector, way: Vector, radius: Real| Outline {
+                ends: [from * size, (from + way) * size],
+                radius: radius * size,
+                flat,
+            };
+            let then = link(start, way, radius);
+            let now = link(start + shift * step, way + turn * (step * way.length()), radius + grown);
+            let told = Origin::new(then, 4.0 * size).moved_to(&now);
+            let [from, to] = then.ends.map(Vec3::from);
+            let farthest = (0..40).map(|_| {
+                let point = Vec3::from(extreme(random, &now));
+                point_modified_cylinder(point, from, to, then.radius, flat).distance
+            });
+            let farthest = farthest.fold(0.0, Real::max);
+            assert!(farthest <= told + 1e-12 * size, "seed {seed}: {farthest:e} of {told:e}");
+            nearly += u32::from(farthest > 0.9 * told);
+            turned +=
+                u32::from(shift == Vector::ZERO && radius > 3.0 * way.length() && farthest > 0.6 * told);
+            jumps += u32::from((now.along() - then.along()).length() > way.length() * size);
+        }
+        assert!(nearly > 1000 && turned > 300 && jumps > 1000, "{nearly} {turned} {jumps}");
+    }
+}

@@ -116,3 +116,41 @@ impl Widening {
         self.rest = self.last_rest;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many of so many queries go with a wider search, if the first of a row costs `first` and another `later` where one
+    /// without costs 100.
+    fn wider_of(queries: u32, first: u64, later: u64) -> u32 {
+        let (mut widening, mut is_first, mut wider) = (Widening::default(), true, 0);
+        widening.went_without(100);
+        for _ in 0..queries {
+            if widening.rest > 0 {
+                widening.rest -= 1;
+                widening.went_without(100);
+                is_first = true;
+            } else {
+                wider += 1;
+                widening.went_with(if is_first { first } else { later });
+                is_first = false;
+            }
+        }
+        wider
+    }
+
+    #[test]
+    fn wider_searches_are_made_where_they_cost_less() {
+        // All but the few that tell what one without them costs.
+        for later in [0, 20, 90] {
+            let wider = wider_of(10_000, 400, later);
+            assert!((9_900..10_000).contains(&wider), "{wider} where another costs {later}");
+        }
+        // Hardly any: one trial in 256 queries.
+        for (later, most) in [(500, 2), (200, 3), (130, 6)] {
+            let wider = wider_of(25_600, 400, later);
+            assert!((100..110 * most).contains(&wider), "{wider} where another costs {later}");
+        }
+    }
+}
