@@ -157,13 +157,13 @@ struct Met {
     moved_meshes: u32,
 }
 
-fn minima_in_a_row(size: f64, steps: u32, seed: u64, met: &mut Met) {
+fn minima_in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) {
     let mut random = Random::new(seed);
     let (vertices, triangles) = Ball::new(6.0).to_trimesh(24, 12);
     let at_rest: Vec<_> = vertices.iter().map(|vertex| *vertex * size).collect();
     let mesh = TriMesh::new(at_rest.clone(), triangles).unwrap();
     let (mut kept, mut cold) = (BvhSearch::new(&mesh).unwrap(), BvhSearch::new(&mesh).unwrap());
-    let (mut scene, mut links) = (Scene::new(size, 16), Vec::new());
+    let (mut scene, mut links) = (Scene::new(size, links), Vec::new());
     for step in 0..steps {
         // Most robots stay for a while; each comes to the wall.
         if step % 16 < 12 {
@@ -212,7 +212,8 @@ fn minima_in_a_row(size: f64, steps: u32, seed: u64, met: &mut Met) {
 fn many_minima_in_a_row(steps: u32) {
     let (mut met, sizes) = (Met::default(), [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)]);
     for (round, size) in sizes.into_iter().enumerate() {
-        minima_in_a_row(size, steps / 4, round as u64, &mut met);
+        minima_in_a_row(size, 16, steps / 4, round as u64, &mut met);
+        minima_in_a_row(size, 80, steps / 20, round as u64, &mut met);
     }
     let Met { touching, tied, quick, by_heart, near, moved_meshes } = met;
     assert!(touching > steps / 20 && tied > steps / 200 && near > steps / 20, "{met:?}");

@@ -1,5 +1,6 @@
 //! Proximity by a bounding volume hierarchy.
 
+use super::few_each::FewEach;
 use super::hierarchy::{Hierarchy, MeshSearch, Scratch};
 use super::kept_distances::KeptDistances;
 use super::minimum::{MinimumSearch, OfLink};
@@ -66,6 +67,7 @@ pub(super) struct Memory {
     pub tube: TubeMemory,
     pub motion: MotionMemory,
     minima: LocalMinima,
+    few: FewEach,
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
     /// The closest link and its triangle at the last query for the minimum.
@@ -184,9 +186,9 @@ impl<'a> Query<'a> {
     fn per_link(&mut self, out: &mut Vec<LinkProximity>) {
         out.clear();
         let Context { level, hierarchy, ref mut memory } = self.context;
-        let Memory { scratch, last, .. } = &mut **memory;
+        let Memory { scratch, few, last, .. } = &mut **memory;
         let search = MeshSearch { level, hierarchy, scratch };
-        RobotSearch { search, robot: self.robot }.per_link(last, out);
+        RobotSearch { search, robot: self.robot }.per_link(last, few, out);
         last.clear();
         last.extend(out.iter().map(|answer| answer.triangle));
     }
@@ -221,14 +223,17 @@ impl<'a> Query<'a> {
         if kept.all_keep(robot, margin) {
             return true;
         }
-        if let Some(wider) = kept.wider(robot, margin, reach) {
-            if self.search().clears(margin + wider) {
-                self.context.memory.kept_by_clears.keep_all(robot, margin + wider, reach);
+        if let Some(wider) = kept.wider(robot, margin, Real::INFINITY, reach) {
+            let [clears, even_capsule] = self.search().clears(margin + wider);
+            let kept = &mut self.context.memory.kept_by_clears;
+            if clears {
+                kept.keep_all(robot, margin + wider, even_capsule, reach);
                 return true;
             }
-            self.context.memory.kept_by_clears.miss();
+            kept.miss();
         }
-        self.search().clears(margin)
+        let [clears, _] = self.search().clears(margin);
+        clears
     }
 
     fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {

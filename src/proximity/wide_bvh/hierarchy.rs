@@ -145,7 +145,23 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// The same, and what the link keeps from all triangles at the least, with a triangle about as near if one was met.
+    /// The same without a bound, unless few triangles are in question: they are then added to `few`, the likeliest first, and
+    /// not measured.
+    pub(super) fn nearest_or_few(
+        &mut self,
+        link: &PlacedLink,
+        start: [Option<u32>; 2],
+        few: &mut Vec<u32>,
+    ) -> Option<Best> {
+        match self.hierarchy.searched(self.level, link) {
+            Searched::Single(searched) => self.single().nearest_or_few(link, &searched, start, few),
+            Searched::Double(searched) => self.double().nearest_or_few(link, &searched, start, few),
+            Searched::OutOfReach => Some(self.nearest(link, Best::within(Real::INFINITY), start)),
+        }
+    }
+
+    /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the least, with a triangle about as
+    /// near if one was met.
     /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
     pub(super) fn nearest_and_kept(
         &mut self,
@@ -184,8 +200,9 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// Whether every link of a robot keeps more than `margin` away.
-    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
+    /// Whether every link of a robot keeps more than `margin` away, and whether the capsule around all of them is known to do
+    /// so too.
+    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> [bool; 2] {
         let Hierarchy { mesh, single, sides, .. } = self.hierarchy;
         let level = self.level;
         let Scratch { single_pairs, double_pairs, met, work, .. } = &mut *self.scratch;
@@ -194,17 +211,19 @@ impl MeshSearch<'_> {
         let first = sides.and_then(|sides| sides.crossing(robot));
         let search = JointSearch { level, tree: single, robot, margin, first, pairs: single_pairs, work };
         let mut answer = search.keeps_away(mesh);
+        let mut even_capsule = single_pairs.speak_for_capsule();
         if answer.is_none() {
             let tree = self.hierarchy.double(level);
             let search = JointSearch { level, tree, robot, margin, first, pairs: double_pairs, work };
             answer = search.keeps_away(mesh);
+            even_capsule = double_pairs.speak_for_capsule();
         }
         if let Some(keeps_away) = answer {
             *met = met.saturating_add(u32::from(!keeps_away));
-            return keeps_away;
+            return [keeps_away, keeps_away && even_capsule];
         }
         let mut links = robot.placed_links();
-        links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none())
+        [links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none()), false]
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.

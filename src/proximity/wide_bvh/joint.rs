@@ -40,9 +40,16 @@ pub(super) struct Pairs<E> {
     doubtful: Vec<(u32, u32)>,
     /// The link and the leaf of the last triangle that was near enough.
     last: Option<(u32, u32)>,
+    /// Whether this query had to look at less than all links together.
+    has_parted_all: bool,
 }
 
 impl<E> Pairs<E> {
+    /// Whether, if all links keep away, the capsule around them is known to do so too.
+    pub(super) fn speak_for_capsule(&self) -> bool {
+        !self.has_parted_all
+    }
+
     pub(super) fn forget(&mut self) {
         self.last = None;
     }
@@ -118,13 +125,14 @@ impl<E: Lane> JointSearch<'_, E> {
     }
 
     fn verdict(&mut self) -> Verdict {
-        let Pairs { runs, query, waiting, doubtful, last } = &mut *self.pairs;
+        let Pairs { runs, query, waiting, doubtful, last, has_parted_all } = &mut *self.pairs;
         let links = self.robot.link_tree();
         let zero = E::default();
         *query += 1;
         if runs.len() < links.len() {
             runs.resize_with(links.len(), Run::default);
         }
+        *has_parted_all = matches!(links[0], LinkNode::Leaf(_));
         doubtful.clear();
         waiting.clear();
         // The mesh is between one and two long.
@@ -191,6 +199,7 @@ impl<E: Lane> JointSearch<'_, E> {
         if let LinkNode::Leaf(_) = tree[pair.run as usize] {
             return false;
         }
+        self.pairs.has_parted_all |= pair.run == 0;
         let low = pair.run + 1;
         let below = if let LinkNode::Inner { below, .. } = tree[low as usize] { below as u32 } else { 0 };
         let high = low + 1 + below;

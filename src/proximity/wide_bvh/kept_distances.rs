@@ -1,23 +1,29 @@
 //! What each link is known to keep from the mesh when the robot has moved a little, without a search.
 //!
 //! Once a link kept more than a distance, or exactly it. No point of the link now is farther from all points of the link
-//! then than [`Outline::moved_from`] tells, so the link keeps what is left. What it keeps does not depend on the robot that
-//! it is a part of: any may follow.
+//! then than [`Origin::moved_to`] tells, so the link keeps what is left. What it keeps does not depend on the robot that
+//! it is a part of: any may follow. The same is true of the capsule around all links, which tells of a robot far from the
+//! wall at a glance.
 
-use super::outline::{Outline, ROUNDING};
+use super::outline::{Origin, Outline, ROUNDING};
 use super::widening::Widening;
 use crate::proximity::placed::PlacedRobot;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// A wider search pays if it spares the next query the search of one link in so many.
+/// A wider search pays only if it spares the next query the search of one link in so many.
 const SHARE_THAT_PAYS: usize = 4;
+
+/// To make out what so many links keep takes about as long as to visit a node.
+const LINKS_FOR_A_NODE: usize = 4;
 
 /// Distances that the links of a robot kept.
 #[derive(Clone, Default)]
 pub(super) struct KeptDistances {
     /// Link by link; none where nothing is known.
     links: Vec<Kept>,
+    /// The capsule around all links, where it is known to keep away.
+    capsule: Option<Kept>,
     /// What each link of the robot now asked about keeps by that; none where nothing is known.
     now: Vec<Real>,
     widening: Widening,
@@ -28,7 +34,7 @@ pub(super) struct KeptDistances {
 /// A link where it was, and what it kept at the least, less what rounding can do.
 #[derive(Clone, Copy)]
 struct Kept {
-    link: Outline,
+    link: Origin,
     apart: Real,
     /// A triangle about as near as that, if one was met.
     triangle: Option<u32>,
@@ -37,6 +43,7 @@ struct Kept {
 impl KeptDistances {
     pub(super) fn forget(&mut self) {
         self.links.clear();
+        self.capsule = None;
         self.now.clear();
         self.widening = Widening::default();
         self.is_new = false;
@@ -44,6 +51,9 @@ impl KeptDistances {
 
     /// Whether every link certainly keeps more than `margin`.
     pub(super) fn all_keep(&self, robot: PlacedRobot, margin: Real) -> bool {
+        if let Some(capsule) = &self.capsule {
+            return capsule.still(&Outline::around_all(robot)) > margin;
+        }
         if self.links.is_empty() || self.links.len() != robot.links().len() {
             return false;
         }
@@ -69,23 +79,34 @@ impl KeptDistances {
     }
 
     /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too. None where it is better
-    /// not to be. `reach` is the largest coordinate of the mesh.
-    pub(super) fn wider(&mut self, robot: PlacedRobot, bound: Real, reach: Real) -> Option<Real> {
-        let wider = self.widening.next(robot, reach).filter(|wider| bound + wider < Real::INFINITY);
+    /// not to be, as where it would be `most` or more. `reach` is the largest coordinate of the mesh.
+    pub(super) fn wider(&mut self, robot: PlacedRobot, bound: Real, most: Real, reach: Real) -> Option<Real> {
+        let wider = self.widening.next(robot, reach);
+        let wider = wider.filter(|&wider| wider < most && bound + wider < Real::INFINITY);
         self.is_new = wider.is_some();
         wider
     }
 
     /// Takes over whether what the last query kept, if anything, speaks for this one about so many links.
-    pub(super) fn judge(&mut self, count: usize, bound: Real) {
-        if !self.is_new {
-            return;
-        }
-        if SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count {
+    pub(super) fn judge_speaking(&mut self, count: usize, bound: Real) {
+        if self.is_new && SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count
+        {
             self.links.clear();
             self.widening.failed();
+        }
+    }
+
+    /// Takes over how many nodes and leaves this query about so many links has visited.
+    pub(super) fn judge_cost(&mut self, visited: u64, links: usize) {
+        if self.is_new {
+            if !self.widening.went_with(visited + (links / LINKS_FOR_A_NODE) as u64) {
+                self.links.clear();
+            }
+        } else if self.now.is_empty() {
+            self.widening.went_without(visited);
         } else {
-            self.widening.paid();
+            // It still made use of what others had kept.
+            self.links.clear();
         }
     }
 
@@ -105,7 +126,7 @@ impl KeptDistances {
     ) {
         let count = robot.links().len();
         if self.links.len() != count {
-            let unknown = Kept { link: Outline::of(robot, 0), apart: Real::NEG_INFINITY, triangle: None };
+            let unknown = Kept::new(Outline::of(robot, 0), Real::NEG_INFINITY, None, reach);
             self.links.clear();
             self.links.resize(count, unknown);
         }
@@ -115,17 +136,21 @@ impl KeptDistances {
         }
     }
 
-    /// Takes over that all links keep `apart` or more.
-    pub(super) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, reach: Real) {
+    /// Takes over that all links keep `apart` or more, or even the capsule around them.
+    pub(super) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, even_capsule: bool, reach: Real) {
         self.links.clear();
-        self.links.extend(Outline::of_all(robot).map(|link| Kept::new(link, apart, None, reach)));
-        self.links.reverse();
+        self.capsule = even_capsule.then(|| Kept::new(Outline::around_all(robot), apart, None, reach));
+        if !even_capsule {
+            self.links.extend(Outline::of_all(robot).map(|link| Kept::new(link, apart, None, reach)));
+            self.links.reverse();
+        }
         self.widening.paid();
     }
 
     /// Takes over that a wider search met something.
     pub(super) fn miss(&mut self) {
         self.links.clear();
+        self.capsule = None;
         self.widening.too_wide();
     }
 }
@@ -133,11 +158,13 @@ impl KeptDistances {
 impl Kept {
     /// `reach` is the largest coordinate of the mesh. The link later reaches no farther than now and what it has moved.
     fn new(link: Outline, apart: Real, triangle: Option<u32>, reach: Real) -> Self {
-        Self { link, apart: apart - ROUNDING * (reach + 2.0 * link.extent()), triangle }
+        let apart = apart - ROUNDING * (reach + 2.0 * link.extent());
+        Self { link: Origin::new(link, reach), apart, triangle }
     }
 
     /// What the link keeps at least when it has become `now`. Not a number where that can't be told.
+    #[inline(always)] // where links are looked at one after another
     fn still(&self, now: &Outline) -> Real {
-        self.apart - (1.0 + ROUNDING) * now.moved_from(&self.link)
+        self.apart - (1.0 + ROUNDING) * self.link.moved_to(now)
     }
 }

@@ -6,14 +6,12 @@
 
 use super::hierarchy::MeshSearch;
 use super::kept_distances::KeptDistances;
+use crate::proximity::Work;
 use crate::proximity::placed::{Best, Nearest, PlacedRobot};
+use crate::proximity::triangle_block::BLOCK;
 use crate::robot::{BoundingCapsule, LinkNode, distance_to_segment};
 use parry3d_f64::math::Real;
 use std::ops::Range;
-
-/// What links kept is known for each of them, which takes too long where they are more: the tree alone serves those.
-/// Measured: at 30 links it pays; at 60 no longer near a wall in fast motion, and at 960 nowhere.
-const MOST_LINKS: usize = 40;
 
 /// A link of the robot and its nearest triangle.
 pub(super) type OfLink = (usize, Nearest);
@@ -41,11 +39,24 @@ impl<'a> MinimumSearch<'a> {
 
     /// The closest link and triangle, if there are any. `last` are those to start with.
     pub(super) fn nearest(mut self, last: Option<(usize, u32)>) -> Option<OfLink> {
+        let before = self.visited();
+        self.find(last);
+        self.kept.judge_cost(self.visited() - before, self.robot.links().len());
+        self.best
+    }
+
+    /// How many nodes and leaves were visited since the engine was built.
+    fn visited(&self) -> u64 {
+        let Work { nodes, visited, .. } = self.search.scratch.work;
+        nodes + visited / BLOCK as u64
+    }
+
+    fn find(&mut self, last: Option<(usize, u32)>) {
         let (robot, reach) = (self.robot, self.search.hierarchy.reach);
         let count = robot.links().len();
         self.kept.recall(robot);
         if self.kept.in_question(0..count, self.bound) == 0 {
-            return None;
+            return;
         }
         let (first, triangle) = match last {
             Some((link, triangle)) if link < count => (link, triangle),
@@ -56,8 +67,11 @@ impl<'a> MinimumSearch<'a> {
             let nearest = self.search.nearest(&robot.link(first), wanted, [Some(triangle), None]).nearest();
             self.take(first, nearest);
         }
-        self.kept.judge(count, self.bound);
-        self.wider = if count <= MOST_LINKS { self.kept.wider(robot, self.bound, reach) } else { None };
+        self.kept.judge_speaking(count, self.bound);
+        // A robot that jumps would make it so wide that nothing of the mesh is left out, or no link of the robot.
+        let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
+        let size = before + last.length() + 2.0 * last.radius();
+        self.wider = self.kept.wider(robot, self.bound, size.min(reach), reach);
         if self.wider.is_some()
             && let Some((_, nearest)) = self.best
         {
@@ -83,7 +97,6 @@ impl<'a> MinimumSearch<'a> {
             }
             place += 1;
         }
-        self.best
     }
 
     /// Whether no link of a run improves on the best; false where that is not clear from its capsule.

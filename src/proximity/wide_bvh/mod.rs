@@ -5,6 +5,7 @@ mod bound;
 mod build;
 mod candidates;
 mod engine;
+mod few_each;
 mod fit;
 mod gathering;
 mod hierarchy;

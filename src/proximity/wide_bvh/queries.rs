@@ -1,8 +1,9 @@
 //! The queries of a robot that ask every link, or only whether all keep away.
 
+use super::few_each::FewEach;
 use super::hierarchy::MeshSearch;
 use crate::proximity::local_minima::{LocalMinima, RobotContacts};
-use crate::proximity::placed::{Best, PlacedRobot};
+use crate::proximity::placed::PlacedRobot;
 use crate::proximity::{Contact, LinkProximity};
 use crate::robot::LinkNode;
 use parry3d_f64::math::Real;
@@ -15,14 +16,27 @@ pub(super) struct RobotSearch<'a> {
 
 impl RobotSearch<'_> {
     /// The closest triangle of every link. `last` are the triangles to start with, link by link.
-    pub(super) fn per_link(&mut self, last: &[u32], out: &mut Vec<LinkProximity>) {
+    pub(super) fn per_link(&mut self, last: &[u32], few: &mut FewEach, out: &mut Vec<LinkProximity>) {
+        few.clear();
+        let mut before = None;
         for number in 0..self.robot.links().len() {
             let link = self.robot.link(number);
-            let before = out.last().map(|answer: &LinkProximity| answer.triangle);
             let start = [last.get(number).copied(), before];
-            let nearest = self.search.nearest(&link, Best::within(Real::INFINITY), start).nearest();
-            out.push(nearest.unwrap_or_else(|| self.search.any(&link)).report(number));
+            let answer = few.add(number, &link, |few| self.search.nearest_or_few(&link, start, few));
+            before = Some(match answer {
+                Ok(best) => {
+                    let nearest = best.nearest().unwrap_or_else(|| self.search.any(&link));
+                    out.push(nearest.report(number));
+                    nearest.triangle
+                }
+                Err(likely) => {
+                    out.push(LinkProximity::unanswered());
+                    likely
+                }
+            });
         }
+        let MeshSearch { level, hierarchy, scratch } = &mut self.search;
+        scratch.work.measured += few.answer(*level, &hierarchy.mesh, out);
     }
 
     /// The contacts of every link.
@@ -47,8 +61,9 @@ impl RobotSearch<'_> {
         search.scratch.work.measured += contacts.finish();
     }
 
-    /// Whether every link keeps more than `margin` away from the mesh.
-    pub(super) fn clears(&mut self, margin: Real) -> bool {
+    /// Whether every link keeps more than `margin` away from the mesh, and whether the capsule around all of them is known to
+    /// do so too.
+    pub(super) fn clears(&mut self, margin: Real) -> [bool; 2] {
         self.search.keeps_away(self.robot, margin)
     }
 }

@@ -27,6 +27,10 @@ use fearless_simd::Level;
 /// another.
 const LEAVES_FOR_A_GUESS: u32 = 8;
 
+/// So many triangles in question or fewer share their packs with those of other links. Measured: more fill packs of their
+/// own well enough.
+const FEW: usize = TOGETHER / 2;
+
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(super) struct Stack<E> {
@@ -104,8 +108,33 @@ impl<E: Lane> Traversal<'_, E> {
         if let Aim::Nearest(_, best) = target.aim { best } else { best }
     }
 
-    /// The same, and what the link keeps from all triangles at the least, with the triangle that seemed as near if one was
-    /// met. Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
+    /// The same without a bound where many triangles are in question. Where they are few, none is measured: they are added
+    /// to `few`, the likeliest first, for a pack that they share with those of other links.
+    pub(super) fn nearest_or_few(
+        &mut self,
+        link: &PlacedLink,
+        searched: &SearchLink<E>,
+        start: [Option<u32>; 2],
+        few: &mut Vec<u32>,
+    ) -> Option<Best> {
+        let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
+        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Nearest(link, best) };
+        self.search(&mut target, start);
+        let (limit, candidates) = (target.limit, &mut self.stack.candidates);
+        candidates.retain(|candidate| candidate.0 < limit);
+        if matches!(target.aim, Aim::Nearest(_, best) if best.nearest().is_none())
+            && (1..=FEW).contains(&candidates.len())
+        {
+            bring_forward(candidates, 1);
+            few.extend(candidates.iter().map(|candidate| candidate.1));
+            return None;
+        }
+        self.settle(&mut target);
+        if let Aim::Nearest(_, best) = target.aim { Some(best) } else { None }
+    }
+
+    /// The same as [`Traversal::nearest`], and what the link keeps from all triangles at the least, with the triangle that
+    /// seemed as near if one was met. Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
     ///
     /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So nothing is nearer than
     /// the nearest candidate and the limit that is left.
