@@ -11,51 +11,51 @@
 //! <delta, s> >= |delta|^2,   so   |delta - s / 2| <= |s| / 2.                                              (1)
 //! ```
 //!
-//! Let f be the edge AB of a triangle T with the third corner C, M its middle, z a point of f, and m the point of f that is
-//! nearest to B. Let F be a point of f, h = C - F.
+//! Let f be the edge AB of a triangle T with the third corner C, m the point of f that is nearest to B, and z any point of
+//! f. Let F be a point of f, h = C - F. As m is the nearest, <W(m), m - z> <= 0, so that (1) gives for s = m - z
 //!
-//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m), m' - m> >= 0, m being the
-//!    nearest of f. So if <W(m), h> > 0, none of T is nearer than m. From M, where |s| <= |AB| / 2, that follows by (1) if
+//! ```text
+//! |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap = max(-<W(z), A - z>, -<W(z), B - z>).             (2)
+//! ```
 //!
-//!    ```text
-//!    <W(m), h> >= <W(M), h> + (<s, h> - |s| |h|) / 2 >= <W(M), h> - (|AB| |h| + |<AB, h>|) / 4 > 0.
-//!    ```
-//!
-//!    F is the foot of C on f, which makes <AB, h> zero but for rounding; it must lie on f. From a point z near m it follows
-//!    where the slope is less steep. As m is the nearest, <W(m), m - z> <= 0, so that (1) gives for s = m - z
+//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m), m' - m> >= 0. So none of
+//!    T is nearer than m if
 //!
 //!    ```text
-//!    |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap = max(-<W(z), A - z>, -<W(z), B - z>),         (2)
-//!    <W(m), h> >= <W(z), h> - sqrt(gap) |h|.
+//!    <W(m), h> >= <W(z), h> - sqrt(gap) |h| > 0.
 //!    ```
-//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at least D(z) - gap / D(z), and
-//!    for M the gap is |<W(M), AB>| / 2. Another triangle that has f reaches to its own third corner C' and holds the way
-//!    from z to it. It is nearer if D is less at C', or at a point P on that way: near a link that is closer than the
-//!    triangles are long D may rise again on the way to C'.
+//!
+//!    F is the point of f that is nearest to C, which makes h short.
+//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at least D(z) - gap / D(z).
+//!    Another triangle that has f reaches to its own third corner C' and holds the way from z to it. It is nearer if D is
+//!    less at a point P on that way.
 //!
 //! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as `local_minima` says. Of T's
-//! edges the one opposite to the corner that is farthest from the axis is tried. Any z and P will do; they are those at
-//! which D is least if the nearest points of B are all on its axis, or all at one end of it, as the first one is.
+//! edges the one opposite to the corner that is farthest from the axis is tried. Any z and P will do. They are those at
+//! which D is least on the edge and on the way to C' if W leads from the middle of the axis, or from an end of it, all
+//! along as it does at the middle of the edge and at z.
 //!
 //! # Rounding
-//! Let e be the link's `error`, 64 u reach; it is that of single precision. All lengths below are in u reach.
+//! Let e be the link's `error`, 64 u reach; it is that of single precision.
 //!
-//! - A corner errs by 2 and a computed point of an edge by 11, seen from the link's start by 16. A projection moves no
-//!   farther than its point. In itself it errs by 17 along the axis, for the product and the direction, 4 for the length,
-//!   and 13 for the multiple of the axis: 49 with the point's own, below e. To a link with flat caps 42 more are due to the
-//!   part across the axis, which is taken off. So every W is within 2 e of the true one, and D within 2 e.
-//! - h errs by e / 4, |AB| by e / 8, and |<AB, h>| is below e (|AB| + |h|), F being computed. So condition 1 holds if
+//! - In units of u reach a corner errs by 2 and a computed point of an edge by 11, seen from the link's start by 16. A
+//!   projection moves no farther than its point. In itself it errs by 17 along the axis, for the product and the direction,
+//!   4 for the length, and 13 for the multiple of the axis: 49 with the point's own, below e. To a link with flat caps 42
+//!   more are due to the part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach to
+//!   spare, and D within 2 e.
+//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own rounding included.
+//! - h errs by e / 4. So condition 1 holds if
 //!
 //!   ```text
-//!   <W, h> > |h| (turn + 2 e) + e (|W| + |AB| + |h|)
+//!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|:
 //!   ```
 //!
-//!   with the W at M or z and |AB| / 4 or sqrt(gap) for the turn: the true products differ by 2 e |h| + (|W| + 2 e) e / 4 +
-//!   3 e (|AB| + |h|) / 8 at most, and the computed ones by 11 u reach |W|.
-//! - The gap errs by 2 e |AB| for W and |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own rounding included.
+//!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u reach |W|; the product of
+//!   two errors is within what W has to spare, or |W| is below 6 e and no condition 2 holds.
 //! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)| only within 2 e: it counts
-//!   only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs less than z. With 12 e in all, 5 e are left by which the neighbour is
-//!   nearer, far above what a measurement in double precision errs by. T must keep as much, lest it touch.
+//!   only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach from the link's start, which leaves W(P) within
+//!   2 e too. With 12 e in all, 5 e are left by which the neighbour is nearer, far above what a measurement in double
+//!   precision errs by. T must keep as much, lest it touch.
 
 use super::link_lanes::LinkLanes;
 use crate::distance::lanes::Pack;
@@ -64,15 +64,9 @@ use crate::distance::{Mask, Vec3};
 impl<L: Pack> LinkLanes<L> {
     /// Which triangles certainly lie on a slope towards a nearer one, one bit per lane. `across` are the corners beyond
     /// the edges from the first corner to the second, from the second to the third and from the third to the first;
-    /// no numbers where there are none. `error` is the link's. Those that are not in `asked` may be missing.
+    /// no numbers where there are none. `error` is the link's.
     #[inline(always)]
-    pub(super) fn on_slope(
-        &self,
-        [a, b, c]: [Vec3<L>; 3],
-        across: [Vec3<L>; 3],
-        asked: u64,
-        error: L,
-    ) -> u64 {
+    pub(super) fn on_slope(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
         let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));
         let centre = (a + b + c) * error.lit(1.0 / 3.0);
         let up = self.offset_from_axis(centre);
@@ -85,35 +79,23 @@ impl<L: Pack> LinkLanes<L> {
 
         let along = to - from;
         let squared = along.norm_squared();
-        let foot = (top - from).dot(along).over(squared);
+        let foot = (top - from).dot(along).over(squared).max(zero).min(one);
         let rise = (top - from).along(along, -foot);
         let edge = Edge { length: squared.sqrt(), rise, height: rise.norm(), error };
-        let foot_is_on_edge = zero.le(foot) & foot.le(one);
 
         let middle = (from + to) * half;
-        let (way, radius) = self.way_to(middle);
-        let apart = way.norm();
-        let kept = edge.kept(apart, edge.gap(apart, way.dot(along).abs() * half));
-        let at_corner = self.way_to(beyond).0.norm();
-        let is_at_edge = edge.holds_nearest(way, apart, edge.length * error.lit(0.25));
-        let on_slope = L::bits(foot_is_on_edge & is_at_edge & radius.lt(kept) & at_corner.lt(kept));
-        if asked & L::bits(foot_is_on_edge) & !on_slope == 0 {
-            return on_slope;
-        }
-
-        // Where the middle does not tell, about the nearest point of the edge may.
-        let share = (half + self.steps_to_lowest(way, middle, along)).max(zero).min(one);
+        let share = half + self.steps_to_lowest(self.way_to(middle).0, middle, along);
+        let share = share.max(zero).min(one);
         let nearest = from.along(along, share);
-        let way = self.way_to(nearest).0;
+        let (way, touching) = self.way_to(nearest);
         let (apart, fall) = (way.norm(), way.dot(along));
         let gap = edge.gap(apart, (fall * share).max(fall * (share - one)));
         let kept = edge.kept(apart, gap);
+
         let to_corner = beyond - nearest;
         let step = self.steps_to_lowest(way, nearest, to_corner).max(zero).min(one);
-        let on_the_way = self.way_to(nearest.along(to_corner, step)).0.norm();
-        let is_at_edge = edge.holds_nearest(way, apart, gap.sqrt());
-        on_slope
-            | L::bits(foot_is_on_edge & is_at_edge & radius.lt(kept) & at_corner.min(on_the_way).lt(kept))
+        let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm();
+        L::bits(edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept))
     }
 
     /// How many steps from a point the way is about shortest, no number or infinite where it is as long everywhere.
@@ -166,10 +148,9 @@ struct Edge<L> {
 impl<L: Pack> Edge<L> {
     /// Condition 1.
     #[inline(always)]
-    fn holds_nearest(&self, way: Vec3<L>, apart: L, turn: L) -> L::Mask {
-        let Self { length, rise, height, error } = *self;
-        let rounding = error * (apart + length + height);
-        (height * (turn + error + error)).lt(way.dot(rise) - rounding)
+    fn holds_nearest(&self, way: Vec3<L>, apart: L, gap: L) -> L::Mask {
+        let turn = gap.sqrt() + self.error + self.error;
+        (self.height * turn).lt(way.dot(self.rise) - self.error * apart)
     }
 
     /// The gap with what it errs by.
@@ -223,7 +204,7 @@ mod tests {
         let (mut slopes, error) = (0, L::splat(token, searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let corners = load_vertices(token, rows, lane);
-            slopes |= lanes.on_slope(corners, load_vertices(token, across, lane), u64::MAX, error) << lane;
+            slopes |= lanes.on_slope(corners, load_vertices(token, across, lane), error) << lane;
         }
         slopes
     }

@@ -62,7 +62,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
                 && let Some(across) = across
             {
                 let across = load_vertices::<L>(token, across, lane);
-                slopes |= (near & lanes.on_slope(vertices, across, near, error)) << lane;
+                slopes |= (near & lanes.on_slope(vertices, across, error)) << lane;
             }
         }
         self.found.add_slopes(number, slopes);
