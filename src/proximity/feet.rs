@@ -2,38 +2,31 @@
 //! search.
 //!
 //! # What is certain although the nearest points are not
-//! Link and triangle are convex, and so is the set of the differences w = x - y of their points x and y. Let v be the
-//! shortest of them and d its length, the distance. Every other one has <v, w> >= d^2, so
+//! Let B be the link, or its axis where both caps are round, and W(x) the way to a point x from the nearest point of B. Let
+//! m be the triangle's point that is nearest to B, and v = W(m): <v, x - m> >= 0 for every point x of the triangle. Let X
+//! and Y be corners with <v, X - Y> > 0: m would come nearer if X's share in it went over to Y. So X has none: m lies on
+//! the edge opposite to X. Where that is known of two corners it is the third.
+//!
+//! W is firmly nonexpansive (see `slopes`), so for any point z of the triangle
 //!
 //! ```text
-//! |w - v|^2 <= |w|^2 - d^2 <= g (2 d + g)   if |w| <= d + g:
+//! |v - W(z)|^2 <= <v, m - z> - <W(z), m - z> <= -<W(z), m - z> <= gap = max over the corners Z of -<W(z), Z - z>:
 //! ```
 //!
-//! what is nearly as short points nearly the same way, even where the nearest points are anywhere along two parallels.
-//! Now let A and B be corners of the triangle with <v, A - B> > 0. If A had a share in the nearest point, the point would
-//! come nearer as that share went over to B. So A has none: the nearest point lies on the edge opposite to A. Where that
-//! is known of two corners it is the third.
+//! however uncertain m is along two parallels, v is known where z is about as near (the gap is that of Frank and Wolfe).
+//! Here z is the nearest point of the edge that is nearest to the axis.
 //!
 //! # Rounding
-//! Let e be the link's `error`, 64 u reach. Let p be the triangle's point nearest to the axis and q that of the axis, as
-//! they were computed, and p - q longer than the radius r. The link's point is taken at y = q + r (p - q) / |p - q|. Beside
-//! a round cap and along the side it lies in the link, and beyond a flat cap if it does not stick out of it, which is
-//! looked up; but for the rounding of p, q and the link, which is below e each. So w = p - y is within 2 e of a true
-//! difference. Its length |p - q| - r exceeds d by less than 2 e: the link lies in its capsule. With g = 4 e and
-//! d <= |w| + 2 e it is
+//! Let e be the link's `error`, 64 u reach. z is a computed point of an edge, so that W(z) is within 2 e of the true one,
+//! with 36 u reach to spare (see `slopes`). The gap errs by 2 e |Z - z| for that and by |W| e / 4 for Z and z. With l the
+//! longest of the Z - z and t = sqrt(gap + 3 e l + |W| e / 4) + 2 e, and as the corners are each rounded by less than
+//! e / 16, <v, X - Y> > 0 if
 //!
 //! ```text
-//! |w - v| <= 2 e + sqrt(8 e (|w| + 4 e)) < t = 4 e + sqrt(9 e (|w| + 4 e)),
+//! <W, X - Y> > t |X - Y| + (|W| + t) e / 8.
 //! ```
 //!
-//! and the corners, each rounded by less than e / 16, have <v, A - B> > 0 if
-//!
-//! ```text
-//! <w, A - B> > t |A - B| + (|w| + t) e / 8.
-//! ```
-//!
-//! The ninth e under the root leaves 6 % of it for the rounding of what is computed here: 8 u |w| |A - B| at most, while
-//! the root is above 1000 u |w|.
+//! What is computed here errs by 8 u |W| |X - Y| at most, which is within what W has to spare: |W| is below 3.5 reach.
 
 use super::link_lanes::{LinkLanes, Nearer};
 use crate::distance::lanes::Pack;
@@ -75,36 +68,37 @@ impl<L: Pack> LinkLanes<L> {
     }
 
     #[inline(always)]
-    fn corners_away(&self, [a, b, c]: [Vec3<L>; 3], axial: &Axial<L>, error: L) -> [u64; 3] {
-        let (zero, radius, four) = (self.length.zero(), self.link.radius, error * error.lit(4.0));
-        let from_axis = axial.on_triangle - self.link.end * axial.s;
-        let norm = from_axis.norm();
-        let share = radius.over(norm);
-        // Of the link's point, along the axis.
-        let height = axial.s * self.length + from_axis.dot(self.link.axis) * share;
-        let [start, end] = self.link.flat;
-        let is_in_link = (!start | zero.le(height)) & (!end | height.le(self.length));
-        let apart = norm - radius;
-        let turn = four + ((apart + four) * error * error.lit(9.0)).sqrt();
-        let slope = Slope {
-            way: from_axis * (norm.one() - share),
-            turn_squared: turn * turn,
-            rest: (apart + turn) * error * error.lit(0.125),
-            is_known: is_in_link & zero.lt(apart),
-        };
+    fn corners_away(&self, corners: [Vec3<L>; 3], axial: &Axial<L>, error: L) -> [u64; 3] {
+        let [a, b, c] = [corners[0] - self.start, corners[1] - self.start, corners[2] - self.start];
+        let (zero, one) = (error.zero(), error.one());
+        let [ab, bc, ca] = Face::in_order_of(corners, axial.edges_squared);
+        let (ab_is_nearest, bc_is_nearest) = (ab.le(bc) & ab.le(ca), bc.le(ca));
+        let from = Vec3::select(ab_is_nearest, a, Vec3::select(bc_is_nearest, b, c));
+        let to = Vec3::select(ab_is_nearest, b, Vec3::select(bc_is_nearest, c, a));
+        let edge = to - from;
+        let share = (axial.on_triangle - from).dot(edge).over(edge.norm_squared());
+        let point = from.along(edge, share.max(zero).min(one));
+        let (way, _) = self.way_from_start(point);
+        let apart = way.norm();
+        let [to_a, to_b, to_c] = [a - point, b - point, c - point];
+        let fall = zero.max(-way.dot(to_a)).max(-way.dot(to_b)).max(-way.dot(to_c));
+        let longest = to_a.norm_squared().max(to_b.norm_squared()).max(to_c.norm_squared()).sqrt();
+        let gap = fall + error * (longest * error.lit(3.0) + apart * error.lit(0.25));
+        let turn = gap.sqrt() + error + error;
+        let rest = (apart + turn) * error * error.lit(0.125);
+        let slope = Slope { way, turn_squared: turn * turn, rest };
         let ([a_b, b_a], [b_c, c_b], [c_a, a_c]) = (slope.of(a, b), slope.of(b, c), slope.of(c, a));
         [a_b | a_c, b_a | b_c, c_a | c_b].map(L::bits)
     }
 }
 
-/// A way w from link to triangle.
+/// The way W from link to triangle.
 struct Slope<L: Scalar> {
     way: Vec3<L>,
     /// t^2.
     turn_squared: L,
-    /// (|w| + t) e / 8.
+    /// (|W| + t) e / 8.
     rest: L,
-    is_known: L::Mask,
 }
 
 impl<L: Scalar> Slope<L> {
@@ -116,8 +110,7 @@ impl<L: Scalar> Slope<L> {
         let steep = rise.abs() - self.rest;
         let zero = rise.zero();
         let is_steep = zero.lt(steep) & (self.turn_squared * edge.norm_squared()).lt(steep * steep);
-        let is_known = self.is_known & is_steep;
-        [is_known & zero.lt(rise), is_known & rise.lt(zero)]
+        [is_steep & zero.lt(rise), is_steep & rise.lt(zero)]
     }
 }
 

@@ -39,10 +39,11 @@
 //! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and
 //! that one is nearer by far more than 2 t. The search can tell so, from a look at the neighbour (`slopes`) or from all
 //! that it found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far
-//! more than 2 t, so that no piece ever ends for being that of D. For the others it still counts where they join it. A
-//! piece that has an f with D, and d(f) at most 2 t above its own minimum, ends there: d(f) >= d(D), so that the
-//! minimum of D's piece is the nearer one. Which piece D is part of makes no difference, and all that are left out are
-//! taken for one, nearer than any.
+//! more than 2 t, so that no piece ever ends for being that of D. So is one whose nearest point is on an f that it shares
+//! with another that is left out: at d(f) it joins that one, which is in such a piece from a distance on that is no
+//! greater. For the others what is left out still counts where they join it. A piece that has an f with D, and d(f) at
+//! most 2 t above its own minimum, ends there: d(f) >= d(D), so that the minimum of D's piece is the nearer one. Which
+//! piece D is part of makes no difference, and all that are left out are taken for one, nearer than any.
 //!
 //! At an edge or a corner that is certainly farther than its nearest point a triangle joins nothing that is nearer.
 //!
@@ -54,10 +55,10 @@ use super::LinkProximity;
 use super::contact::Contact;
 use super::contact_lanes::{Place, add_contacts};
 use super::mesh::Mesh;
-use super::near_triangle::{End, NearLink, NearTriangles};
+use super::near_triangle::{End, Index, NearLink, NearTriangles};
 use super::placed::{Nearest, PlacedLink, PlacedRobot};
 use super::ranked::{Ranked, rank_each, rounding};
-use super::shared_parts::{PARTS, SharedParts, ends_of};
+use super::shared_parts::{PARTS, ends_of};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 use std::ops::Range;
@@ -81,8 +82,8 @@ pub(super) struct LocalMinima {
     /// For each of them that is in question its place among those within the margin of its link, counted from 1, or that
     /// of all that are left out.
     places: Vec<u32>,
-    /// For each triangle of the mesh where it stands among those in question for the link at hand, if it does.
-    index_of: Vec<u32>,
+    /// Where the triangles of the link at hand stand.
+    index: Index,
     /// Those that are measured, link by link.
     measured: Vec<u32>,
     /// What was measured of them.
@@ -103,10 +104,25 @@ struct LinkAtWall {
     measured: Range<usize>,
 }
 
+/// What the robot is near to.
+#[derive(Clone, Copy)]
+pub(super) struct Wall<'a> {
+    pub mesh: &'a Mesh,
+    /// Where each triangle stands in the leaves of the search, if it tells of slopes.
+    pub place_of: &'a [u32],
+}
+
+impl<'a> Wall<'a> {
+    /// Without a search that tells of slopes.
+    pub(super) fn of(mesh: &'a Mesh) -> Self {
+        Self { mesh, place_of: &[] }
+    }
+}
+
 /// The contacts of a robot, link by link, in `out`.
 pub(super) struct RobotContacts<'a> {
     level: Level,
-    mesh: &'a Mesh,
+    wall: Wall<'a>,
     robot: PlacedRobot<'a>,
     margin: Real,
     minima: &'a mut LocalMinima,
@@ -119,14 +135,14 @@ impl<'a> RobotContacts<'a> {
     /// Nothing yet.
     pub(super) fn new(
         level: Level,
-        mesh: &'a Mesh,
+        wall: Wall<'a>,
         robot: PlacedRobot<'a>,
         margin: Real,
         minima: &'a mut LocalMinima,
         out: &'a mut Vec<Contact>,
     ) -> Self {
         minima.clear();
-        Self { level, mesh, robot, margin, minima, out, measured: 0 }
+        Self { level, wall, robot, margin, minima, out, measured: 0 }
     }
 
     /// Looks at a link, behind the last one. `near` adds the triangles that may be within the margin; some may be farther
@@ -136,7 +152,7 @@ impl<'a> RobotContacts<'a> {
         let (begin, measured) = (minima.triangles.end(), minima.measured.len());
         near(&link, &mut minima.triangles);
         let triangles = [begin, minima.triangles.end()];
-        minima.leave_out(self.mesh, triangles);
+        minima.leave_out(self.wall, triangles);
         let measured = measured..minima.measured.len();
         minima.links.push(LinkAtWall { number, link, triangles, measured });
         if minima.measured.len() > PUT_OFF {
@@ -152,15 +168,18 @@ impl<'a> RobotContacts<'a> {
 
     /// Finds the contacts of the links that were put off.
     fn catch_up(&mut self) {
-        let Self { level, mesh, robot, margin, .. } = *self;
-        self.minima.find(level, mesh, margin);
+        let Self { level, wall, robot, margin, .. } = *self;
+        self.minima.find(level, wall, margin);
+        let mut links = self.minima.links.iter().peekable();
         let place = |found: &LinkProximity| {
-            let link = robot.link(found.link as usize);
+            // Both are in the order of links.
+            while links.next_if(|at| at.number < found.link as usize).is_some() {}
+            let link = links.peek().map_or_else(|| robot.link(found.link as usize), |at| at.link);
             Place {
                 ends: [link.start(), link.end()],
                 radius: link.radius(),
                 flat: link.flat(),
-                corners: mesh.corners(found.triangle),
+                corners: wall.mesh.corners(found.triangle),
                 before: robot.length_before(found.link as usize),
             }
         };
@@ -179,33 +198,39 @@ impl LocalMinima {
     }
 
     /// Leaves out the triangles of a link that certainly lie on a slope towards a nearer one.
-    fn leave_out(&mut self, mesh: &Mesh, triangles: [End; 2]) {
+    fn leave_out(&mut self, wall: Wall, triangles: [End; 2]) {
         let near = self.triangles.between(triangles);
         if near.in_question.is_empty() {
             return;
         }
-        number(&mut self.index_of, mesh, near);
-        let shared = mesh.parts();
-        for known in near.in_question {
-            let is_nearer = |other: u32| {
-                let index = index_among(near, &self.index_of, other);
-                index.is_some_and(|index| near.in_question[index].upper < known.lower)
-            };
-            let is_left_out =
-                known.foot().is_some_and(|foot| shared.others(known.triangle, foot).any(is_nearer));
-            self.places.push(if is_left_out { LEFT_OUT } else { NONE });
-            if !is_left_out {
-                self.measured.push(known.triangle);
+        self.index.number(near, wall.mesh.len());
+        let shared = wall.mesh.parts();
+        let first = self.places.len();
+        self.places.resize(first + near.in_question.len(), NONE);
+        let places = &mut self.places[first..];
+        // What one leaves out may leave out another: most of these are met the second time.
+        for _ in 0..2 {
+            for (place, known) in near.in_question.iter().enumerate() {
+                let Some(foot) = known.foot().filter(|_| places[place] != LEFT_OUT) else { continue };
+                let leaves_out = |other: u32| match near.index(&self.index, other) {
+                    Some(index) => near.in_question[index].upper < known.lower || places[index] == LEFT_OUT,
+                    None => near.is_on_slope(&self.index, wall.place_of, other),
+                };
+                if shared.others(known.triangle, foot).any(leaves_out) {
+                    places[place] = LEFT_OUT;
+                }
             }
         }
+        let others = near.in_question.iter().zip(places).filter(|(_, place)| **place != LEFT_OUT);
+        self.measured.extend(others.map(|(known, _)| known.triangle));
     }
 
     /// Finds the local minima of all links, nearest first for each.
-    fn find(&mut self, level: Level, mesh: &Mesh, margin: Real) {
+    fn find(&mut self, level: Level, wall: Wall, margin: Real) {
         self.ranked.clear();
         let of_link = |at: &LinkAtWall| self.measured[at.measured.clone()].iter();
         let pairs = self.links.iter().flat_map(|at| of_link(at).map(|&triangle| (&at.link, triangle)));
-        rank_each(level, mesh, pairs, |ranked| self.ranked.push(ranked));
+        rank_each(level, wall.mesh, pairs, |ranked| self.ranked.push(ranked));
         self.found.clear();
         for LinkAtWall { number: link_number, link, triangles, measured } in &self.links {
             let near = self.triangles.between(*triangles);
@@ -213,13 +238,15 @@ impl LocalMinima {
             if ranked.is_empty() {
                 continue;
             }
-            number(&mut self.index_of, mesh, near);
+            self.index.number(near, wall.mesh.len());
             let places = &mut self.places[triangles[0].in_question..triangles[1].in_question];
             for (place, ranked) in (1..).zip(ranked) {
-                places[self.index_of[ranked.nearest.triangle as usize] as usize] = place;
+                if let Some(index) = near.index(&self.index, ranked.nearest.triangle) {
+                    places[index] = place;
+                }
             }
-            let index_of = &self.index_of;
-            let mut pieces = Pieces { link, mesh, near, places, index_of, ranked, piece: &mut self.piece };
+            let (index, piece) = (&self.index, &mut self.piece);
+            let mut pieces = Pieces { link, wall, near, places, index, ranked, piece };
             self.found.extend(pieces.first_triangles().map(|nearest| nearest.report(*link_number)));
         }
     }
@@ -234,29 +261,13 @@ fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
     &ranked[..count]
 }
 
-/// Writes down where each triangle stands among those in question for a link. What stands there of other links does no
-/// harm: see [`index_among`].
-fn number(index_of: &mut Vec<u32>, mesh: &Mesh, near: NearLink) {
-    index_of.resize(mesh.len(), 0);
-    for (index, known) in (0..).zip(near.in_question) {
-        index_of[known.triangle as usize] = index;
-    }
-}
-
-/// Where a triangle stands among those in question.
-#[inline(always)]
-fn index_among(near: NearLink, index_of: &[u32], triangle: u32) -> Option<usize> {
-    let index = index_of[triangle as usize] as usize;
-    near.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
-}
-
 /// The pieces of wall within the margin of one link, as they grow and join.
 struct Pieces<'a> {
     link: &'a PlacedLink,
-    mesh: &'a Mesh,
+    wall: Wall<'a>,
     near: NearLink<'a>,
     places: &'a [u32],
-    index_of: &'a [u32],
+    index: &'a Index,
     /// The triangles within the margin, nearest first.
     ranked: &'a [Ranked],
     piece: &'a mut Vec<u32>,
@@ -274,36 +285,29 @@ impl Pieces<'_> {
         places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
     }
 
-    /// Where a triangle stands among those in question.
-    #[inline(always)]
-    fn index(&self, triangle: u32) -> Option<usize> {
-        index_among(self.near, self.index_of, triangle)
-    }
-
     /// Joins a triangle with the pieces that nearer ones have made.
     fn join(&mut self, place: u32) {
         self.piece.push(place);
         let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[place as usize - 1];
-        let Some(index) = self.index(nearest.triangle) else { return };
-        let (known, shared) = (self.near.in_question[index], self.mesh.parts());
-        let corners = self.mesh.corners(nearest.triangle);
+        let Some(index) = self.near.index(self.index, nearest.triangle) else { return };
+        let (known, shared) = (self.near.in_question[index], self.wall.mesh.parts());
+        let corners = self.wall.mesh.corners(nearest.triangle);
         // Whom it meets at its corners and edges, and whether at its least point.
         let (mut met, mut count) = ([(0, LEFT_OUT, false); 2 * PARTS], 0);
         for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
-            let (mut may_meet_left_out, mut first) = (false, NONE);
+            let (mut meets_left_out, mut first) = (false, NONE);
             for other in shared.others(nearest.triangle, part) {
-                let place_of_other = self.index(other).map(|index| (index, self.places[index]));
-                match place_of_other {
-                    // An edge or a corner of what is certainly farther is itself farther.
-                    Some((other, LEFT_OUT)) => {
-                        may_meet_left_out |= self.near.in_question[other].lower < known.upper;
-                    }
-                    Some((_, other)) if other < place => first = first.min(other),
-                    Some(_) => {}
-                    None => may_meet_left_out |= self.near.has_slopes(),
+                match self.near.index(self.index, other) {
+                    Some(other) => match self.places[other] {
+                        // An edge or a corner of what is certainly farther is itself farther.
+                        LEFT_OUT => meets_left_out |= self.near.in_question[other].lower < known.upper,
+                        other if other < place => first = first.min(other),
+                        _ => {}
+                    },
+                    None => meets_left_out |= self.near.is_on_slope(self.index, self.wall.place_of, other),
                 }
             }
-            let others = [may_meet_left_out.then_some(LEFT_OUT), (first != NONE).then_some(first)];
+            let others = [meets_left_out.then_some(LEFT_OUT), (first != NONE).then_some(first)];
             if others == [None; 2] {
                 continue;
             }
@@ -326,23 +330,12 @@ impl Pieces<'_> {
                 let [from, to] = ends_of(corners, part);
                 let farther =
                     self.grown(mine).max(self.grown(other)) + rounding(self.link.extent_with([from, to, to]));
-                if nearest.distance <= farther
-                    && (met_there || self.link.comes_within(farther, from, to))
-                    && (with != LEFT_OUT || self.is_left_out_there(shared, nearest.triangle, part))
-                {
+                if nearest.distance <= farther && (met_there || self.link.comes_within(farther, from, to)) {
                     // The piece appeared where the nearer one did.
                     self.piece[mine.max(other) as usize] = mine.min(other);
                 }
             }
         }
-    }
-
-    /// Whether another triangle that has a part of a triangle is left out.
-    fn is_left_out_there(&self, shared: &SharedParts, triangle: u32, part: usize) -> bool {
-        shared.others(triangle, part).any(|other| match self.index(other) {
-            Some(index) => self.places[index] == LEFT_OUT,
-            None => self.near.is_on_slope(other),
-        })
     }
 
     /// How far the wall can rise from where a piece appeared before it has grown.
@@ -371,7 +364,7 @@ pub(crate) fn contacts_by_all_triangles(
     out: &mut Vec<Contact>,
 ) {
     let mut minima = LocalMinima::default();
-    let mut contacts = RobotContacts::new(Level::new(), mesh, robot, margin, &mut minima, out);
+    let mut contacts = RobotContacts::new(Level::new(), Wall::of(mesh), robot, margin, &mut minima, out);
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
             let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;

@@ -41,12 +41,22 @@ pub(super) struct NearTriangle {
     pub beyond: u8,
 }
 
-/// Those of a block that lie on a slope.
+/// Those of a leaf that lie on a slope.
 #[derive(Clone, Copy)]
 struct Slopes {
-    triangles: [u32; BLOCK],
+    leaf: u32,
     /// One bit for each that does.
     lanes: u64,
+}
+
+/// Where the triangles of one link stand. What is written there of other links does no harm: it is compared with what
+/// stands at the place.
+#[derive(Clone, Default)]
+pub(super) struct Index {
+    /// For each triangle of the mesh where it stands among those in question.
+    of_triangle: Vec<u32>,
+    /// For each leaf of the search where it stands among the slopes.
+    of_leaf: Vec<u32>,
 }
 
 impl NearTriangles {
@@ -60,10 +70,10 @@ impl NearTriangles {
         self.in_question.extend(triangles.map(NearTriangle::unknown));
     }
 
-    /// Adds those of a block that certainly lie on a slope, one bit for each.
-    pub(super) fn add_slopes(&mut self, triangles: &[u32; BLOCK], lanes: u64) {
+    /// Adds those of a leaf that certainly lie on a slope, one bit for each.
+    pub(super) fn add_slopes(&mut self, leaf: u32, lanes: u64) {
         if lanes != 0 {
-            self.slopes.push(Slopes { triangles: *triangles, lanes });
+            self.slopes.push(Slopes { leaf, lanes });
         }
     }
 
@@ -82,16 +92,39 @@ impl NearTriangles {
 }
 
 impl NearLink<'_> {
-    pub(super) fn has_slopes(&self) -> bool {
-        !self.slopes.is_empty()
+    /// Where a triangle stands among those in question, if it does.
+    #[inline(always)]
+    pub(super) fn index(&self, index: &Index, triangle: u32) -> Option<usize> {
+        let index = index.of_triangle[triangle as usize] as usize;
+        self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// Whether a triangle certainly lies on a slope.
-    pub(super) fn is_on_slope(&self, triangle: u32) -> bool {
-        self.slopes.iter().any(|slopes| {
-            let mut lanes = slopes.triangles.iter().enumerate();
-            lanes.any(|(lane, &other)| other == triangle && slopes.lanes >> lane & 1 == 1)
-        })
+    /// Whether a triangle certainly lies on a slope. `place_of` tells where each triangle of the mesh stands in the leaves
+    /// of the search; where there are none, nothing does.
+    #[inline(always)]
+    pub(super) fn is_on_slope(&self, index: &Index, place_of: &[u32], triangle: u32) -> bool {
+        let Some(&place) = place_of.get(triangle as usize) else { return false };
+        let (leaf, lane) = (place / BLOCK as u32, place % BLOCK as u32);
+        let slopes = index.of_leaf.get(leaf as usize).and_then(|&at| self.slopes.get(at as usize));
+        slopes.is_some_and(|slopes| slopes.leaf == leaf && slopes.lanes >> lane & 1 == 1)
+    }
+}
+
+impl Index {
+    /// Writes down where the triangles of a link stand, in a mesh of so many.
+    pub(super) fn number(&mut self, near: NearLink, triangles: usize) {
+        self.of_triangle.resize(triangles, 0);
+        for (index, known) in (0..).zip(near.in_question) {
+            self.of_triangle[known.triangle as usize] = index;
+        }
+        for (index, slopes) in (0..).zip(near.slopes) {
+            let leaf = slopes.leaf as usize;
+            if leaf >= self.of_leaf.len() {
+                // No leaf has no triangle.
+                self.of_leaf.resize(triangles, 0);
+            }
+            self.of_leaf[leaf] = index;
+        }
     }
 }
 

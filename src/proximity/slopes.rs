@@ -11,41 +11,51 @@
 //! <delta, s> >= |delta|^2,   so   |delta - s / 2| <= |s| / 2.                                              (1)
 //! ```
 //!
-//! Let f be the edge AB of a triangle T with the third corner C, and M its middle. Let F be a point of f, h = C - F.
-//!
-//! 1. *T's nearest point is on f.* Along f, z = M + s with |s| <= |AB| / 2, and by (1)
-//!
-//!    ```text
-//!    <W(z), h> >= <W(M), h> + (<s, h> - |s| |h|) / 2 >= <W(M), h> - (|AB| |h| + |<AB, h>|) / 4.
-//!    ```
-//!
-//!    Where the right side is positive, let z be f's nearest point. Any point of T is z' + g h, with z' on f and g >= 0;
-//!    <W(z), z' - z> >= 0, z being the nearest of f, and <W(z), h> > 0: so none of T is nearer than z. F is the foot of C
-//!    on f, which makes <AB, h> zero but for rounding; it must lie on f.
-//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: it is at least D(M) - |<W(M), AB>| / (2 D(M)) on
-//!    all of f, and with E the end of f that <W(M), AB> leads down to and O the other end, at least
-//!    D(E) - max(0, -<W(E), O - E>) / D(E). T keeps the greater of the two. Another triangle that has f reaches to its own
-//!    third corner C' and holds the way from E to it. It is nearer if D is less at C', or at the point P a quarter of the way:
-//!    near a link that is closer than the triangles are long D may rise again on the way to C'.
-//!
-//! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as `local_minima` says. Of T's
-//! edges the one opposite to the corner that is farthest from the axis is tried.
-//!
-//! # Rounding
-//! Let e be the link's `error`, 64 u reach; it is that of single precision. A corner errs by e / 16. The computed W(M) is
-//! within 2 e of a true way from the link to M, and its length exceeds D(M) by less than 4 e: so, as `feet` derives,
-//! it is within t = 4 e + sqrt(9 e (|W(M)| + 4 e)) of the true one. With the computed corners h errs by e / 4, |AB| by e / 8,
-//! and |<AB, h>| is below e (|AB| + |h|), F being computed. So condition 1 holds if
+//! Let f be the edge AB of a triangle T with the third corner C, m the point of f that is nearest to B, and z any point of
+//! f. Let F be a point of f, h = C - F. As m is the nearest, <W(m), m - z> <= 0, so that (1) gives for s = m - z
 //!
 //! ```text
-//! <W(M), h> > |h| (|AB| / 4 + t) + e (|W(M)| + |AB| + |h|),
+//! |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap = max(-<W(z), A - z>, -<W(z), B - z>).             (2)
 //! ```
 //!
-//! where the true products differ by t |h| + (|W(M)| + t) e / 4 + 3 e (|AB| + |h|) / 8 at most, and t < 11 e + |W(M)| / 2; 2 x
-//! is never more than 1 + x^2. In condition 2 each slope errs by t |AB| / |W|, with the t and the W of its point, and each
-//! length by 2 e: with 8 e in all, 4 e are left by which the neighbour is nearer, far above what a measurement in double
-//! precision errs by. T must keep as much, lest it touch. Any end may be taken for E. P errs by less than e / 8, its
-//! corners' errors and its own roundings together, and so its length by less than 2 e too.
+//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m), m' - m> >= 0. So none of
+//!    T is nearer than m if
+//!
+//!    ```text
+//!    <W(m), h> >= <W(z), h> - sqrt(gap) |h| > 0.
+//!    ```
+//!
+//!    F is the point of f that is nearest to C, which makes h short.
+//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at least D(z) - gap / D(z).
+//!    Another triangle that has f reaches to its own third corner C' and holds the way from z to it. It is nearer if D is
+//!    less at a point P on that way.
+//!
+//! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as `local_minima` says. Of T's
+//! edges the one opposite to the corner that is farthest from the axis is tried. Any z and P will do. They are those at
+//! which D is least on the edge and on the way to C' if W leads from the middle of the axis, or from an end of it, all
+//! along as it does at the middle of the edge and at z.
+//!
+//! # Rounding
+//! Let e be the link's `error`, 64 u reach; it is that of single precision.
+//!
+//! - In units of u reach a corner errs by 2 and a computed point of an edge by 11, seen from the link's start by 16. A
+//!   projection moves no farther than its point. In itself it errs by 17 along the axis, for the product and the direction,
+//!   4 for the length, and 13 for the multiple of the axis: 49 with the point's own, below e. To a link with flat caps 42
+//!   more are due to the part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach to
+//!   spare, and D within 2 e.
+//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own rounding included.
+//! - h errs by e / 4. So condition 1 holds if
+//!
+//!   ```text
+//!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|:
+//!   ```
+//!
+//!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u reach |W|; the product of
+//!   two errors is within what W has to spare, or |W| is below 6 e and no condition 2 holds.
+//! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)| only within 2 e: it counts
+//!   only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach from the link's start, which leaves W(P) within
+//!   2 e too. With 12 e in all, 5 e are left by which the neighbour is nearer, far above what a measurement in double
+//!   precision errs by. T must keep as much, lest it touch.
 
 use super::link_lanes::LinkLanes;
 use crate::distance::lanes::Pack;
@@ -57,7 +67,7 @@ impl<L: Pack> LinkLanes<L> {
     /// no numbers where there are none. `error` is the link's.
     #[inline(always)]
     pub(super) fn on_slope(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
-        let (zero, one) = (error.zero(), error.one());
+        let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));
         let centre = (a + b + c) * error.lit(1.0 / 3.0);
         let up = self.offset_from_axis(centre);
         let [height_a, height_b, height_c] = [up.dot(a), up.dot(b), up.dot(c)];
@@ -67,51 +77,53 @@ impl<L: Pack> LinkLanes<L> {
         let (from, to) = (choose([a_is_top, b_is_top], b, c, a), choose([a_is_top, b_is_top], c, a, b));
         let beyond = choose([a_is_top, b_is_top], across[1], across[2], across[0]);
 
-        let edge = to - from;
-        let squared = edge.norm_squared();
-        let share = (top - from).dot(edge).over(squared);
-        let rise = (top - from).along(edge, -share);
-        let (way, radius) = self.way_to((from + to) * error.lit(0.5));
-        let (apart, length) = (way.norm(), squared.sqrt());
-        let turn = turn_at(apart, error);
-        let rise_squared = rise.norm_squared();
-        let sizes = apart + one + (squared + rise_squared) * error.lit(0.5);
-        let steep = way.dot(rise) - error * sizes;
-        let least = length * error.lit(0.25) + turn;
-        let is_at_edge = zero.le(share)
-            & share.le(one)
-            & zero.lt(steep)
-            & (rise_squared * least * least).lt(steep * steep);
+        let along = to - from;
+        let squared = along.norm_squared();
+        let foot = (top - from).dot(along).over(squared).max(zero).min(one);
+        let rise = (top - from).along(along, -foot);
+        let edge = Edge { length: squared.sqrt(), rise, height: rise.norm(), error };
 
-        let eight = error * error.lit(8.0);
-        let along = way.dot(edge);
-        let kept = apart - (along.abs() * error.lit(0.5) + turn * length).over(apart) - eight;
-        let is_lower = radius.lt(kept) & self.way_to(beyond).0.norm().lt(kept);
-        if L::bits(is_at_edge & !is_lower) == 0 {
-            return L::bits(is_at_edge & is_lower);
-        }
-        let falls = along.lt(zero);
-        let (low, to_high) = (Vec3::select(falls, to, from), Vec3::select(falls, -edge, edge));
-        let way = self.way_to(low).0;
-        let apart = way.norm();
-        let fall = (turn_at(apart, error) * length - way.dot(to_high)).max(zero).over(apart);
-        let kept = kept.max(apart - fall - eight);
-        let on_the_way = low.along(beyond - low, error.lit(0.25));
-        let nearest = self.way_to(beyond).0.norm().min(self.way_to(on_the_way).0.norm());
-        L::bits(is_at_edge & radius.lt(kept) & nearest.lt(kept))
+        let middle = (from + to) * half;
+        let share = half + self.steps_to_lowest(self.way_to(middle).0, middle, along);
+        let share = share.max(zero).min(one);
+        let nearest = from.along(along, share);
+        let (way, touching) = self.way_to(nearest);
+        let (apart, fall) = (way.norm(), way.dot(along));
+        let gap = edge.gap(apart, (fall * share).max(fall * (share - one)));
+        let kept = edge.kept(apart, gap);
+
+        let to_corner = beyond - nearest;
+        let step = self.steps_to_lowest(way, nearest, to_corner).max(zero).min(one);
+        let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm();
+        L::bits(edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept))
+    }
+
+    /// How many steps from a point the way is about shortest, no number or infinite where it is as long everywhere.
+    #[inline(always)]
+    fn steps_to_lowest(&self, way: Vec3<L>, point: Vec3<L>, step: Vec3<L>) -> L {
+        let zero = self.length.zero();
+        let height = (point - self.start).dot(self.link.axis);
+        let is_beside = zero.lt(height) & height.lt(self.length);
+        let along_axis = is_beside.select(step.dot(self.link.axis), zero);
+        -way.dot(step) / (step.norm_squared() - along_axis * along_axis)
     }
 
     /// The way to a point from the nearest point of the axis, if both caps are round, else of the link; and the length of
     /// the ways to points that touch.
     #[inline(always)]
     fn way_to(&self, point: Vec3<L>) -> (Vec3<L>, L) {
+        self.way_from_start(point - self.start)
+    }
+
+    /// The same to a point that is seen from the link's start.
+    #[inline(always)]
+    pub(super) fn way_from_start(&self, relative: Vec3<L>) -> (Vec3<L>, L) {
         let (zero, radius) = (self.length.zero(), self.link.radius);
-        if !self.has_flat_cap() {
-            return (self.offset_from_axis(point), radius);
-        }
-        let relative = point - self.start;
         let height = relative.dot(self.link.axis);
         let from_axis = relative.along(self.link.axis, -height.max(zero).min(self.length));
+        if !self.has_flat_cap() {
+            return (from_axis, radius);
+        }
         let [start, end] = self.link.flat;
         let is_beyond_disc = (start & height.lt(zero)) | (end & self.length.lt(height));
         let arm = Vec3::select(is_beyond_disc, relative.along(self.link.axis, -height), from_axis);
@@ -122,11 +134,36 @@ impl<L: Pack> LinkLanes<L> {
     }
 }
 
-/// By how much the way to a point errs that is so long, beside the error of the point.
-#[inline(always)]
-fn turn_at<L: Pack>(apart: L, error: L) -> L {
-    let four = error * error.lit(4.0);
-    four + ((apart + four) * error * error.lit(9.0)).sqrt()
+/// An edge of a triangle, as it is seen in the module's derivation.
+struct Edge<L> {
+    /// |AB|.
+    length: L,
+    /// h.
+    rise: Vec3<L>,
+    /// |h|.
+    height: L,
+    error: L,
+}
+
+impl<L: Pack> Edge<L> {
+    /// Condition 1.
+    #[inline(always)]
+    fn holds_nearest(&self, way: Vec3<L>, apart: L, gap: L) -> L::Mask {
+        let turn = gap.sqrt() + self.error + self.error;
+        (self.height * turn).lt(way.dot(self.rise) - self.error * apart)
+    }
+
+    /// The gap with what it errs by.
+    #[inline(always)]
+    fn gap(&self, apart: L, gap: L) -> L {
+        gap + self.error * (self.length * gap.lit(3.0) + apart * gap.lit(0.125))
+    }
+
+    /// What the edge certainly keeps, with room for a neighbour that is nearer.
+    #[inline(always)]
+    fn kept(&self, apart: L, gap: L) -> L {
+        apart - gap.over(apart) - self.error * gap.lit(12.0)
+    }
 }
 
 /// The first where the first mask is true, the second where only the second one is, else the third. (A function, because

@@ -5,7 +5,7 @@ use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
 use crate::proximity::checks::check_margin;
 use crate::proximity::engine::pairs;
-use crate::proximity::local_minima::{LocalMinima, RobotContacts};
+use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{PlacedLink, PlacedRobot};
 use crate::proximity::{Contact, LinkProximity, MeshError, Proximity, ProximityError, Work};
@@ -166,7 +166,7 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         self.run(std::iter::once((robot, pose)), Aim::Every(margin))?;
         let Self { level, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
         let robot = PlacedRobot::new(robot, pose)?;
-        let mut contacts = RobotContacts::new(level, &triangles.mesh, robot, margin, minima, out);
+        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, margin, minima, out);
         for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
             let triangles = pairs.iter().map(|pair| pair.1);
             contacts.add(pairs[0].0, |_, near| near.add_unknown(triangles));

@@ -24,8 +24,8 @@ pub(super) struct WideBvh<E> {
     pub frame: SearchFrame,
     pub nodes: Vec<Node<E>>,
     pub leaves: Vec<Leaf<E>>,
-    /// The leaf of each triangle.
-    pub leaf_of: Vec<u32>,
+    /// Where each triangle stands: its lane, and 16 times the number of its leaf.
+    pub place_of: Vec<u32>,
 }
 
 impl<E: Lane> WideBvh<E> {
@@ -35,7 +35,7 @@ impl<E: Lane> WideBvh<E> {
             frame: SearchFrame::new(mesh),
             nodes: vec![Node::empty()],
             leaves: Vec::with_capacity(mesh.len().div_ceil(BLOCK / 2)),
-            leaf_of: vec![0; mesh.len()],
+            place_of: vec![0; mesh.len()],
         };
         let mut items = items(&tree.frame, mesh);
         arrange(&mut items, WIDTH, full_subtree(mesh.len()));
@@ -53,8 +53,12 @@ impl<E: Lane> WideBvh<E> {
             let (child, lowest_of_part) = if part.len() <= BLOCK {
                 self.leaves.push(Leaf::of(|lane| part[lane].0, part.len()));
                 let leaf = self.leaves.len() as u32 - 1;
-                part.iter().for_each(|&(triangle, _)| self.leaf_of[triangle as usize] = leaf);
-                (Child::Leaf(leaf), part.iter().fold(u32::MAX, |lowest, &(triangle, _)| lowest.min(triangle)))
+                let mut lowest = u32::MAX;
+                for (place, &(triangle, _)) in (leaf * BLOCK as u32..).zip(part) {
+                    self.place_of[triangle as usize] = place;
+                    lowest = lowest.min(triangle);
+                }
+                (Child::Leaf(leaf), lowest)
             } else {
                 self.nodes.push(Node::empty());
                 let child = self.nodes.len() - 1;

@@ -1,9 +1,8 @@
 //! Every triangle within a margin of a link: those of a leaf that neither a plane nor a slope rules out wait until they
 //! fill a block, and are then looked at closely.
 
-use super::across::{Across, Corners};
+use super::across::Across;
 use super::build::WideBvh;
-use super::node::Leaf;
 use crate::distance::dispatch;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::feet::CERTAIN;
@@ -40,21 +39,19 @@ impl<'a, E: Lane> Gathering<'a, E> {
         Self { level, searched, across, found, rows, triangles, waiting: 0, computed: 0 }
     }
 
-    /// The corners beyond the edges of a leaf's triangles, where they are to be looked at.
-    pub(super) fn across(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> Option<&'a Corners<E>> {
-        self.across.map(|across| across.of(leaf, tree, mesh))
-    }
-
     /// Adds the leaf's triangles that may be within the limit.
     #[inline(always)]
     pub(super) fn add<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         lanes: &LinkLanes<L>,
-        leaf: &Leaf<E>,
-        across: Option<&Corners<E>>,
+        tree: &WideBvh<E>,
+        number: u32,
+        mesh: &Mesh,
         limit: E,
     ) {
+        let leaf = &tree.leaves[number as usize];
+        let across = self.across.map(|across| across.of(number, tree, mesh));
         let (mut in_question, mut slopes) = (0, 0);
         let (limit_of_all, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
@@ -68,7 +65,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
                 slopes |= (near & lanes.on_slope(vertices, across, error)) << lane;
             }
         }
-        self.found.add_slopes(&leaf.triangles, slopes);
+        self.found.add_slopes(number, slopes);
         in_question &= !slopes;
         while in_question != 0 {
             let lane = in_question.trailing_zeros() as usize;

@@ -58,6 +58,11 @@ impl Hierarchy {
         (&self.mesh, &self.single, fields)
     }
 
+    /// Where each triangle stands in the leaves that tell of slopes.
+    pub(super) fn place_of(&self) -> &[u32] {
+        &self.single.place_of
+    }
+
     /// The link in the precision that resolves it.
     fn searched(&self, level: Level, link: &PlacedLink) -> Searched {
         let single = SearchLink::new(link, &self.single.frame);

@@ -2,7 +2,7 @@
 
 use super::few_each::FewEach;
 use super::hierarchy::MeshSearch;
-use crate::proximity::local_minima::{LocalMinima, RobotContacts};
+use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::placed::PlacedRobot;
 use crate::proximity::{Contact, LinkProximity};
 use crate::robot::LinkNode;
@@ -42,8 +42,9 @@ impl RobotSearch<'_> {
     /// The contacts of every link.
     pub(super) fn within(&mut self, margin: Real, minima: &mut LocalMinima, out: &mut Vec<Contact>) {
         let Self { search, robot } = self;
-        let (level, mesh, robot) = (search.level, &search.hierarchy.mesh, *robot);
-        let mut contacts = RobotContacts::new(level, mesh, robot, margin, minima, out);
+        let (level, hierarchy, robot) = (search.level, search.hierarchy, *robot);
+        let wall = Wall { mesh: &hierarchy.mesh, place_of: hierarchy.place_of() };
+        let mut contacts = RobotContacts::new(level, wall, robot, margin, minima, out);
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {

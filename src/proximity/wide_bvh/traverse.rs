@@ -236,9 +236,7 @@ impl<E: Lane> Traversal<'_, E> {
                 Child::Leaf(leaf) => match &mut target.aim {
                     Aim::Every(gathering) => {
                         self.work.visited += BLOCK as u64;
-                        let (leaf, corners) =
-                            (&self.tree.leaves[leaf as usize], gathering.across(leaf, self.tree, self.mesh));
-                        gathering.add(token, &lanes, leaf, corners, target.limit);
+                        gathering.add(token, &lanes, self.tree, leaf, self.mesh, target.limit);
                     }
                     _ => self.visit_leaf(token, &lanes, leaf, target),
                 },
@@ -247,7 +245,7 @@ impl<E: Lane> Traversal<'_, E> {
     }
 
     fn leaf_of(&self, triangle: Option<u32>) -> Option<u32> {
-        self.tree.leaf_of.get(triangle? as usize).copied()
+        self.tree.place_of.get(triangle? as usize).map(|place| place / BLOCK as u32)
     }
 
     /// Puts the children that may hold a nearer triangle on the stack, the nearest on top.
