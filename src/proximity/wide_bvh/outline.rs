@@ -120,12 +120,13 @@ mod tests {
     use crate::distance::{Vec3, point_modified_cylinder};
     use continuum_testing::Random;
 
-    /// A point of a link on its rims, or on the balls around its ends where they are round.
+    /// A point of a link on its rims, or on the half balls at its ends where they are round.
     fn extreme(random: &mut Random, link: &Outline) -> Vector {
-        let end = random.below(2) as usize;
-        let (direction, along) = (random.direction(), link.along().normalize());
-        let out =
-            if link.flat[end] { (direction - along * direction.dot(along)).normalize() } else { direction };
+        let (end, direction) = (random.below(2) as usize, random.direction());
+        let outward = link.along().normalize() * [-1.0, 1.0][end];
+        let ahead = direction.dot(outward);
+        let flat = (direction - outward * ahead).normalize();
+        let out = if link.flat[end] { flat } else { direction * ahead.signum() };
         link.ends[end] + out * link.radius
     }
 
