@@ -165,8 +165,8 @@ fn minima_in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) 
     let (mut kept, mut cold) = (BvhSearch::new(&mesh).unwrap(), BvhSearch::new(&mesh).unwrap());
     let (mut scene, mut links) = (Scene::new(size, links), Vec::new());
     for step in 0..steps {
-        // Most robots stay for a while; each comes to the wall. Every other stretch is calm.
-        if step % 400 >= 200 {
+        // Most robots stay for a while; each comes to the wall. Three of four stretches are calm.
+        if step % 400 >= 100 {
             scene.pose.translation += random.direction() * (1e-3 * size);
         } else if step % 16 < 12 {
             scene.step(&mut random);
@@ -219,7 +219,7 @@ fn many_minima_in_a_row(steps: u32) {
     }
     let Met { touching, tied, quick, by_heart, near, moved_meshes } = met;
     assert!(touching > steps / 20 && tied > steps / 200 && near > steps / 20, "{met:?}");
-    assert!(quick > steps / 20 && by_heart > steps / 200 && moved_meshes > steps / 1000, "{met:?}");
+    assert!(quick > steps / 20 && by_heart > steps / 50 && moved_meshes > steps / 1000, "{met:?}");
 }
 
 #[test]

@@ -26,8 +26,8 @@ fn visits(level: u32, clearance: f64) -> [f64; 3] {
 fn a_link_visits_few_nodes_and_leaves() {
     for (level, clearance, counted) in [
         (4, 2.0, [2.88, 2.84, 1.3]),
-        (4, 20.0, [6.34, 5.28, 2.4]),
-        (6, 2.0, [5.18, 5.19, 1.6]),
+        (4, 20.0, [6.34, 5.27, 2.4]),
+        (6, 2.0, [5.18, 5.18, 1.6]),
         (6, 20.0, [10.88, 8.68, 3.5]),
     ] {
         let visits = visits(level, clearance);
@@ -70,7 +70,7 @@ fn a_planners_shape_visits_few_nodes_and_leaves() {
         let moved: Vec<_> = vertices.iter().map(|&vertex| vertex + away).collect();
         search.set_vertices(&moved).unwrap();
         let visits = visits_of_shapes(&mut search, Pose::from_translation(away) * ventricle::entry());
-        for (visited, counted) in visits.into_iter().zip([[4.34, 4.83], [6.07, 12.25]]) {
+        for (visited, counted) in visits.into_iter().zip([[4.33, 4.83], [5.86, 12.25]]) {
             let is_few = visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
             assert!(is_few, "{visits:?}");
         }
