@@ -120,8 +120,8 @@ impl<E: Lane> Traversal<'_, E> {
         let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
         let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Nearest(link, best) };
         self.search(&mut target, start);
-        let (limit, candidates) = (target.limit, &mut self.stack.candidates);
-        candidates.retain(|candidate| candidate.0 < limit);
+        self.drop_candidates(&target);
+        let candidates = &mut self.stack.candidates;
         if matches!(target.aim, Aim::Nearest(_, best) if best.nearest().is_none())
             && (1..=FEW).contains(&candidates.len())
         {
@@ -129,7 +129,7 @@ impl<E: Lane> Traversal<'_, E> {
             few.extend(candidates.iter().map(|candidate| candidate.1));
             return None;
         }
-        self.settle(&mut target);
+        self.measure_candidates(&mut target);
         if let Aim::Nearest(_, best) = target.aim { Some(best) } else { None }
     }
 
@@ -350,14 +350,22 @@ impl<E: Lane> Traversal<'_, E> {
         }
     }
 
-    /// Measures the candidates that are still in question, several at a time and first those that are likely to rule out
-    /// others.
-    #[inline(never)] // the same code whatever the instruction set
+    /// Measures the candidates that are still in question.
     fn settle(&mut self, target: &mut Target<E>) {
+        self.drop_candidates(target);
+        self.measure_candidates(target);
+    }
+
+    /// Drops the candidates that later ones have ruled out.
+    fn drop_candidates(&mut self, target: &Target<E>) {
+        self.stack.candidates.retain(|candidate| candidate.0 < target.limit && candidate.1 < target.below);
+    }
+
+    /// Measures the candidates, several at a time and first those that are likely to rule out others.
+    #[inline(never)] // the same code whatever the instruction set
+    fn measure_candidates(&mut self, target: &mut Target<E>) {
         let Aim::Nearest(link, best) = &mut target.aim else { return };
         let candidates = &mut self.stack.candidates;
-        let (limit, below) = (target.limit, target.below);
-        candidates.retain(|candidate| candidate.0 < limit && candidate.1 < below);
         bring_forward(candidates, TOGETHER);
         let (mut limit, mut place) = (target.limit, 0);
         while place < candidates.len() {
