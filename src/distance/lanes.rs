@@ -122,6 +122,14 @@ macro_rules! lanes {
                 self.zero().lt(divisor).select(self / divisor, self.zero())
             }
             #[inline(always)]
+            fn share_of(self, whole: Self, inverse: Self) -> Self {
+                if <$element>::MANTISSA_DIGITS > f32::MANTISSA_DIGITS {
+                    return self.over(whole);
+                }
+                // Of a subnormal number the inverse is infinite: any share of a length that small will do.
+                (self * inverse).min(self.one())
+            }
+            #[inline(always)]
             fn cbrt_estimate(self) -> Self {
                 // A third of the bit pattern, taken in floating point: the leading bits become the mantissa of
                 // a number in [2^k, 2^(k+1)), k the mantissa's width, whose integer part they are.

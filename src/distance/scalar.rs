@@ -90,6 +90,13 @@ pub trait Scalar:
         // The divisor is replaced before the division: shading languages may assume that no NaN arises.
         positive.select(self, self.zero()) / positive.select(divisor, self.one())
     }
+    /// `self.over(whole)` for a number between 0 and `whole`, where `inverse`, which is `whole.one().over(whole)`, is at
+    /// hand. Packs of single precision multiply by it: they only rule out.
+    #[inline(always)]
+    fn share_of(self, whole: Self, inverse: Self) -> Self {
+        let _ = inverse;
+        self.over(whole)
+    }
 }
 
 impl<T> Mask<T> for bool {

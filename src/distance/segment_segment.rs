@@ -13,7 +13,8 @@
 //! 3. **Degenerate segments.** a = 0 or c = 0: the parameter is 0.
 //!
 //! Then t follows from s, and s once more from t: a half step that costs little and removes the rounding
-//! of the first quotient. A parameter at an end is exactly 0 or 1.
+//! of the first quotient. A parameter at an end is exactly 0 or 1; in packs of single precision that of the first
+//! segment may be a rounding below 1.
 
 use super::{Closest, Scalar, Vec3, frame::Frame};
 
@@ -49,8 +50,9 @@ pub(crate) fn parameters<T: Scalar>(w: Vec3<T>, e: Vec3<T>, f: Vec3<T>) -> Param
     let (a, b, c) = (e.norm_squared(), e.dot(f), f.norm_squared());
     let (d, g) = (-e.dot(w), f.dot(w));
     let free = w.cross(f).dot(n).over(n.norm_squared()); // case 2: 0, moved by the clamps
-    let s = (free * a).max(d.min(d + b)).min(d.max(d + b)).max(zero).min(a).over(a);
+    let per_a = a.one().over(a);
+    let s = (free * a).max(d.min(d + b)).min(d.max(d + b)).max(zero).min(a).share_of(a, per_a);
     let t = s.mul_add(b, g).max(zero).min(c).over(c);
-    let s = t.mul_add(b, d).max(zero).min(a).over(a);
+    let s = t.mul_add(b, d).max(zero).min(a).share_of(a, per_a);
     Parameters { s, t, gap: w.along(e, s).along(f, -t) }
 }
