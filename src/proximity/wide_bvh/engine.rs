@@ -224,16 +224,15 @@ impl<'a> Query<'a> {
             return true;
         }
         if let Some(wider) = kept.wider(robot, margin, Real::INFINITY, reach) {
-            let [clears, even_capsule] = self.search().clears(margin + wider);
+            let known = self.search().clears(margin + wider);
             let kept = &mut self.context.memory.kept_by_clears;
-            if clears {
-                kept.keep_all(robot, margin + wider, even_capsule, reach);
+            if let Some(known) = known {
+                kept.keep_all(robot, margin + wider, known, reach);
                 return true;
             }
             kept.miss();
         }
-        let [clears, _] = self.search().clears(margin);
-        clears
+        self.search().clears(margin).is_some()
     }
 
     fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {

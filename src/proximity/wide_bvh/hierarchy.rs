@@ -106,6 +106,15 @@ enum Searched {
     OutOfReach,
 }
 
+/// What is known to keep away from the mesh.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum KeepsAway {
+    /// Every link by itself.
+    Links,
+    /// Even the capsule around all links.
+    Capsule,
+}
+
 /// Memory of a query, used again by the next.
 #[derive(Clone, Default)]
 pub(super) struct Scratch {
@@ -205,9 +214,8 @@ impl MeshSearch<'_> {
         }
     }
 
-    /// Whether every link of a robot keeps more than `margin` away, and whether the capsule around all of them is known to do
-    /// so too.
-    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> [bool; 2] {
+    /// What of a robot is known to keep more than `margin` away. None where some link does not.
+    pub(super) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> Option<KeepsAway> {
         let Hierarchy { mesh, single, sides, .. } = self.hierarchy;
         let level = self.level;
         let Scratch { single_pairs, double_pairs, met, work, .. } = &mut *self.scratch;
@@ -225,10 +233,11 @@ impl MeshSearch<'_> {
         }
         if let Some(keeps_away) = answer {
             *met = met.saturating_add(u32::from(!keeps_away));
-            return [keeps_away, keeps_away && even_capsule];
+            let known = if even_capsule { KeepsAway::Capsule } else { KeepsAway::Links };
+            return keeps_away.then_some(known);
         }
-        let mut links = robot.placed_links();
-        [links.all(|link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none()), false]
+        let is_away = |link| self.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none();
+        robot.placed_links().all(is_away).then_some(KeepsAway::Links)
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.

@@ -5,6 +5,7 @@
 //! it is a part of: any may follow. The same is true of the capsule around all links, which tells of a robot far from the
 //! wall at a glance.
 
+use super::hierarchy::KeepsAway;
 use super::outline::{Origin, Outline, ROUNDING};
 use super::widening::Widening;
 use crate::proximity::placed::PlacedRobot;
@@ -136,13 +137,18 @@ impl KeptDistances {
         }
     }
 
-    /// Takes over that all links keep `apart` or more, or even the capsule around them.
-    pub(super) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, even_capsule: bool, reach: Real) {
+    /// Takes over what keeps `apart` or more.
+    pub(super) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, known: KeepsAway, reach: Real) {
         self.links.clear();
-        self.capsule = even_capsule.then(|| Kept::new(Outline::around_all(robot), apart, None, reach));
-        if !even_capsule {
-            self.links.extend(Outline::of_all(robot).map(|link| Kept::new(link, apart, None, reach)));
-            self.links.reverse();
+        self.capsule = None;
+        match known {
+            KeepsAway::Capsule => {
+                self.capsule = Some(Kept::new(Outline::around_all(robot), apart, None, reach));
+            }
+            KeepsAway::Links => {
+                self.links.extend(Outline::of_all(robot).map(|link| Kept::new(link, apart, None, reach)));
+                self.links.reverse();
+            }
         }
         self.widening.paid();
     }

@@ -1,7 +1,7 @@
 //! The queries of a robot that ask every link, or only whether all keep away.
 
 use super::few_each::FewEach;
-use super::hierarchy::MeshSearch;
+use super::hierarchy::{KeepsAway, MeshSearch};
 use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::placed::PlacedRobot;
 use crate::proximity::{Contact, LinkProximity};
@@ -62,9 +62,8 @@ impl RobotSearch<'_> {
         search.scratch.work.measured += contacts.finish();
     }
 
-    /// Whether every link keeps more than `margin` away from the mesh, and whether the capsule around all of them is known to
-    /// do so too.
-    pub(super) fn clears(&mut self, margin: Real) -> [bool; 2] {
+    /// What keeps more than `margin` away from the mesh. None where some link does not.
+    pub(super) fn clears(&mut self, margin: Real) -> Option<KeepsAway> {
         self.search.keeps_away(self.robot, margin)
     }
 }
