@@ -12,7 +12,7 @@
 //!    leave over. The distance is |r|, the distance to an actual point of the triangle.
 //! 3. **Zero area**: the dual basis is zero and the face is marked as having no interior. The edges serve.
 
-use super::scalar::{Mask, Scalar};
+use super::scalar::Scalar;
 use super::vec3::Vec3;
 
 /// A triangle with the basis of its plane.
@@ -43,13 +43,18 @@ impl<T: Scalar> Face<T> {
     #[inline(always)]
     pub(crate) fn new([a, b, c]: [Vec3<T>; 3]) -> Self {
         let [ab_longest, bc_longest] = Self::longest([a, b, c]);
-        let vertices = [
+        Self::in_order([
             Vec3::select(ab_longest, c, Vec3::select(bc_longest, a, b)),
             Vec3::select(ab_longest, a, Vec3::select(bc_longest, b, c)),
             Vec3::select(ab_longest, b, Vec3::select(bc_longest, c, a)),
-        ];
+        ])
+    }
+
+    /// The same, of corners that stand in the order of [`Face::vertices`].
+    #[inline(always)]
+    pub(crate) fn in_order(vertices: [Vec3<T>; 3]) -> Self {
         let ([e1, e2], across) = (edges(&vertices), across(&vertices));
-        let inverse = a.x.one().over(across.norm_squared());
+        let inverse = across.x.one().over(across.norm_squared());
         Self { vertices, across, dual: [e2.cross(across) * inverse, across.cross(e1) * inverse] }
     }
 
@@ -60,16 +65,17 @@ impl<T: Scalar> Face<T> {
         [bc.le(ab) & ca.le(ab), ca.le(bc)]
     }
 
-    /// What is known of the edges of the face that [`Face::new`] made of these corners, from its first vertex on, in
-    /// the order of the corners: of the edges from the first corner to the second, to the third, and back.
+    /// Which of a triangle's corners comes first in [`Face::vertices`]; the others follow in their order.
     #[inline(always)]
-    pub(crate) fn in_order_of(corners: [Vec3<T>; 3], [first, second, third]: [T; 3]) -> [T; 3] {
-        let [ab_longest, bc_longest] = Self::longest(corners);
-        [
-            ab_longest.select(second, bc_longest.select(first, third)),
-            ab_longest.select(third, bc_longest.select(second, first)),
-            ab_longest.select(first, bc_longest.select(third, second)),
-        ]
+    pub(crate) fn first_of(corners: [Vec3<T>; 3]) -> usize
+    where
+        T: Scalar<Mask = bool>,
+    {
+        match Self::longest(corners) {
+            [true, _] => 2,
+            [false, true] => 0,
+            [false, false] => 1,
+        }
     }
 
     /// The face that [`Face::new`] made, put together again from its `vertices` and `dual`.

@@ -46,11 +46,11 @@ pub(super) struct Feet {
 pub(super) const CERTAIN: f64 = 4.0;
 
 impl<L: Pack> LinkLanes<L> {
-    /// Which triangles may be nearer than the bound whose axis limit is `limit`, and where on them the nearest points
-    /// are. `error` is the link's.
+    /// Which triangles, their corners in the order of [`Face::vertices`], may be nearer than the bound whose axis limit is
+    /// `limit`, and where on them the nearest points are. `error` is the link's.
     #[inline(always)]
     pub(super) fn nearer_and_feet(&self, corners: [Vec3<L>; 3], limit: L, error: L) -> (Nearer<L>, Feet) {
-        let face = Face::new(corners).seen_from(self.start);
+        let face = Face::in_order(corners).seen_from(self.start);
         let axial = Axial::new(&self.link, &face);
         let nearer = self.nearer(&axial, &face, limit);
         let certain = error * error.lit(CERTAIN);
@@ -58,7 +58,7 @@ impl<L: Pack> LinkLanes<L> {
         // Of what may touch, all is equally near.
         let is_apart = (self.link.radius + certain).lt(nearer.lower);
         let upper = nearer.upper + certain;
-        let [first, second, third] = Face::in_order_of(corners, axial.edges_squared);
+        let [first, second, third] = axial.edges_squared;
         let beyond = [
             L::bits(is_apart & upper.lt(first.sqrt())),
             L::bits(is_apart & upper.lt(second.sqrt())),
@@ -71,7 +71,7 @@ impl<L: Pack> LinkLanes<L> {
     fn corners_away(&self, corners: [Vec3<L>; 3], axial: &Axial<L>, error: L) -> [u64; 3] {
         let [a, b, c] = [corners[0] - self.start, corners[1] - self.start, corners[2] - self.start];
         let (zero, one) = (error.zero(), error.one());
-        let [ab, bc, ca] = Face::in_order_of(corners, axial.edges_squared);
+        let [ab, bc, ca] = axial.edges_squared;
         let (ab_is_nearest, bc_is_nearest) = (ab.le(bc) & ab.le(ca), bc.le(ca));
         let from = Vec3::select(ab_is_nearest, a, Vec3::select(bc_is_nearest, b, c));
         let to = Vec3::select(ab_is_nearest, b, Vec3::select(bc_is_nearest, c, a));
@@ -123,7 +123,7 @@ mod tests {
     use crate::proximity::placed::PlacedLink;
     use crate::proximity::search_frame::{SearchFrame, SearchLink};
     use crate::proximity::shared_parts::{PART_WITHOUT, ends_of};
-    use crate::proximity::triangle_block::{BLOCK, load_vertices, place_triangle};
+    use crate::proximity::triangle_block::{BLOCK, first_of_face, from_on, load_vertices, place_face};
     use crate::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
     use fearless_simd::Level;
@@ -181,10 +181,11 @@ mod tests {
         let frame = SearchFrame::new(&mesh);
         let Some(searched) = SearchLink::<E>::new(&link, &frame) else { return };
         let mut rows = vec![E::default(); 9 * BLOCK];
-        (0..BLOCK).for_each(|lane| place_triangle(&frame, &mesh, lane as u32, &mut rows, lane));
+        (0..BLOCK).for_each(|lane| place_face(&frame, &mesh, lane as u32, &mut rows, lane));
         for level in levels() {
             for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {
-                let corners = mesh.corners(lane as u32);
+                let corners =
+                    from_on(mesh.corners(lane as u32), first_of_face::<E>(&frame, &mesh, lane as u32));
                 let distance = link.measure(0, corners).distance;
                 let to_part = |part: usize| {
                     let [from, to] = ends_of(corners, part);

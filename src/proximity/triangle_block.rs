@@ -2,12 +2,36 @@
 
 use super::mesh::Mesh;
 use super::search_frame::SearchFrame;
-use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Face, Vec3};
 use parry3d_f64::math::Vector;
 
 /// How many triangles stand together: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
+
+/// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has them.
+pub(super) fn place_face<E: Lane>(
+    frame: &SearchFrame,
+    mesh: &Mesh,
+    triangle: u32,
+    rows: &mut [E],
+    lane: usize,
+) {
+    let corners = mesh.corners(triangle).map(|corner| frame.point(corner));
+    put(from_on(corners, Face::first_of(corners)), rows, lane);
+}
+
+/// Which corner of a triangle [`place_face`] writes first.
+pub(super) fn first_of_face<E: Lane>(frame: &SearchFrame, mesh: &Mesh, triangle: u32) -> usize {
+    Face::first_of(mesh.corners(triangle).map(|corner| frame.point::<E>(corner)))
+}
+
+/// What there is for each of three corners or edges, from one of them on.
+#[inline(always)]
+pub(super) fn from_on<T>(mut three: [T; 3], first: usize) -> [T; 3] {
+    three.rotate_left(first);
+    three
+}
 
 /// Writes the corners of a triangle into its lane of a block.
 pub(super) fn place_triangle<E: Lane>(
@@ -22,9 +46,12 @@ pub(super) fn place_triangle<E: Lane>(
 
 /// Writes three points into a lane of a block.
 pub(super) fn place_points<E: Lane>(frame: &SearchFrame, points: [Vector; 3], rows: &mut [E], lane: usize) {
+    put(points.map(|point| frame.point(point)), rows, lane);
+}
+
+fn put<E: Lane>(points: [Vec3<E>; 3], rows: &mut [E], lane: usize) {
     for (number, point) in points.into_iter().enumerate() {
-        let point: [E; 3] = frame.point(point).into();
-        for (axis, value) in point.into_iter().enumerate() {
+        for (axis, value) in <[E; 3]>::from(point).into_iter().enumerate() {
             rows[(3 * number + axis) * BLOCK + lane] = value;
         }
     }

@@ -3,10 +3,10 @@
 use super::build::WideBvh;
 use crate::distance::lanes::Lane;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::triangle_block::{BLOCK, place_points};
+use crate::proximity::triangle_block::{BLOCK, first_of_face, from_on, place_points};
 use std::sync::OnceLock;
 
-/// The corners beyond the edges of a leaf's triangles, in rows like those of their own corners; no numbers where an edge
+/// The corners beyond the edges of a leaf's triangles, in rows and an order like those of their own corners; no numbers where an edge
 /// has no second triangle.
 pub(super) type Corners<E> = [E; 9 * BLOCK];
 
@@ -29,7 +29,9 @@ impl<E: Lane> Across<E> {
         self.0[leaf as usize].get_or_init(|| {
             let mut rows = [E::round(f64::NAN); 9 * BLOCK];
             for (lane, &triangle) in tree.leaves[leaf as usize].triangles.iter().enumerate() {
-                place_points(&tree.frame, mesh.corners_across(triangle), &mut rows, lane);
+                let first = first_of_face::<E>(&tree.frame, mesh, triangle);
+                let across = from_on(mesh.corners_across(triangle), first);
+                place_points(&tree.frame, across, &mut rows, lane);
             }
             rows
         })

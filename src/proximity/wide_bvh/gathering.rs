@@ -10,7 +10,7 @@ use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
 use crate::proximity::search_frame::SearchLink;
-use crate::proximity::triangle_block::{BLOCK, load_vertices};
+use crate::proximity::triangle_block::{BLOCK, first_of_face, load_vertices};
 use fearless_simd::Level;
 
 /// Where triangles are gathered.
@@ -23,6 +23,8 @@ pub(super) struct Gathering<'a, E> {
     /// Those that wait, in rows like those of a leaf.
     rows: [E; 9 * BLOCK],
     triangles: [u32; BLOCK],
+    /// Which corner of each stands first.
+    firsts: [usize; BLOCK],
     waiting: usize,
     /// For how many the distance from the axis was computed.
     computed: u64,
@@ -35,8 +37,8 @@ impl<'a, E: Lane> Gathering<'a, E> {
         across: Option<&'a Across<E>>,
         found: &'a mut NearTriangles,
     ) -> Self {
-        let (rows, triangles) = ([E::default(); 9 * BLOCK], [0; BLOCK]);
-        Self { level, searched, across, found, rows, triangles, waiting: 0, computed: 0 }
+        let (rows, triangles, firsts) = ([E::default(); 9 * BLOCK], [0; BLOCK], [0; BLOCK]);
+        Self { level, searched, across, found, rows, triangles, firsts, waiting: 0, computed: 0 }
     }
 
     /// Adds the leaf's triangles that may be within the limit.
@@ -78,6 +80,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
                 row[self.waiting] = from[lane];
             }
             self.triangles[self.waiting] = leaf.triangles[lane];
+            self.firsts[self.waiting] = first_of_face::<E>(&tree.frame, mesh, leaf.triangles[lane]);
             self.waiting += 1;
             if self.waiting == BLOCK {
                 self.look_closely(limit);
@@ -119,21 +122,24 @@ impl<'a, E: Lane> Gathering<'a, E> {
                 near &= near - 1;
                 let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
                 let is_apart = self.searched.radius.into() + certain < lower;
+                let place = first + lane;
                 self.found.in_question.push(NearTriangle {
-                    triangle: self.triangles[first + lane],
+                    triangle: self.triangles[place],
                     lower: lower - certain,
                     upper,
-                    away: if is_apart { three_bits(feet.away, lane) } else { 0 },
-                    beyond: three_bits(feet.beyond, lane),
+                    away: if is_apart { three_bits(feet.away, lane, self.firsts[place]) } else { 0 },
+                    beyond: three_bits(feet.beyond, lane, self.firsts[place]),
                 });
             }
         }
     }
 }
 
-/// A lane's bits, the first lowest.
+/// A lane's bits for the corners or edges of a triangle, which stand there from its corner `first` on. That of its own
+/// first one is lowest.
 #[inline(always)]
-fn three_bits([first, second, third]: [u64; 3], lane: usize) -> u8 {
-    let bit = |lanes: u64| (lanes >> lane & 1) as u8;
-    bit(first) | bit(second) << 1 | bit(third) << 2
+fn three_bits(lanes: [u64; 3], lane: usize, first: usize) -> u8 {
+    let [a, b, c] = lanes.map(|lanes| (lanes >> lane & 1) as u8);
+    let bits = a | b << 1 | c << 2;
+    (bits << first | bits >> (3 - first)) & 7
 }

@@ -269,7 +269,7 @@ impl<E: Lane> JointSearch<'_, E> {
                 return false;
             }
             self.work.axis_distances += L::LANES as u64;
-            let bounds = lanes.may_be_nearer(&Face::new(vertices), limit);
+            let bounds = lanes.may_be_nearer(&Face::in_order(vertices), limit);
             let Some(link) = link else {
                 if bounds.nearer != 0 {
                     self.part(pair);

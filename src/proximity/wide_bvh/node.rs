@@ -6,7 +6,7 @@ use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::search_frame::SearchFrame;
-use crate::proximity::triangle_block::{BLOCK, load, place_triangle};
+use crate::proximity::triangle_block::{BLOCK, load, place_face};
 use std::ops::Range;
 
 /// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.
@@ -42,8 +42,9 @@ impl Child {
     }
 }
 
-/// Up to 16 children and what bounds them.
+/// Up to 16 children and what bounds them. Aligned, so that no row of a pack lies in two lines of the cache.
 #[derive(Clone)]
+#[repr(align(64))]
 pub(super) struct Node<E> {
     /// Rows of centre, half extents, normal and tangent, three numbers each; see [`NodeBounds`].
     rows: [E; BOUND_ROWS * WIDTH],
@@ -57,10 +58,12 @@ pub(super) struct Node<E> {
     count: usize,
 }
 
-/// Up to 16 triangles.
+/// Up to 16 triangles. Aligned like a node.
 #[derive(Clone)]
+#[repr(align(64))]
 pub(super) struct Leaf<E> {
-    /// Rows of the coordinates of three vertices; lanes without a triangle repeat the last one.
+    /// Rows of the coordinates of three vertices, in the order in which a [`Face`](crate::distance::Face) has them; lanes
+    /// without a triangle repeat the last one.
     pub rows: [E; 9 * BLOCK],
     pub triangles: [u32; BLOCK],
 }
@@ -153,7 +156,7 @@ impl<E: Lane> Leaf<E> {
     /// Takes over where the triangles are.
     pub(super) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
         for lane in 0..BLOCK {
-            place_triangle(frame, mesh, self.triangles[lane], &mut self.rows, lane);
+            place_face(frame, mesh, self.triangles[lane], &mut self.rows, lane);
         }
     }
 }

@@ -309,7 +309,7 @@ impl<E: Lane> Traversal<'_, E> {
                 continue;
             }
             self.work.axis_distances += L::LANES as u64;
-            let bounds = lanes.may_be_nearer(&Face::new(vertices), limit);
+            let bounds = lanes.may_be_nearer(&Face::in_order(vertices), limit);
             bounds.lower.store(&mut lower[lane..]);
             bounds.upper.store(&mut upper[lane..]);
             near |= bounds.nearer << lane;
