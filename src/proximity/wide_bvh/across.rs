@@ -6,9 +6,14 @@ use crate::proximity::mesh::Mesh;
 use crate::proximity::triangle_block::{BLOCK, first_of_face, from_on, place_points};
 use std::sync::OnceLock;
 
-/// The corners beyond the edges of a leaf's triangles, in rows and an order like those of their own corners; no numbers where an edge
-/// has no second triangle.
-pub(super) type Corners<E> = [E; 9 * BLOCK];
+/// The corners beyond the edges of a leaf's triangles.
+#[derive(Clone)]
+pub(super) struct Corners<E> {
+    /// In rows and an order like those of the triangles' own corners; no numbers where an edge has no second triangle.
+    pub rows: [E; 9 * BLOCK],
+    /// Which of its own corners each triangle has first there, two bits each.
+    firsts: u32,
+}
 
 /// The corners beyond the edges of all triangles, found when a leaf is first asked for.
 #[derive(Clone)]
@@ -27,13 +32,22 @@ impl<E: Lane> Across<E> {
     /// Those of a leaf, in the frame of the search.
     pub(super) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &Corners<E> {
         self.0[leaf as usize].get_or_init(|| {
-            let mut rows = [E::round(f64::NAN); 9 * BLOCK];
+            let mut corners = Corners { rows: [E::round(f64::NAN); 9 * BLOCK], firsts: 0 };
             for (lane, &triangle) in tree.leaves[leaf as usize].triangles.iter().enumerate() {
                 let first = first_of_face::<E>(&tree.frame, mesh, triangle);
                 let across = from_on(mesh.corners_across(triangle), first);
-                place_points(&tree.frame, across, &mut rows, lane);
+                place_points(&tree.frame, across, &mut corners.rows, lane);
+                corners.firsts |= (first as u32) << (2 * lane);
             }
-            rows
+            corners
         })
+    }
+}
+
+impl<E> Corners<E> {
+    /// Which of its corners the triangle in a lane has first.
+    #[inline(always)]
+    pub(super) fn first(&self, lane: usize) -> usize {
+        (self.firsts >> (2 * lane) & 3) as usize
     }
 }

@@ -63,7 +63,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
             if near != 0
                 && let Some(across) = across
             {
-                let across = load_vertices::<L>(token, across, lane);
+                let across = load_vertices::<L>(token, &across.rows, lane);
                 slopes |= (near & lanes.on_slope(vertices, across, error)) << lane;
             }
         }
@@ -80,7 +80,10 @@ impl<'a, E: Lane> Gathering<'a, E> {
                 row[self.waiting] = from[lane];
             }
             self.triangles[self.waiting] = leaf.triangles[lane];
-            self.firsts[self.waiting] = first_of_face::<E>(&tree.frame, mesh, leaf.triangles[lane]);
+            self.firsts[self.waiting] = match across {
+                Some(across) => across.first(lane),
+                None => first_of_face::<E>(&tree.frame, mesh, leaf.triangles[lane]),
+            };
             self.waiting += 1;
             if self.waiting == BLOCK {
                 self.look_closely(limit);
