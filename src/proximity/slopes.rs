@@ -43,7 +43,8 @@
 //!   4 for the length, and 13 for the multiple of the axis: 49 with the point's own, below e. To a link with flat caps 42
 //!   more are due to the part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach to
 //!   spare, and D within 2 e.
-//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own rounding included.
+//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own
+//!   rounding included, with the sum of the magnitudes of AB's coordinates for |AB|.
 //! - h errs by e / 4. So condition 1 holds if
 //!
 //!   ```text
@@ -51,7 +52,9 @@
 //!   ```
 //!
 //!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u reach |W|; the product of
-//!   two errors is within what W has to spare, or |W| is below 6 e and no condition 2 holds.
+//!   two errors is within what W has to spare, or |W| is below 6 e and no condition 2 holds. It is asked without roots:
+//!   (sqrt(gap) + 2 e)^2 is at most 5/4 gap + 20 e^2. The squares err by 8 u of themselves, so the sides by 14 u reach |h|,
+//!   which W has to spare too; and none falls below the range, as |h| is above e where the right side is not 0.
 //! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)| only within 2 e: it counts
 //!   only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach from the link's start, which leaves W(P) within
 //!   2 e too. With 12 e in all, 5 e are left by which the neighbour is nearer, far above what a measurement in double
@@ -59,7 +62,7 @@
 
 use super::link_lanes::LinkLanes;
 use crate::distance::lanes::Pack;
-use crate::distance::{Mask, Vec3};
+use crate::distance::{Mask, Scalar, Vec3};
 
 impl<L: Pack> LinkLanes<L> {
     /// Which triangles certainly lie on a slope towards a nearer one, one bit per lane. `across` are the corners beyond
@@ -81,7 +84,7 @@ impl<L: Pack> LinkLanes<L> {
         let squared = along.norm_squared();
         let foot = (top - from).dot(along).over(squared).max(zero).min(one);
         let rise = (top - from).along(along, -foot);
-        let edge = Edge { length: squared.sqrt(), rise, height: rise.norm(), error };
+        let edge = Edge { along, rise, error };
 
         let middle = (from + to) * half;
         let share = half + self.steps_to_lowest(self.way_to(middle).0, middle, along);
@@ -94,8 +97,8 @@ impl<L: Pack> LinkLanes<L> {
 
         let to_corner = beyond - nearest;
         let step = self.steps_to_lowest(way, nearest, to_corner).max(zero).min(one);
-        let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm();
-        L::bits(edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept))
+        let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm_squared();
+        L::bits(edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept * kept))
     }
 
     /// How many steps from a point the way is about shortest, no number or infinite where it is as long everywhere.
@@ -135,13 +138,11 @@ impl<L: Pack> LinkLanes<L> {
 }
 
 /// An edge of a triangle, as it is seen in the module's derivation.
-struct Edge<L> {
-    /// |AB|.
-    length: L,
+struct Edge<L: Scalar> {
+    /// AB.
+    along: Vec3<L>,
     /// h.
     rise: Vec3<L>,
-    /// |h|.
-    height: L,
     error: L,
 }
 
@@ -149,14 +150,16 @@ impl<L: Pack> Edge<L> {
     /// Condition 1.
     #[inline(always)]
     fn holds_nearest(&self, way: Vec3<L>, apart: L, gap: L) -> L::Mask {
-        let turn = gap.sqrt() + self.error + self.error;
-        (self.height * turn).lt(way.dot(self.rise) - self.error * apart)
+        let turn_squared = gap * gap.lit(1.25) + self.error * self.error * gap.lit(20.0);
+        let rise = (way.dot(self.rise) - self.error * apart).max(gap.zero());
+        (self.rise.norm_squared() * turn_squared).lt(rise * rise)
     }
 
     /// The gap with what it errs by.
     #[inline(always)]
     fn gap(&self, apart: L, gap: L) -> L {
-        gap + self.error * (self.length * gap.lit(3.0) + apart * gap.lit(0.125))
+        let length = self.along.x.abs() + self.along.y.abs() + self.along.z.abs();
+        gap + self.error * (length * gap.lit(3.0) + apart * gap.lit(0.125))
     }
 
     /// What the edge certainly keeps, with room for a neighbour that is nearer.
