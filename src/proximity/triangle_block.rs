@@ -87,3 +87,51 @@ pub(super) fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usiz
     vector.y.store(&mut rows[BLOCK..]);
     vector.z.store(&mut rows[2 * BLOCK..]);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::Scalar;
+    use continuum_testing::Random;
+
+    /// The corner opposite the longest edge comes first, and the others follow in their order.
+    fn check<E: Lane>() {
+        let mut firsts = [0; 3];
+        for seed in 0..1000 {
+            let mut random = Random::new(seed);
+            // Some are slivers.
+            let thin = [1.0, 1e-3, 1e-6][random.below(3) as usize];
+            let mut corner = || random.point() * Vector::new(1.0, thin, thin);
+            let corners = (0..3 * BLOCK).map(|_| corner()).collect();
+            let triangles = (0..BLOCK as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let mesh = Mesh::of(corners, triangles);
+            let frame = SearchFrame::new(&mesh);
+            let mut rows = vec![E::default(); 9 * BLOCK];
+            for lane in 0..BLOCK {
+                place_face(&frame, &mesh, lane as u32, &mut rows, lane);
+                let first = first_of_face::<E>(&frame, &mesh, lane as u32);
+                firsts[first] += 1;
+                let at = |row: usize| -> f64 { rows[row * BLOCK + lane].into() };
+                let [a, b, c] = [0, 3, 6].map(|row| Vector::new(at(row), at(row + 1), at(row + 2)));
+                let rounding = 1.0 + 8.0 * E::UNIT_ROUNDOFF;
+                let longest = b.distance(c) * rounding;
+                assert!(a.distance(b) <= longest && c.distance(a) <= longest, "{seed}: {lane}");
+                let corners = mesh.corners(lane as u32).map(|corner| <[E; 3]>::from(frame.point(corner)));
+                for (number, placed) in [a, b, c].into_iter().enumerate() {
+                    assert_eq!(
+                        corners[(first + number) % 3].map(Into::into),
+                        placed.to_array(),
+                        "{seed}: {lane}"
+                    );
+                }
+            }
+        }
+        assert!(firsts.iter().all(|&count| count > 4000), "{firsts:?}");
+    }
+
+    #[test]
+    fn corners_stand_in_the_order_of_their_faces() {
+        check::<f32>();
+        check::<f64>();
+    }
+}
