@@ -16,7 +16,9 @@
 //! Rounding: `segment_triangle` makes s exact near the ends. Where a link is so short that both ends are equally
 //! near as far as rounding can tell, s may name the wrong one, so an end also counts where p* lies beyond it. In
 //! case 2 the distance between p* and the link, in closed form, is a candidate beside the disc's: both are distances
-//! to points of the link, so that the lesser is right wherever either is.
+//! to points of the link, so that the lesser is right wherever either is. A triangle that begins in the plane of a
+//! cap and reaches into the link has both as small as rounding, yet it overlaps the link deeply. So the way from p* to
+//! the triangle's deepest vertex is a third candidate: where it passes through the disc the two have a common point.
 
 use super::point_modified_cylinder::Link;
 use super::{
@@ -147,7 +149,28 @@ impl<T: Scalar> Axial<T> {
         let disc = triangle_disc::from_centre::<S, T>(&face.seen_from(centre), outward, link.radius);
         let disc =
             Closest { distance: disc.distance, point1: disc.point1 + centre, point2: disc.point2 + centre };
-        Closest::select(self.beyond_flat_cap() & disc.distance.lt(upper.distance), disc, upper)
+        let beyond = self.beyond_flat_cap();
+        let nearer = Closest::select(beyond & disc.distance.lt(upper.distance), disc, upper);
+        let (passes, point) = self.way_in(link, face);
+        let zero = link.radius.zero();
+        let met = Closest { distance: zero, point1: point, point2: point };
+        Closest::select(beyond & passes & zero.lt(nearer.distance), met, nearer)
+    }
+
+    /// Whether the way from p* to the vertex that lies deepest behind the cap passes through the disc, and where.
+    #[inline(always)]
+    fn way_in(&self, link: &Link<T>, face: &Face<T>) -> (T::Mask, Vec3<T>) {
+        let (centre, outward) = self.cap(link);
+        let [a, b, c] = face.seen_from(centre).vertices;
+        let [of_a, of_b, of_c] = [-a.dot(outward), -b.dot(outward), -c.dot(outward)];
+        let depth = of_a.max(of_b).max(of_c);
+        let deepest = Vec3::select(depth.le(of_a), a, Vec3::select(depth.le(of_b), b, c));
+        let from = self.on_triangle - centre;
+        let height = from.dot(outward).max(depth.zero());
+        let crossing = from.along(deepest - from, height.over(height + depth));
+        let radial = crossing.along(outward, -crossing.dot(outward));
+        let passes = depth.zero().lt(depth) & radial.norm_squared().le(link.radius * link.radius);
+        (passes, centre + radial)
     }
 
     /// The centre and the outward normal of the cap that p* is beyond; the start's where it is beyond neither.

@@ -121,3 +121,36 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
     }
     assert!(gaps > 500 && touching > 500 && hidden > 500, "{gaps} small gaps, {touching} touching, {hidden}");
 }
+
+/// A triangle that begins in the plane of a flat cap, but for rounding, and whose third corner lies in the link: nothing
+/// that is as small as rounding makes a gap of that.
+#[test]
+fn a_triangle_from_the_plane_of_a_flat_cap_into_the_link_touches_it() {
+    let mut random = Seeded::new(12);
+    for round in 0..40_000 {
+        // A link of radius 1 from z = 0 to z = 4, with two corners or one a little off the plane z = 0.
+        let off = [0.0, 1e-17, -1e-16, 3e-16][round % 4];
+        let aside = random.between(0.05, 0.6);
+        let inside = |random: &mut Seeded| {
+            let (x, y) = (aside + random.between(0.0, 0.2), random.between(-0.3, 0.3));
+            Vector::new(x, y, random.between(0.5, 3.0))
+        };
+        let corners = if round / 4 % 2 == 0 {
+            let (left, right) = (random.between(0.1, 3.0), random.between(0.1, 3.0));
+            [Vector::new(aside, -left, -off), Vector::new(aside, right, -off), inside(&mut random)]
+        } else {
+            [Vector::new(aside, 0.0, -off), inside(&mut random), inside(&mut random)]
+        };
+        let pose = random.pose(5.0);
+        let corners = corners.map(|corner| pose * corner).to_vec();
+        let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).unwrap();
+        let ends = [pose.translation, pose * Vector::new(0.0, 0.0, 4.0)];
+        let robot = Chain::cylinders(&ends, &[1.0]).unwrap();
+        let mut reference = Exhaustive::<f64>::new(&mesh).unwrap();
+        let found = reference.minimum(&robot, &Pose::IDENTITY).unwrap();
+        assert_eq!(found.distance, 0.0, "{round}: {found:?}");
+        assert_eq!(found.on_mesh, found.on_robot, "{round}");
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        assert!(!search.clears(&robot, &Pose::IDENTITY, 0.0).unwrap(), "{round}");
+    }
+}

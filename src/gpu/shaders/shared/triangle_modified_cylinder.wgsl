@@ -67,7 +67,34 @@ fn axial_with_caps(axial: Axial, link: Link, face: Face) -> Closest {
     let cap = axial_cap(axial, link);
     let disc = triangle_disc_from_centre(face_seen_from(face, cap.centre), cap.outward, link.radius);
     let moved = Closest(disc.distance, disc.point1 + cap.centre, disc.point2 + cap.centre);
-    return closest_select(axial_beyond_flat_cap(axial) && disc.distance < upper.distance, moved, upper);
+    let beyond = axial_beyond_flat_cap(axial);
+    let nearer = closest_select(beyond && disc.distance < upper.distance, moved, upper);
+    let way_in = axial_way_in(axial, cap, link.radius, face);
+    let met = Closest(real(0.0), way_in.point, way_in.point);
+    return closest_select(beyond && way_in.passes && real(0.0) < nearer.distance, met, nearer);
+}
+
+struct WayIn {
+    passes: bool,
+    point: vec3<real>,
+}
+
+// Whether the way from the triangle's point to the vertex that lies deepest behind the cap passes through the disc, and
+// where.
+fn axial_way_in(axial: Axial, cap: LinkCap, radius: real, face: Face) -> WayIn {
+    let a = face.a - cap.centre;
+    let b = face.b - cap.centre;
+    let c = face.c - cap.centre;
+    let of_a = -dot(a, cap.outward);
+    let of_b = -dot(b, cap.outward);
+    let of_c = -dot(c, cap.outward);
+    let depth = max(max(of_a, of_b), of_c);
+    let deepest = select(select(c, b, depth <= of_b), a, depth <= of_a);
+    let origin = axial.on_triangle - cap.centre;
+    let height = max(dot(origin, cap.outward), real(0.0));
+    let crossing = origin + (deepest - origin) * over(height, height + depth);
+    let radial = crossing - cap.outward * dot(crossing, cap.outward);
+    return WayIn(real(0.0) < depth && norm_squared(radial) <= radius * radius, cap.centre + radial);
 }
 
 // The centre and the outward normal of the cap that the triangle's point is beyond; the start's if neither.
