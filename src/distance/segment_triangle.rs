@@ -2,7 +2,9 @@
 //!
 //! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside: 0. The
 //!    crossing is found as a point and then looked up in the triangle. To interpolate the plane's coordinates of
-//!    the ends would not do on a sliver, where they are as large as length / height and as wrong.
+//!    the ends would not do on a sliver, where they are as large as length / height and as wrong. A segment with ends on
+//!    either side that passes an edge as near as rounding can tell meets it: else it might miss both triangles that
+//!    have the edge, and slip through a wall without a hole.
 //! 2. **An end above the interior.** The end's foot on the plane lies inside.
 //! 3. **An edge.** Segment-segment with each of the three edges.
 //!
@@ -11,6 +13,9 @@
 
 use super::face::{Face, Projection};
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
+
+/// How far a segment that meets an edge may be from it for rounding, in units of u and numbers near one.
+const AT_AN_EDGE: f64 = 4.0;
 
 /// The distance between a segment and a triangle.
 #[inline(always)]
@@ -78,7 +83,10 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: [zero; 3] };
-    nearest.nearer_where(opposite & face.holds_point(end * s), pierced)
+    let nearest = nearest.nearer_where(opposite & face.holds_point(end * s), pierced);
+    let rounding = zero.lit(AT_AN_EDGE * T::UNIT_ROUNDOFF);
+    let meets_edge = opposite & nearest.squared.le(rounding * rounding);
+    AxisTriangle { squared: meets_edge.select(zero, nearest.squared), ..nearest }
 }
 
 /// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)

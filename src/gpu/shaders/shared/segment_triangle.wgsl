@@ -1,5 +1,8 @@
 // Segment against triangle: the twin of distance/segment_triangle.rs, which has the cases.
 
+// How far a segment that meets an edge may be from it for rounding, in units of u and numbers near one.
+const AT_AN_EDGE = real(4.0);
+
 // The axis of a link against a triangle.
 struct AxisTriangle {
     squared: real,
@@ -35,7 +38,12 @@ fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
         || (end_side < real(0.0) && real(0.0) < start_side);
     let s = over(abs(start_side), abs(start_side) + abs(end_side));
     let pierced = AxisTriangle(real(0.0), s, end * s);
-    return axis_triangle_nearer_where(opposite && face_holds_point(face, end * s), pierced, nearest);
+    nearest = axis_triangle_nearer_where(opposite && face_holds_point(face, end * s), pierced, nearest);
+    let rounding = AT_AN_EDGE * UNIT_ROUNDOFF;
+    if (opposite && nearest.squared <= rounding * rounding) {
+        nearest.squared = real(0.0);
+    }
+    return nearest;
 }
 
 // Case 3, for the edge between two vertices.
