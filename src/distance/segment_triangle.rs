@@ -14,7 +14,7 @@
 use super::face::{Face, Projection};
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
-/// How far a segment that meets an edge may be from it for rounding, in units of u and numbers near one.
+/// How far a segment that meets an edge may be from it for rounding, in units of u and the largest coordinate.
 const AT_AN_EDGE: f64 = 4.0;
 
 /// The distance between a segment and a triangle.
@@ -24,8 +24,9 @@ pub fn segment_triangle<T: Scalar>(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]
     let frame = Frame::around(segment[0], [segment[1], a, b, c], a.x.zero());
     let face = Face::new(triangle.map(|vertex| frame.point(vertex)));
     let end = frame.point(segment[1]);
-    let found = from_start(end, &face);
-    frame.answer(Closest { distance: found.squared.sqrt(), point1: end * found.s, point2: found.on_triangle })
+    let (found, meets) = from_start(end, &face);
+    let distance = meets.select(end.x.zero(), found.squared.sqrt());
+    frame.answer(Closest { distance, point1: end * found.s, point2: found.on_triangle })
 }
 
 /// The axis of a link against a triangle.
@@ -64,9 +65,9 @@ impl<T: Scalar> AxisTriangle<T> {
     }
 }
 
-/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one.
+/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one; and whether the two meet.
 #[inline(always)]
-pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangle<T> {
+pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> (AxisTriangle<T>, T::Mask) {
     let (zero, one) = (end.x.zero(), end.x.one());
     let [a, b, c] = face.vertices;
     // Case 3.
@@ -84,9 +85,10 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> AxisTriangl
     let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: [zero; 3] };
     let nearest = nearest.nearer_where(opposite & face.holds_point(end * s), pierced);
-    let rounding = zero.lit(AT_AN_EDGE * T::UNIT_ROUNDOFF);
-    let meets_edge = opposite & nearest.squared.le(rounding * rounding);
-    AxisTriangle { squared: meets_edge.select(zero, nearest.squared), ..nearest }
+    let extent = end.largest().max(a.largest()).max(b.largest()).max(c.largest());
+    let rounding = extent * zero.lit(AT_AN_EDGE * T::UNIT_ROUNDOFF);
+    let meets = nearest.squared.le(zero) | (opposite & nearest.squared.le(rounding * rounding));
+    (nearest, meets)
 }
 
 /// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)

@@ -76,6 +76,8 @@ pub fn triangle_capsule<T: Scalar>(
 pub(crate) struct Axial<T: Scalar> {
     /// F^2, the squared distance between axis and triangle.
     pub axis_squared: T,
+    /// Whether the axis meets the triangle, which may be as far as rounding can tell.
+    pub meets: T::Mask,
     /// s, where on the axis.
     pub s: T,
     /// p*, the triangle's point.
@@ -89,7 +91,7 @@ pub(crate) struct Axial<T: Scalar> {
 impl<T: Scalar> Axial<T> {
     #[inline(always)]
     pub(crate) fn new(link: &Link<T>, face: &Face<T>) -> Self {
-        let axis = segment_triangle::from_start(link.end, face);
+        let (axis, meets) = segment_triangle::from_start(link.end, face);
         let (zero, one) = (axis.s.zero(), axis.s.one());
         let has_axis = zero.lt(link.axis.norm_squared());
         // Both ends of a short link may be as near as rounding can tell; then the end that p* is beyond decides.
@@ -99,6 +101,7 @@ impl<T: Scalar> Axial<T> {
         let at_end = beyond_end | (one.le(axis.s) & !before_start);
         Self {
             axis_squared: axis.squared,
+            meets,
             s: axis.s,
             on_triangle: axis.on_triangle,
             edges_squared: axis.edges_squared,
@@ -118,11 +121,10 @@ impl<T: Scalar> Axial<T> {
     pub(crate) fn without_caps(&self, link: &Link<T>) -> Closest<T> {
         let zero = self.axis_squared.zero();
         let (distance, on_link) = link.closest_to(self.on_triangle);
-        let meets = self.axis_squared.le(zero);
         Closest {
-            distance: meets.select(zero, distance),
+            distance: self.meets.select(zero, distance),
             point1: self.on_triangle,
-            point2: Vec3::select(meets, self.on_triangle, on_link),
+            point2: Vec3::select(self.meets, self.on_triangle, on_link),
         }
     }
 

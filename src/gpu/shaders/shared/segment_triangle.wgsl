@@ -1,6 +1,6 @@
 // Segment against triangle: the twin of distance/segment_triangle.rs, which has the cases.
 
-// How far a segment that meets an edge may be from it for rounding, in units of u and numbers near one.
+// How far a segment that meets an edge may be from it for rounding, in units of u and the largest coordinate.
 const AT_AN_EDGE = real(4.0);
 
 // The axis of a link against a triangle.
@@ -8,6 +8,8 @@ struct AxisTriangle {
     squared: real,
     s: real,
     on_triangle: vec3<real>,
+    // Whether the two meet.
+    meets: bool,
 }
 
 fn axis_triangle_nearer_where(condition: bool, other: AxisTriangle, nearest: AxisTriangle) -> AxisTriangle {
@@ -16,6 +18,7 @@ fn axis_triangle_nearer_where(condition: bool, other: AxisTriangle, nearest: Axi
         select(nearest.squared, other.squared, take),
         select(nearest.s, other.s, take),
         select(nearest.on_triangle, other.on_triangle, take),
+        false,
     );
 }
 
@@ -37,12 +40,11 @@ fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
     let opposite = (start_side < real(0.0) && real(0.0) < end_side)
         || (end_side < real(0.0) && real(0.0) < start_side);
     let s = over(abs(start_side), abs(start_side) + abs(end_side));
-    let pierced = AxisTriangle(real(0.0), s, end * s);
+    let pierced = AxisTriangle(real(0.0), s, end * s, true);
     nearest = axis_triangle_nearer_where(opposite && face_holds_point(face, end * s), pierced, nearest);
-    let rounding = AT_AN_EDGE * UNIT_ROUNDOFF;
-    if (opposite && nearest.squared <= rounding * rounding) {
-        nearest.squared = real(0.0);
-    }
+    let extent = max(max(largest(end), largest(face.a)), max(largest(face.b), largest(face.c)));
+    let rounding = extent * (AT_AN_EDGE * UNIT_ROUNDOFF);
+    nearest.meets = nearest.squared <= real(0.0) || (opposite && nearest.squared <= rounding * rounding);
     return nearest;
 }
 
@@ -53,15 +55,17 @@ fn segment_triangle_edge(end: vec3<real>, edge_start: vec3<real>, edge_end: vec3
         norm_squared(found.gap),
         found.s,
         along(edge_start, edge_end - edge_start, found.t),
+        false,
     );
 }
 
 // Case 2, for the end at `s`.
 fn segment_triangle_above(face: Face, s: real, foot: Projection) -> AxisTriangle {
-    return AxisTriangle(norm_squared(foot.residual), s, face_at(face, foot.alpha, foot.beta));
+    return AxisTriangle(norm_squared(foot.residual), s, face_at(face, foot.alpha, foot.beta), false);
 }
 
 fn segment_triangle(start: vec3<real>, end: vec3<real>, a: vec3<real>, b: vec3<real>, c: vec3<real>) -> Closest {
     let found = segment_triangle_from_start(end - start, face_new(a - start, b - start, c - start));
-    return Closest(sqrt(found.squared), along(start, end - start, found.s), start + found.on_triangle);
+    let distance = select(sqrt(found.squared), real(0.0), found.meets);
+    return Closest(distance, along(start, end - start, found.s), start + found.on_triangle);
 }

@@ -4,6 +4,8 @@
 struct Axial {
     // The squared distance between axis and triangle.
     axis_squared: real,
+    // Whether the axis meets the triangle, which may be as far as rounding can tell.
+    meets: bool,
     // The triangle's point.
     on_triangle: vec3<real>,
     // Whether the disc at the start, or at the end, decides (case 2).
@@ -26,6 +28,7 @@ fn axial_new(link: Link, face: Face) -> Axial {
     let at_end = beyond_end || (real(1.0) <= axis.s && !before_start);
     return Axial(
         axis.squared,
+        axis.meets,
         axis.on_triangle,
         link.flat_start && has_axis && at_start,
         link.flat_end && has_axis && at_end,
@@ -39,11 +42,10 @@ fn axial_beyond_flat_cap(axial: Axial) -> bool {
 // Between the triangle's point and the link: an upper bound, and the answer in case 1.
 fn axial_without_caps(axial: Axial, link: Link) -> Closest {
     let found = link_closest_to(link, axial.on_triangle);
-    let meets = axial.axis_squared <= real(0.0);
     return Closest(
-        select(found.distance, real(0.0), meets),
+        select(found.distance, real(0.0), axial.meets),
         axial.on_triangle,
-        select(found.on_link, axial.on_triangle, meets),
+        select(found.on_link, axial.on_triangle, axial.meets),
     );
 }
 
