@@ -91,7 +91,6 @@ pub(super) fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distance::Scalar;
     use continuum_testing::Random;
 
     /// The corner opposite the longest edge comes first, and the others follow in their order.
