@@ -129,11 +129,18 @@ impl<T: Scalar> Face<T> {
     }
 
     /// Whether a point of the plane lies in the triangle. One pass serves: what it gets wrong is within rounding
-    /// of an edge.
+    /// of the lines of the edges.
+    ///
+    /// At the sharp corner of a sliver two lines stay within rounding of each other far beyond the corner. Such corners
+    /// are ends of the longest edge, along which the point must not lie beyond them by more than about `rounding`.
     #[inline(always)]
-    pub(crate) fn holds_point(&self, point: Vec3<T>) -> T::Mask {
-        let relative = point - self.vertices[0];
+    pub(crate) fn holds_point(&self, point: Vec3<T>, rounding: T) -> T::Mask {
+        let [apex, from, to] = self.vertices;
+        let (relative, longest) = (point - apex, to - from);
+        let (place, slack) = ((point - from).dot(longest), rounding * longest.largest());
         self.holds(relative.dot(self.dual[0]), relative.dot(self.dual[1]))
+            & (-slack).le(place)
+            & place.le(longest.norm_squared() + slack)
     }
 
     /// Whether the coordinates are those of a point of the triangle.

@@ -84,9 +84,9 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> (AxisTriang
     let opposite = (from.lt(zero) & zero.lt(to)) | (to.lt(zero) & zero.lt(from));
     let s = from.abs().over(from.abs() + to.abs());
     let pierced = AxisTriangle { squared: zero, s, on_triangle: end * s, edges_squared: [zero; 3] };
-    let nearest = nearest.nearer_where(opposite & face.holds_point(end * s), pierced);
     let extent = end.largest().max(a.largest()).max(b.largest()).max(c.largest());
     let rounding = extent * zero.lit(AT_AN_EDGE * T::UNIT_ROUNDOFF);
+    let nearest = nearest.nearer_where(opposite & face.holds_point(end * s, rounding), pierced);
     let meets = nearest.squared.le(zero) | (opposite & nearest.squared.le(rounding * rounding));
     (nearest, meets)
 }

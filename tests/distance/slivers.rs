@@ -304,3 +304,35 @@ fn slivers_whose_width_is_lost_beside_a_long_link() {
     vanishing::<f64>(20..40, 60..110);
     vanishing::<f32>(8..16, 26..50);
 }
+
+/// A wire that passes a sliver right where its two long sides would meet again beyond the sharp corner touches nothing.
+fn beyond_the_sharp_corner<T: Precision>() {
+    let mut random = Random::new(11);
+    let (mut beside, mut through) = (0, 0);
+    for round in 0..100_000 {
+        let length = random.direction();
+        let width = random.perpendicular_to(length);
+        let height = 2.0_f64.powi(-(random.below(60) as i32));
+        let apex = length * random.between(0.01, 0.99) + width * height;
+        let gap = 2.0_f64.powi(-(2 + random.below(20) as i32)) * [1.0, -1.0][random.below(2) as usize];
+        let crossing = length * (1.0 + gap);
+        let along = length.cross(width) + width * random.between(-1.0, 1.0);
+        let mut triangle = [Vector::ZERO, length, apex];
+        triangle.rotate_left(random.below(3) as usize);
+        let wire = [crossing - along * random.between(0.2, 2.0), crossing + along * random.between(0.2, 2.0)];
+        let found: f64 = segment_triangle(wire.map(T::vec3), triangle.map(T::vec3)).distance.into();
+        // What rounding the numbers that the kernel gets adds to what the kernel may err by.
+        let rounding = 8.0 * T::UNIT * extent(&[&wire[..], &triangle].concat(), 0.0);
+        // Within the triangle's length it is the long side that the wire meets.
+        let expected = gap.max(0.0);
+        assert!((found - expected).abs() <= rounding, "{round}: {found} beside {gap}, height {height}");
+        if gap > 0.0 { beside += 1 } else { through += 1 }
+    }
+    assert!(beside > 40_000 && through > 40_000);
+}
+
+#[test]
+fn a_wire_beyond_the_sharp_corner_of_a_sliver_keeps_away() {
+    beyond_the_sharp_corner::<f32>();
+    beyond_the_sharp_corner::<f64>();
+}

@@ -91,9 +91,13 @@ fn face_at(face: Face, alpha: real, beta: real) -> vec3<real> {
 }
 
 // Whether a point of the plane lies in the triangle.
-fn face_holds_point(face: Face, point: vec3<real>) -> bool {
+fn face_holds_point(face: Face, point: vec3<real>, rounding: real) -> bool {
     let relative = point - face.a;
-    return face_holds(face, dot(relative, face.dual1), dot(relative, face.dual2));
+    let longest = face.c - face.b;
+    let place = dot(point - face.b, longest);
+    let slack = rounding * largest(longest);
+    return face_holds(face, dot(relative, face.dual1), dot(relative, face.dual2))
+        && -slack <= place && place <= norm_squared(longest) + slack;
 }
 
 fn face_holds(face: Face, alpha: real, beta: real) -> bool {

@@ -41,9 +41,10 @@ fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
         || (end_side < real(0.0) && real(0.0) < start_side);
     let s = over(abs(start_side), abs(start_side) + abs(end_side));
     let pierced = AxisTriangle(real(0.0), s, end * s, true);
-    nearest = axis_triangle_nearer_where(opposite && face_holds_point(face, end * s), pierced, nearest);
     let extent = max(max(largest(end), largest(face.a)), max(largest(face.b), largest(face.c)));
     let rounding = extent * (AT_AN_EDGE * UNIT_ROUNDOFF);
+    let holds = face_holds_point(face, end * s, rounding);
+    nearest = axis_triangle_nearer_where(opposite && holds, pierced, nearest);
     nearest.meets = nearest.squared <= real(0.0) || (opposite && nearest.squared <= rounding * rounding);
     return nearest;
 }
