@@ -22,7 +22,7 @@ pub fn at_level<K: Kernel<IN, OUT>, E: Lane, const IN: usize, const OUT: usize>(
 }
 
 #[inline(always)]
-pub(super) fn on_packs<K: Kernel<IN, OUT>, L: Pack, const IN: usize, const OUT: usize>(
+fn on_packs<K: Kernel<IN, OUT>, L: Pack, const IN: usize, const OUT: usize>(
     token: L::Token,
     problems: &[[L::Element; IN]],
     answers: &mut Vec<[L::Element; OUT]>,

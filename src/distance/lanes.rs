@@ -1,11 +1,11 @@
 //! Packs of `f32` or `f64` that take a [`Scalar`]'s place: the kernels run on 2 to 16 triangles at once.
 //!
-//! The width is eight, or that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A constant needs
+//! The width is that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A constant needs
 //! the instruction set's token, which every pack carries; hence [`Scalar::lit`] takes a `self`.
 
 use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};
 use fearless_simd::prelude::*;
-use fearless_simd::{Select, Simd, f32x8, mask32x8};
+use fearless_simd::{Select, Simd};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A pack of numbers that is loaded from memory.
@@ -35,15 +35,15 @@ pub(crate) trait Pack: Scalar {
 const COMPARES_AND_SELECTS: bool = cfg!(all(target_arch = "x86_64", target_feature = "sse2"));
 
 macro_rules! lanes {
-    ($Lanes:ident, $LaneMask:ident, $element:ty, $vector:ty, $mask:ty, $bits:ty, $mantissa_bits:literal,
+    ($Lanes:ident, $LaneMask:ident, $element:ty, $vector:ident, $mask:ident, $bits:ty, $mantissa_bits:literal,
      $bias:literal, $cbrt_bits:ident) => {
         #[doc = concat!("A pack of `", stringify!($element), "`.")]
         #[derive(Clone, Copy)]
-        pub(crate) struct $Lanes<S: Simd>($vector);
+        pub(crate) struct $Lanes<S: Simd>(S::$vector);
 
         #[doc = concat!("Truth values of [`", stringify!($Lanes), "`].")]
         #[derive(Clone, Copy)]
-        pub(crate) struct $LaneMask<S: Simd>($mask);
+        pub(crate) struct $LaneMask<S: Simd>(S::$mask);
 
         lanes!(@operator $Lanes Add add +);
         lanes!(@operator $Lanes Sub sub -);
@@ -86,7 +86,7 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn lit(self, value: f64) -> Self {
-                Self(<$vector>::splat(self.0.token(), value as $element))
+                Self(S::$vector::splat(self.0.token(), value as $element))
             }
             #[inline(always)]
             fn lt(self, other: Self) -> $LaneMask<S> {
@@ -136,9 +136,9 @@ macro_rules! lanes {
                 const SHIFT: u32 = <$bits>::BITS - $mantissa_bits;
                 let two_to_k = self.lit((1_u64 << $mantissa_bits) as f64);
                 let leading = (self.abs().0.to_bits() >> SHIFT) | two_to_k.0.to_bits();
-                let number = Self(<$vector>::from_bits(leading)) - two_to_k;
+                let number = Self(S::$vector::from_bits(leading)) - two_to_k;
                 let third = number.mul_add(self.lit(1.0 / 3.0), self.lit(($cbrt_bits >> SHIFT) as f64)) + two_to_k;
-                Self(<$vector>::from_bits(third.0.to_bits() << SHIFT))
+                Self(S::$vector::from_bits(third.0.to_bits() << SHIFT))
             }
             #[inline(always)]
             fn power_of_two_to_unity(self) -> Self {
@@ -147,7 +147,7 @@ macro_rules! lanes {
                 let inside = self.max(self.lit(SMALLEST)).min(self.lit(LARGEST));
                 let two_exponents = (2 * $bias) << $mantissa_bits;
                 let exponent = inside.0.to_bits() & (((2 * $bias + 1) as $bits) << $mantissa_bits);
-                let mirrored = <$vector>::from_bits(!(exponent - 1 - two_exponents));
+                let mirrored = S::$vector::from_bits(!(exponent - 1 - two_exponents));
                 self.zero().lt(self).select(Self(mirrored), self.one())
             }
         }
@@ -155,7 +155,7 @@ macro_rules! lanes {
         impl<S: Simd> Pack for $Lanes<S> {
             type Element = $element;
             type Token = S;
-            const LANES: usize = <$vector as SimdBase<S>>::LEN;
+            const LANES: usize = <S::$vector as SimdBase<S>>::LEN;
 
             #[inline(always)]
             fn token(self) -> S {
@@ -163,11 +163,11 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn splat(token: S, value: $element) -> Self {
-                Self(<$vector>::splat(token, value))
+                Self(S::$vector::splat(token, value))
             }
             #[inline(always)]
             fn load(token: S, from: &[$element]) -> Self {
-                Self(<$vector>::from_slice(token, &from[..Self::LANES]))
+                Self(S::$vector::from_slice(token, &from[..Self::LANES]))
             }
             #[inline(always)]
             fn store(self, to: &mut [$element]) {
@@ -190,18 +190,15 @@ macro_rules! lanes {
     };
 }
 
-lanes!(F32s, F32Mask, f32, S::f32s, S::mask32s, u32, 23, 127, CBRT_BITS_F32);
-lanes!(F32x8s, F32x8Mask, f32, f32x8<S>, mask32x8<S>, u32, 23, 127, CBRT_BITS_F32);
-lanes!(F64s, F64Mask, f64, S::f64s, S::mask64s, u64, 52, 1023, CBRT_BITS_F64);
+lanes!(F32s, F32Mask, f32, f32s, mask32s, u32, 23, 127, CBRT_BITS_F32);
+lanes!(F64s, F64Mask, f64, f64s, mask64s, u64, 52, 1023, CBRT_BITS_F64);
 
 /// A precision in which packs exist.
 pub(crate) trait Lane:
     Scalar<Mask = bool> + Default + PartialOrd + Into<f64> + Send + Sync + 'static
 {
-    /// The widest pack of an instruction set.
+    /// The pack of an instruction set.
     type Pack<S: Simd>: Pack<Element = Self, Token = S>;
-    /// A pack of at most eight: in single precision of eight, even where an instruction takes four.
-    type PackOfEight<S: Simd>: Pack<Element = Self, Token = S>;
 
     /// Lengths up to here have finite products in the bounds and distances of a search.
     const FARTHEST: f64;
@@ -212,7 +209,6 @@ pub(crate) trait Lane:
 
 impl Lane for f32 {
     type Pack<S: Simd> = F32s<S>;
-    type PackOfEight<S: Simd> = F32x8s<S>;
     const FARTHEST: f64 = 1.0e6;
 
     #[inline(always)]
@@ -223,7 +219,6 @@ impl Lane for f32 {
 
 impl Lane for f64 {
     type Pack<S: Simd> = F64s<S>;
-    type PackOfEight<S: Simd> = F64s<S>;
     const FARTHEST: f64 = 1.0e30;
 
     #[inline(always)]

@@ -1,7 +1,6 @@
 //! Every instruction set of this machine gives the scalar's answers, lane by lane.
 
 use super::*;
-use crate::distance::at_level::on_packs;
 use crate::distance::{Kernel, Vec3, at_level, dispatch, segment_disc, triangle_modified_cylinder};
 use fearless_simd::{Level, Simd};
 
@@ -69,10 +68,7 @@ fn compare<E: Lane>() {
     assert!(touching > count / 20 && touching < count / 2, "{touching}");
     for level in levels() {
         let packed = at_level::<Distances, E, 17, 2>(level, &problems);
-        let mut by_eight = Vec::new();
-        dispatch!(level, simd => on_packs::<Distances, E::PackOfEight<_>, 17, 2>(simd, &problems, &mut by_eight));
-        assert_eq!([packed.len(), by_eight.len()], [count; 2]);
-        for (packed, scalar) in packed.iter().chain(&by_eight).zip(scalar.iter().cycle()) {
+        for (packed, scalar) in packed.iter().zip(&scalar) {
             for (packed, scalar) in packed.iter().zip(scalar) {
                 let error = ((*packed).into() - (*scalar).into()).abs();
                 assert!(error <= 16.0 * E::UNIT_ROUNDOFF * 2.0, "{level:?}: {error}");
@@ -114,9 +110,7 @@ fn compare_choices<E: Lane>() {
             let expected = [one.max(other), one.min(other), one.over(other)].map(bits);
             for level in levels() {
                 let found = dispatch!(level, simd => choices::<E::Pack<_>>(simd, one, other)).map(bits);
-                let by_eight =
-                    dispatch!(level, simd => choices::<E::PackOfEight<_>>(simd, one, other)).map(bits);
-                assert_eq!([found, by_eight], [expected; 2], "{level:?}: {} {}", one.into(), other.into());
+                assert_eq!(found, expected, "{level:?}: {} {}", one.into(), other.into());
             }
         }
     }
@@ -147,8 +141,6 @@ fn compare_helpers<E: Lane>(exponents: std::ops::Range<i32>) {
             let value = E::round(mantissa * 2.0_f64.powi(exponent));
             for level in levels() {
                 let [root, unity] = dispatch!(level, simd => helpers::<E::Pack<_>>(simd, value));
-                let by_eight = dispatch!(level, simd => helpers::<E::PackOfEight<_>>(simd, value));
-                assert_eq!(by_eight.map(Into::into), [root, unity].map(Into::<f64>::into), "{level:?}");
                 let exact = value.into().cbrt();
                 assert!((root.into() / exact - 1.0).abs() < 0.06, "{level:?}: {} {exact}", root.into());
                 assert_eq!(unity.into(), value.power_of_two_to_unity().into(), "{level:?}");

@@ -130,7 +130,7 @@ mod tests {
     use parry3d_f64::math::{Pose, Vector};
 
     /// The feet of a block of triangles.
-    fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[[E; BLOCK]; 9]) -> [Feet; BLOCK] {
+    fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[E]) -> [Feet; BLOCK] {
         let mut feet = [(); BLOCK].map(|()| Feet { away: [0; 3], beyond: [0; 3] });
         dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
         feet
@@ -141,7 +141,7 @@ mod tests {
     fn fill<L: Pack>(
         token: L::Token,
         searched: &SearchLink<L::Element>,
-        rows: &[[L::Element; BLOCK]; 9],
+        rows: &[L::Element],
         feet: &mut [Feet; BLOCK],
     ) where
         L::Element: Lane,
@@ -180,7 +180,7 @@ mod tests {
         let mesh = Mesh::of(corners, triangles);
         let frame = SearchFrame::new(&mesh);
         let Some(searched) = SearchLink::<E>::new(&link, &frame) else { return };
-        let mut rows = [[E::default(); BLOCK]; 9];
+        let mut rows = vec![E::default(); 9 * BLOCK];
         (0..BLOCK).for_each(|lane| place_face(&frame, &mesh, lane as u32, &mut rows, lane));
         for level in levels() {
             for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {

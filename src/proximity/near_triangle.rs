@@ -1,7 +1,7 @@
 //! What a search tells of the triangles that may be within a margin of a link, before they are measured.
 
 use super::shared_parts::PART_WITHOUT;
-use super::triangle_block::LEAF;
+use super::triangle_block::BLOCK;
 use parry3d_f64::math::Real;
 
 /// The triangles that may be within a margin of the links of a robot, link by link.
@@ -104,7 +104,7 @@ impl NearLink<'_> {
     #[inline(always)]
     pub(super) fn is_on_slope(&self, index: &Index, place_of: &[u32], triangle: u32) -> bool {
         let Some(&place) = place_of.get(triangle as usize) else { return false };
-        let (leaf, lane) = (place / LEAF as u32, place % LEAF as u32);
+        let (leaf, lane) = (place / BLOCK as u32, place % BLOCK as u32);
         let slopes = index.of_leaf.get(leaf as usize).and_then(|&at| self.slopes.get(at as usize));
         slopes.is_some_and(|slopes| slopes.leaf == leaf && slopes.lanes >> lane & 1 == 1)
     }

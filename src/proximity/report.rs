@@ -99,7 +99,7 @@ pub(super) fn corners(mesh: &TriMesh, indices: &[u32; 3]) -> Result<[Vector; 3],
 pub struct Work {
     /// Nodes of the hierarchy whose up to 16 children were bounded; none in an exhaustive engine.
     pub nodes: u64,
-    /// Pairs of link and triangle that were visited: by a hierarchy eight triangles at a time, exhaustively 16.
+    /// Pairs of link and triangle that were visited, 16 triangles at a time.
     pub visited: u64,
     /// Pairs for which the distance between axis and triangle was computed, a pack at a time.
     pub axis_distances: u64,

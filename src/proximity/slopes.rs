@@ -191,10 +191,8 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
-    type Rows = [[f32; BLOCK]; 9];
-
     /// Which of a block's triangles are on a slope.
-    fn slopes_of(level: Level, searched: &SearchLink<f32>, rows: &Rows, across: &Rows) -> u64 {
+    fn slopes_of(level: Level, searched: &SearchLink<f32>, rows: &[f32], across: &[f32]) -> u64 {
         dispatch!(level, simd => slopes::<<f32 as Lane>::Pack<_>>(simd, searched, rows, across))
     }
 
@@ -202,8 +200,8 @@ mod tests {
     fn slopes<L: Pack<Element = f32>>(
         token: L::Token,
         searched: &SearchLink<f32>,
-        rows: &Rows,
-        across: &Rows,
+        rows: &[f32],
+        across: &[f32],
     ) -> u64 {
         let lanes = LinkLanes::<L>::new(token, searched);
         let (mut slopes, error) = (0, L::splat(token, searched.error));
@@ -264,7 +262,7 @@ mod tests {
             let link = PlacedLink::new(&link, &Pose::IDENTITY);
             let frame = SearchFrame::new(&mesh);
             let Some(searched) = SearchLink::<f32>::new(&link, &frame) else { continue };
-            let (mut rows, mut across) = ([[0.0; BLOCK]; 9], [[0.0; BLOCK]; 9]);
+            let (mut rows, mut across) = ([0.0; 9 * BLOCK], [0.0; 9 * BLOCK]);
             for triangle in 0..BLOCK as u32 {
                 place_triangle(&frame, &mesh, triangle, &mut rows, triangle as usize);
                 place_points(&frame, mesh.corners_across(triangle), &mut across, triangle as usize);

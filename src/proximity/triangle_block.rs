@@ -1,4 +1,4 @@
-//! How triangles stand in memory: several together, each coordinate in a row of its own, to be loaded in packs.
+//! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be loaded in packs.
 
 use super::mesh::Mesh;
 use super::search_frame::SearchFrame;
@@ -6,19 +6,15 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Vec3};
 use parry3d_f64::math::Vector;
 
-/// How many triangles stand together in a block: the widest pack, so that any narrower one divides it.
+/// How many triangles stand together: the widest pack, so that any narrower one divides it.
 pub(super) const BLOCK: usize = 16;
 
-/// How many triangles stand together in a leaf of a hierarchy. Measured: with 16 or 32, more are met in vain than the nodes
-/// cost that are spared.
-pub(super) const LEAF: usize = 8;
-
-/// Writes the corners of a triangle into its lane, in the order in which a [`Face`] has them.
-pub(super) fn place_face<E: Lane, const N: usize>(
+/// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has them.
+pub(super) fn place_face<E: Lane>(
     frame: &SearchFrame,
     mesh: &Mesh,
     triangle: u32,
-    rows: &mut [[E; N]],
+    rows: &mut [E],
     lane: usize,
 ) {
     let corners = mesh.corners(triangle).map(|corner| frame.point(corner));
@@ -37,30 +33,28 @@ pub(super) fn from_on<T>(mut three: [T; 3], first: usize) -> [T; 3] {
     three
 }
 
-/// Writes the corners of a triangle into its lane.
-pub(super) fn place_triangle<E: Lane, const N: usize>(
+/// Writes the corners of a triangle into its lane of a block.
+pub(super) fn place_triangle<E: Lane>(
     frame: &SearchFrame,
     mesh: &Mesh,
     triangle: u32,
-    rows: &mut [[E; N]],
+    rows: &mut [E],
     lane: usize,
 ) {
     place_points(frame, mesh.corners(triangle), rows, lane);
 }
 
-/// Writes three points into a lane.
-pub(super) fn place_points<E: Lane, const N: usize>(
-    frame: &SearchFrame,
-    points: [Vector; 3],
-    rows: &mut [[E; N]],
-    lane: usize,
-) {
+/// Writes three points into a lane of a block.
+pub(super) fn place_points<E: Lane>(frame: &SearchFrame, points: [Vector; 3], rows: &mut [E], lane: usize) {
     put(points.map(|point| frame.point(point)), rows, lane);
 }
 
-fn put<E: Lane, const N: usize>(points: [Vec3<E>; 3], rows: &mut [[E; N]], lane: usize) {
-    let values = points.into_iter().flat_map(<[E; 3]>::from);
-    rows.iter_mut().zip(values).for_each(|(row, value)| row[lane] = value);
+fn put<E: Lane>(points: [Vec3<E>; 3], rows: &mut [E], lane: usize) {
+    for (number, point) in points.into_iter().enumerate() {
+        for (axis, value) in <[E; 3]>::from(point).into_iter().enumerate() {
+            rows[(3 * number + axis) * BLOCK + lane] = value;
+        }
+    }
 }
 
 // Functions and not closures below a dispatch: a closure may escape inlining, and its code would then be compiled
@@ -74,40 +68,24 @@ pub(super) fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L
 
 /// Three coordinates from the rows `row` to `row + 2`.
 #[inline(always)]
-pub(super) fn load<L: Pack, const N: usize>(
-    token: L::Token,
-    rows: &[[L::Element; N]],
-    row: usize,
-    lane: usize,
-) -> Vec3<L> {
-    Vec3::new(
-        L::load(token, &rows[row][lane..]),
-        L::load(token, &rows[row + 1][lane..]),
-        L::load(token, &rows[row + 2][lane..]),
-    )
+pub(super) fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
+    let rows = &rows[row * BLOCK + lane..];
+    Vec3::new(L::load(token, rows), L::load(token, &rows[BLOCK..]), L::load(token, &rows[2 * BLOCK..]))
 }
 
 /// Three vertices from the first nine rows.
 #[inline(always)]
-pub(super) fn load_vertices<L: Pack, const N: usize>(
-    token: L::Token,
-    rows: &[[L::Element; N]],
-    lane: usize,
-) -> [Vec3<L>; 3] {
+pub(super) fn load_vertices<L: Pack>(token: L::Token, rows: &[L::Element], lane: usize) -> [Vec3<L>; 3] {
     [load(token, rows, 0, lane), load(token, rows, 3, lane), load(token, rows, 6, lane)]
 }
 
 /// Writes three coordinates to the rows `row` to `row + 2`.
 #[inline(always)]
-pub(super) fn store<L: Pack, const N: usize>(
-    vector: Vec3<L>,
-    rows: &mut [[L::Element; N]],
-    row: usize,
-    lane: usize,
-) {
-    vector.x.store(&mut rows[row][lane..]);
-    vector.y.store(&mut rows[row + 1][lane..]);
-    vector.z.store(&mut rows[row + 2][lane..]);
+pub(super) fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usize, lane: usize) {
+    let rows = &mut rows[row * BLOCK + lane..];
+    vector.x.store(rows);
+    vector.y.store(&mut rows[BLOCK..]);
+    vector.z.store(&mut rows[2 * BLOCK..]);
 }
 
 #[cfg(test)]
@@ -127,12 +105,12 @@ mod tests {
             let triangles = (0..BLOCK as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
             let mesh = Mesh::of(corners, triangles);
             let frame = SearchFrame::new(&mesh);
-            let mut rows = [[E::default(); BLOCK]; 9];
+            let mut rows = vec![E::default(); 9 * BLOCK];
             for lane in 0..BLOCK {
                 place_face(&frame, &mesh, lane as u32, &mut rows, lane);
                 let first = first_of_face::<E>(&frame, &mesh, lane as u32);
                 firsts[first] += 1;
-                let at = |row: usize| -> f64 { rows[row][lane].into() };
+                let at = |row: usize| -> f64 { rows[row * BLOCK + lane].into() };
                 let [a, b, c] = [0, 3, 6].map(|row| Vector::new(at(row), at(row + 1), at(row + 2)));
                 let rounding = 1.0 + 8.0 * E::UNIT_ROUNDOFF;
                 let longest = b.distance(c) * rounding;

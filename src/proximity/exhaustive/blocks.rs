@@ -7,10 +7,10 @@ use crate::proximity::parallel::each;
 use crate::proximity::search_frame::SearchFrame;
 use crate::proximity::triangle_block::{BLOCK, load, load_vertices, place_triangle, store};
 
-/// What bounds the triangles of a block: a sphere's centre and radius.
-pub(super) type SphereRows<E> = [[E; BLOCK]; 4];
-/// The triangles of a block: three vertices and the dual basis.
-pub(super) type FaceRows<E> = [[E; BLOCK]; 15];
+/// Rows of a block that bound its triangles: a sphere's centre and radius.
+const SPHERE_ROWS: usize = 4;
+/// Rows of a block that hold its triangles: three vertices and the dual basis.
+const FACE_ROWS: usize = 15;
 /// How many blocks one thread takes over at a time.
 const SHARE: usize = 64;
 
@@ -18,34 +18,27 @@ const SHARE: usize = 64;
 #[derive(Clone)]
 pub(super) struct Blocks<E> {
     pub frame: SearchFrame,
-    spheres: Vec<SphereRows<E>>,
-    faces: Vec<FaceRows<E>>,
+    spheres: Vec<E>,
+    faces: Vec<E>,
 }
 
 impl<E: Lane> Blocks<E> {
     /// The mesh's triangles; `prepare` is [`prepare`] for an instruction set.
-    pub(super) fn new(
-        mesh: &Mesh,
-        prepare: impl Fn(&mut [FaceRows<E>], &mut [SphereRows<E>]) + Sync,
-    ) -> Self {
+    pub(super) fn new(mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) -> Self {
         let mut blocks = Self { frame: SearchFrame::new(mesh), spheres: Vec::new(), faces: Vec::new() };
         blocks.refill(mesh, prepare);
         blocks
     }
 
     /// Takes over where the triangles are.
-    pub(super) fn refill(
-        &mut self,
-        mesh: &Mesh,
-        prepare: impl Fn(&mut [FaceRows<E>], &mut [SphereRows<E>]) + Sync,
-    ) {
+    pub(super) fn refill(&mut self, mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) {
         self.frame = SearchFrame::new(mesh);
         let blocks = mesh.len().div_ceil(BLOCK);
-        self.spheres.resize(blocks, [[E::default(); BLOCK]; 4]);
-        self.faces.resize(blocks, [[E::default(); BLOCK]; 15]);
+        self.spheres.resize(blocks * BLOCK * SPHERE_ROWS, E::default());
+        self.faces.resize(blocks * BLOCK * FACE_ROWS, E::default());
         let frame = &self.frame;
-        let faces = self.faces.chunks_mut(SHARE);
-        let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE)).collect();
+        let faces = self.faces.chunks_mut(SHARE * BLOCK * FACE_ROWS);
+        let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE * BLOCK * SPHERE_ROWS)).collect();
         each(&mut shares, |share, (faces, spheres)| {
             fill(frame, mesh, share * SHARE, faces);
             prepare(faces, spheres);
@@ -54,7 +47,7 @@ impl<E: Lane> Blocks<E> {
 
     /// How many blocks there are.
     pub(super) fn len(&self) -> usize {
-        self.spheres.len()
+        self.spheres.len() / (BLOCK * SPHERE_ROWS)
     }
 
     /// Centres and radii of the spheres around the triangles from `lane` on.
@@ -65,22 +58,22 @@ impl<E: Lane> Blocks<E> {
         block: usize,
         lane: usize,
     ) -> (Vec3<L>, L) {
-        let rows = &self.spheres[block];
-        (load(token, rows, 0, lane), L::load(token, &rows[3][lane..]))
+        let rows = &self.spheres[block * BLOCK * SPHERE_ROWS..][..BLOCK * SPHERE_ROWS];
+        (load(token, rows, 0, lane), L::load(token, &rows[3 * BLOCK + lane..]))
     }
 
     /// The triangles from `lane` on.
     #[inline(always)]
     pub(super) fn faces<L: Pack<Element = E>>(&self, token: L::Token, block: usize, lane: usize) -> Face<L> {
-        let rows = &self.faces[block];
+        let rows = &self.faces[block * BLOCK * FACE_ROWS..][..BLOCK * FACE_ROWS];
         let dual = [load(token, rows, 9, lane), load(token, rows, 12, lane)];
         Face::again(load_vertices(token, rows, lane), dual)
     }
 }
 
 /// Writes the corners of the triangles into blocks, the first of which has the number `first`.
-fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [FaceRows<E>]) {
-    for (block, rows) in faces.iter_mut().enumerate() {
+fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]) {
+    for (block, rows) in faces.chunks_exact_mut(BLOCK * FACE_ROWS).enumerate() {
         for lane in 0..BLOCK {
             // The last block is filled up with its last triangle.
             let triangle = ((first + block) * BLOCK + lane).min(mesh.len() - 1);
@@ -91,14 +84,11 @@ fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [Fa
 
 /// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
 #[inline(always)]
-pub(super) fn prepare<L: Pack>(
-    token: L::Token,
-    faces: &mut [FaceRows<L::Element>],
-    spheres: &mut [SphereRows<L::Element>],
-) {
-    for (face, sphere) in faces.iter_mut().zip(spheres) {
+pub(super) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], spheres: &mut [L::Element]) {
+    let faces = faces.chunks_exact_mut(BLOCK * FACE_ROWS);
+    for (face, sphere) in faces.zip(spheres.chunks_exact_mut(BLOCK * SPHERE_ROWS)) {
         for lane in (0..BLOCK).step_by(L::LANES) {
-            let made = Face::new(load_vertices::<L, BLOCK>(token, face, lane));
+            let made = Face::new(load_vertices::<L>(token, face, lane));
             let [a, b, c] = made.vertices;
             for (row, vector) in [a, b, c, made.dual[0], made.dual[1]].into_iter().enumerate() {
                 store(vector, face, 3 * row, lane);
@@ -115,7 +105,7 @@ pub(super) fn prepare<L: Pack>(
             let centre = Vec3::select(take_edge, centre, middle);
             let radius = take_edge.select(apex.max(half), around).sqrt();
             store(centre, sphere, 0, lane);
-            (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF)).store(&mut sphere[3][lane..]);
+            (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF)).store(&mut sphere[3 * BLOCK + lane..]);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The loops of exhaustive search for each precision: functions without parameters, which are compiled for every
 //! instruction set in this crate and not again in each that uses an engine.
 
-use super::blocks::{FaceRows, SphereRows, prepare};
+use super::blocks::prepare;
 use super::scan::{Findings, Job};
 use crate::distance::dispatch;
 use crate::distance::lanes::Lane;
@@ -10,7 +10,7 @@ use fearless_simd::Level;
 /// A precision with its loops.
 pub(super) trait Kernels: Lane {
     /// [`prepare`].
-    fn prepare(level: Level, faces: &mut [FaceRows<Self>], spheres: &mut [SphereRows<Self>]);
+    fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]);
     /// [`Job::first_bounds`].
     fn first_bounds(level: Level, job: &Job<Self>);
     /// [`Job::scan`] with culling.
@@ -23,7 +23,7 @@ macro_rules! kernels {
     ($element:ty) => {
         impl Kernels for $element {
             #[inline(never)]
-            fn prepare(level: Level, faces: &mut [FaceRows<Self>], spheres: &mut [SphereRows<Self>]) {
+            fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]) {
                 dispatch!(level, simd => prepare::<<Self as Lane>::Pack<_>>(simd, faces, spheres));
             }
 

@@ -3,16 +3,16 @@
 use super::build::WideBvh;
 use crate::distance::lanes::Lane;
 use crate::proximity::mesh::Mesh;
-use crate::proximity::triangle_block::{LEAF, first_of_face, from_on, place_points};
+use crate::proximity::triangle_block::{BLOCK, first_of_face, from_on, place_points};
 use std::sync::OnceLock;
 
 /// The corners beyond the edges of a leaf's triangles.
 #[derive(Clone)]
 pub(super) struct Corners<E> {
     /// In rows and an order like those of the triangles' own corners; no numbers where an edge has no second triangle.
-    pub rows: [[E; LEAF]; 9],
+    pub rows: [E; 9 * BLOCK],
     /// Which of its own corners each triangle has first there, two bits each.
-    firsts: u16,
+    firsts: u32,
 }
 
 /// The corners beyond the edges of all triangles, found when a leaf is first asked for.
@@ -32,12 +32,12 @@ impl<E: Lane> Across<E> {
     /// Those of a leaf, in the frame of the search.
     pub(super) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &Corners<E> {
         self.0[leaf as usize].get_or_init(|| {
-            let mut corners = Corners { rows: [[E::round(f64::NAN); LEAF]; 9], firsts: 0 };
+            let mut corners = Corners { rows: [E::round(f64::NAN); 9 * BLOCK], firsts: 0 };
             for (lane, &triangle) in tree.leaves[leaf as usize].triangles.iter().enumerate() {
                 let first = first_of_face::<E>(&tree.frame, mesh, triangle);
                 let across = from_on(mesh.corners_across(triangle), first);
                 place_points(&tree.frame, across, &mut corners.rows, lane);
-                corners.firsts |= (first as u16) << (2 * lane);
+                corners.firsts |= (first as u32) << (2 * lane);
             }
             corners
         })

@@ -113,7 +113,7 @@ pub(super) mod tests {
     use crate::distance::lanes::Lane;
     use crate::proximity::mesh::Mesh;
     use crate::proximity::search_frame::SearchLink;
-    use crate::proximity::triangle_block::LEAF;
+    use crate::proximity::triangle_block::BLOCK;
     use fearless_simd::Level;
     use parry3d_f64::math::{Rotation, Vector};
 
@@ -122,9 +122,10 @@ pub(super) mod tests {
         match child {
             Child::Leaf(leaf) => {
                 let rows = &tree.leaves[leaf as usize].rows;
-                let at =
-                    |corner: usize, lane: usize| [0, 1, 2].map(|x| f64::from(rows[3 * corner + x][lane]));
-                out.extend((0..3 * LEAF).map(|k| at(k / LEAF, k % LEAF)));
+                let at = |corner: usize, lane: usize| {
+                    [0, 1, 2].map(|x| f64::from(rows[(3 * corner + x) * BLOCK + lane]))
+                };
+                out.extend((0..3 * BLOCK).map(|k| at(k / BLOCK, k % BLOCK)));
             }
             Child::Node(node) => {
                 tree.nodes[node as usize].children().for_each(|child| corners_below(tree, child, out));

@@ -1,4 +1,4 @@
-//! The hierarchy over a mesh's triangles: 16 children a node, eight triangles a leaf, in the precision of the search.
+//! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision of the search.
 //!
 //! A pack bounds all children of a node at once, and all triangles of a leaf at once. The leaves below a node stand one
 //! behind the other in memory.
@@ -10,7 +10,7 @@ use crate::distance::{Scalar, dispatch};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::{both, each};
 use crate::proximity::search_frame::SearchFrame;
-use crate::proximity::triangle_block::LEAF;
+use crate::proximity::triangle_block::BLOCK;
 use fearless_simd::Level;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub(super) struct WideBvh<E> {
     pub frame: SearchFrame,
     pub nodes: Vec<Node<E>>,
     pub leaves: Vec<Leaf<E>>,
-    /// Where each triangle stands: its lane, and eight times the number of its leaf.
+    /// Where each triangle stands: its lane, and 16 times the number of its leaf.
     pub place_of: Vec<u32>,
 }
 
@@ -34,7 +34,7 @@ impl<E: Lane> WideBvh<E> {
         let mut tree = Self {
             frame: SearchFrame::new(mesh),
             nodes: vec![Node::empty()],
-            leaves: Vec::with_capacity(mesh.len().div_ceil(LEAF / 2)),
+            leaves: Vec::with_capacity(mesh.len().div_ceil(BLOCK / 2)),
             place_of: vec![0; mesh.len()],
         };
         let mut items = items(&tree.frame, mesh);
@@ -44,17 +44,17 @@ impl<E: Lane> WideBvh<E> {
         tree
     }
 
-    /// Gives a node its children, for triangles that stand in order: a leaf each for up to eight of them, a node for more.
+    /// Gives a node its children, for triangles that stand in order: a leaf each for up to 16 of them, a node for more.
     /// Returns the lowest number of a triangle.
     fn split(&mut self, node: usize, items: &[Item<E>]) -> u32 {
         let first = self.leaves.len();
         let mut lowest = u32::MAX;
         for part in parts(items) {
-            let (child, lowest_of_part) = if part.len() <= LEAF {
+            let (child, lowest_of_part) = if part.len() <= BLOCK {
                 self.leaves.push(Leaf::of(|lane| part[lane].0, part.len()));
                 let leaf = self.leaves.len() as u32 - 1;
                 let mut lowest = u32::MAX;
-                for (place, &(triangle, _)) in (leaf * LEAF as u32..).zip(part) {
+                for (place, &(triangle, _)) in (leaf * BLOCK as u32..).zip(part) {
                     self.place_of[triangle as usize] = place;
                     lowest = lowest.min(triangle);
                 }
@@ -87,7 +87,7 @@ impl<E: Lane> WideBvh<E> {
         let leaves = &self.leaves;
         let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
         each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
-            dispatch!(level, simd => bound_children::<E::PackOfEight<_>>(simd, leaves, &below, nodes));
+            dispatch!(level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
     }
 }
@@ -128,9 +128,9 @@ fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
 }
 
 /// How many triangles each child of a node with `count` triangles should hold, so that the nodes near the leaves,
-/// which are nearly all, are full: 8, 128, 2048 ...
+/// which are nearly all, are full: 16, 256, 4096 ...
 fn full_subtree(count: usize) -> usize {
-    let mut unit = LEAF;
+    let mut unit = BLOCK;
     // A few children of two units each are better than another level.
     while unit * WIDTH * 3 / 2 < count {
         unit *= WIDTH;
@@ -148,7 +148,7 @@ fn middle(count: usize, most: usize, unit: usize) -> Option<usize> {
 /// divided along the longest side of their centroids' box, again and again.
 fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
     let Some(middle) = middle(items.len(), most, unit) else {
-        if items.len() > LEAF {
+        if items.len() > BLOCK {
             arrange(items, WIDTH, full_subtree(items.len()));
         }
         return;

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
 /// triangles.
 ///
-/// The engine keeps the mesh and a hierarchy of its own, 16 children and eight triangles wide, in single precision;
+/// The engine keeps the mesh and a hierarchy of its own, 16 children and 16 triangles wide, in single precision;
 /// what rounding leaves in question is measured in double precision, so the answers are those of
 /// [`Exhaustive`](crate::proximity::Exhaustive). Where single precision is too coarse, because a triangle or the robot
 /// lies very far out, a second hierarchy in double precision takes its place; it is built when first needed.

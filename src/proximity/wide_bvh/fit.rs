@@ -4,7 +4,7 @@ use super::bound::NodeBound;
 use super::node::Leaf;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Scalar, Vec3};
-use crate::proximity::triangle_block::{LEAF, load_vertices, splat};
+use crate::proximity::triangle_block::{BLOCK, load_vertices, splat};
 
 /// The directions of a box's sides across its normal that are tried: the angle from the first one in turns of a right
 /// angle, by its cosine and sine.
@@ -78,8 +78,8 @@ where
 {
     let mut area = Vec3::zero(L::splat(token, L::Element::default()));
     for leaf in leaves {
-        for lane in (0..LEAF).step_by(L::LANES) {
-            let [a, b, c] = load_vertices::<L, LEAF>(token, &leaf.rows, lane);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let [a, b, c] = load_vertices::<L>(token, &leaf.rows, lane);
             area = area + (b - a).cross(c - a);
         }
     }
@@ -96,8 +96,8 @@ where
     let far = L::splat(token, L::Element::round(1.0e9 * L::Element::FARTHEST));
     let (mut low, mut high) = (far, -far);
     for leaf in leaves {
-        for lane in (0..LEAF).step_by(L::LANES) {
-            for corner in load_vertices::<L, LEAF>(token, &leaf.rows, lane) {
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            for corner in load_vertices::<L>(token, &leaf.rows, lane) {
                 let along = corner.dot(axis);
                 (low, high) = (low.min(along), high.max(along));
             }
@@ -117,7 +117,7 @@ fn fold<L: Pack>(row: L, both: impl Fn(L::Element, L::Element) -> L::Element) ->
 where
     L::Element: Lane,
 {
-    let mut lanes = [L::Element::default(); LEAF];
+    let mut lanes = [L::Element::default(); BLOCK];
     row.store(&mut lanes);
     let mut count = L::LANES;
     // In halves, so that no lane waits for another.

@@ -10,7 +10,7 @@ use crate::proximity::link_lanes::LinkLanes;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::near_triangle::{NearTriangle, NearTriangles};
 use crate::proximity::search_frame::SearchLink;
-use crate::proximity::triangle_block::{BLOCK, LEAF, first_of_face, load_vertices};
+use crate::proximity::triangle_block::{BLOCK, first_of_face, load_vertices};
 use fearless_simd::Level;
 
 /// Where triangles are gathered.
@@ -21,7 +21,7 @@ pub(super) struct Gathering<'a, E> {
     across: Option<&'a Across<E>>,
     found: &'a mut NearTriangles,
     /// Those that wait, in rows like those of a leaf.
-    rows: [[E; BLOCK]; 9],
+    rows: [E; 9 * BLOCK],
     triangles: [u32; BLOCK],
     /// Which corner of each stands first.
     firsts: [usize; BLOCK],
@@ -37,7 +37,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
         across: Option<&'a Across<E>>,
         found: &'a mut NearTriangles,
     ) -> Self {
-        let (rows, triangles, firsts) = ([[E::default(); BLOCK]; 9], [0; BLOCK], [0; BLOCK]);
+        let (rows, triangles, firsts) = ([E::default(); 9 * BLOCK], [0; BLOCK], [0; BLOCK]);
         Self { level, searched, across, found, rows, triangles, firsts, waiting: 0, computed: 0 }
     }
 
@@ -56,14 +56,14 @@ impl<'a, E: Lane> Gathering<'a, E> {
         let across = self.across.map(|across| across.of(number, tree, mesh));
         let (mut in_question, mut slopes) = (0, 0);
         let (limit_of_all, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
-        for lane in (0..LEAF).step_by(L::LANES) {
-            let vertices = load_vertices(token, &leaf.rows, lane);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
             let near = lanes.not_behind_plane(vertices, limit_of_all);
             in_question |= near << lane;
             if near != 0
                 && let Some(across) = across
             {
-                let across = load_vertices(token, &across.rows, lane);
+                let across = load_vertices::<L>(token, &across.rows, lane);
                 slopes |= (near & lanes.on_slope(vertices, across, error)) << lane;
             }
         }
@@ -76,7 +76,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
             if lane > 0 && leaf.triangles[lane - 1] == leaf.triangles[lane] {
                 continue;
             }
-            for (row, from) in self.rows.iter_mut().zip(&leaf.rows) {
+            for (row, from) in self.rows.chunks_exact_mut(BLOCK).zip(leaf.rows.chunks_exact(BLOCK)) {
                 row[self.waiting] = from[lane];
             }
             self.triangles[self.waiting] = leaf.triangles[lane];
@@ -114,7 +114,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
         let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
         for first in (0..self.waiting).step_by(L::LANES) {
             self.computed += L::LANES as u64;
-            let vertices = load_vertices(token, &self.rows, first);
+            let vertices = load_vertices::<L>(token, &self.rows, first);
             let (bounds, feet) = lanes.nearer_and_feet(vertices, limit, error);
             bounds.lower.store(&mut lower);
             bounds.upper.store(&mut upper);

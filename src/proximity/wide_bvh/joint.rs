@@ -16,7 +16,7 @@ use crate::proximity::mesh::Mesh;
 use crate::proximity::pair_lanes::TOGETHER;
 use crate::proximity::placed::{Best, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
-use crate::proximity::triangle_block::{LEAF, load_vertices};
+use crate::proximity::triangle_block::{BLOCK, load_vertices};
 use crate::robot::{LinkNode, place_of_leaf};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -146,15 +146,11 @@ impl<E: Lane> JointSearch<'_, E> {
         {
             waiting.push(Pair { run, child: Child::Leaf(leaf).pack(), size: zero, apart: zero });
         }
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>, E::PackOfEight<_>>(simd))
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
 
     #[inline(always)]
-    fn descend<L, M>(&mut self, token: L::Token) -> Verdict
-    where
-        L: Pack<Element = E>,
-        M: Pack<Element = E, Token = L::Token>,
-    {
+    fn descend<L: Pack<Element = E>>(&mut self, token: L::Token) -> Verdict {
         while let Some(pair) = self.pairs.waiting.pop() {
             if self.pairs.runs[pair.run as usize].query != self.pairs.query && self.place(pair.run).is_none()
             {
@@ -169,7 +165,7 @@ impl<E: Lane> JointSearch<'_, E> {
                 }
                 Child::Leaf(leaf) => {
                     if !(pair.size.lit(LEAF_SHARE) * pair.size < size && self.part(pair))
-                        && self.visit_leaf::<M>(token, leaf, pair)
+                        && self.visit_leaf::<L>(token, leaf, pair)
                     {
                         self.pairs.last = Some((pair.run, leaf));
                         return Verdict::Near;
@@ -250,7 +246,7 @@ impl<E: Lane> JointSearch<'_, E> {
     /// is about as wide as the triangles are large, so that their planes tell as much.)
     #[inline(always)]
     fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, pair: Pair<E>) -> bool {
-        self.work.visited += LEAF as u64;
+        self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
         let placed = &self.pairs.runs[pair.run as usize];
         let lanes = LinkLanes::<L>::new(token, &placed.searched);
@@ -260,8 +256,8 @@ impl<E: Lane> JointSearch<'_, E> {
             LinkNode::Inner { .. } => None,
         };
         let is_long = link.is_none() && pair.size <= placed.size;
-        for lane in (0..LEAF).step_by(L::LANES) {
-            let vertices = load_vertices(token, &leaf.rows, lane);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
             if link.is_some() && lanes.has_centre_within(vertices, certain) {
                 return true;
             }

@@ -8,7 +8,7 @@ use super::hierarchy::MeshSearch;
 use super::kept_distances::KeptDistances;
 use crate::proximity::Work;
 use crate::proximity::placed::{Best, Nearest, PlacedRobot};
-use crate::proximity::triangle_block::LEAF;
+use crate::proximity::triangle_block::BLOCK;
 use crate::robot::{BoundingCapsule, LinkNode, distance_to_segment};
 use parry3d_f64::math::Real;
 use std::ops::Range;
@@ -48,7 +48,7 @@ impl<'a> MinimumSearch<'a> {
     /// How many nodes and leaves were visited since the engine was built.
     fn visited(&self) -> u64 {
         let Work { nodes, visited, .. } = self.search.scratch.work;
-        nodes + visited / LEAF as u64
+        nodes + visited / BLOCK as u64
     }
 
     fn find(&mut self, last: Option<(usize, u32)>) {

@@ -1,4 +1,4 @@
-//! A node of the hierarchy with its up to 16 children, and a leaf with its up to eight triangles.
+//! A node of the hierarchy with its up to 16 children, and a leaf with its up to 16 triangles.
 
 use super::bound::{BOUND_ROWS, NodeBound, NodeBounds};
 #[cfg(test)]
@@ -6,11 +6,11 @@ use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::search_frame::SearchFrame;
-use crate::proximity::triangle_block::{LEAF, load, place_face};
+use crate::proximity::triangle_block::{BLOCK, load, place_face};
 use std::ops::Range;
 
-/// How many children a node has: the widest pack, so that any narrower one divides it.
-pub(super) const WIDTH: usize = 16;
+/// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.
+pub(super) const WIDTH: usize = BLOCK;
 
 /// A child's number, and what it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Child {
 #[repr(align(64))]
 pub(super) struct Node<E> {
     /// Rows of centre, half extents, normal and tangent, three numbers each; see [`NodeBounds`].
-    rows: [[E; WIDTH]; BOUND_ROWS],
+    rows: [E; BOUND_ROWS * WIDTH],
     pub children: [u32; WIDTH],
     /// The lowest number of a triangle below each child.
     pub lowest: [u32; WIDTH],
@@ -58,14 +58,14 @@ pub(super) struct Node<E> {
     count: usize,
 }
 
-/// Up to eight triangles. Aligned like a node.
+/// Up to 16 triangles. Aligned like a node.
 #[derive(Clone)]
 #[repr(align(64))]
 pub(super) struct Leaf<E> {
     /// Rows of the coordinates of three vertices, in the order in which a [`Face`](crate::distance::Face) has them; lanes
     /// without a triangle repeat the last one.
-    pub rows: [[E; LEAF]; 9],
-    pub triangles: [u32; LEAF],
+    pub rows: [E; 9 * BLOCK],
+    pub triangles: [u32; BLOCK],
 }
 
 impl<E: Lane> Node<E> {
@@ -79,7 +79,7 @@ impl<E: Lane> Node<E> {
             _ => zero,
         };
         Self {
-            rows: std::array::from_fn(|number| [row(number); WIDTH]),
+            rows: std::array::from_fn(|slot| row(slot / WIDTH)),
             children: [0; WIDTH],
             lowest: [u32::MAX; WIDTH],
             largest: zero,
@@ -97,13 +97,13 @@ impl<E: Lane> Node<E> {
     pub(super) fn set_bound(&mut self, child: usize, bound: &NodeBound<E>) {
         let rows = [bound.centre, bound.half, bound.normal, bound.tangent].map(<[E; 3]>::from);
         for (row, value) in rows.into_iter().flatten().enumerate() {
-            self.rows[row][child] = value;
+            self.rows[row * WIDTH + child] = value;
         }
     }
 
     #[cfg(test)]
     fn bound(&self, child: usize) -> NodeBound<E> {
-        let at = |row: usize| self.rows[row][child];
+        let at = |row: usize| self.rows[row * WIDTH + child];
         let point = |row: usize| Vec3::new(at(row), at(row + 1), at(row + 2));
         NodeBound { centre: point(0), half: point(3), normal: point(6), tangent: point(9) }
     }
@@ -111,7 +111,7 @@ impl<E: Lane> Node<E> {
     /// The largest side of a child's box.
     #[inline(always)]
     pub(super) fn size(&self, child: usize) -> E {
-        let half = |axis: usize| self.rows[3 + axis][child];
+        let half = |axis: usize| self.rows[(3 + axis) * WIDTH + child];
         let largest = half(0).max(half(1)).max(half(2));
         largest + largest
     }
@@ -141,21 +141,21 @@ impl<E: Lane> Node<E> {
 }
 
 impl<E: Lane> Leaf<E> {
-    /// Of up to eight triangles and at least one; the last is repeated in the lanes that are left.
+    /// Of up to 16 triangles and at least one; the last is repeated in the lanes that are left.
     pub(super) fn of(triangles: impl Fn(usize) -> u32, count: usize) -> Self {
         let triangles = std::array::from_fn(|lane| triangles(lane.min(count - 1)));
-        Self { rows: [[E::default(); LEAF]; 9], triangles }
+        Self { rows: [E::default(); 9 * BLOCK], triangles }
     }
 
     /// The triangles, each once.
     pub(super) fn triangles(&self) -> impl Iterator<Item = u32> + Clone {
         let is_first = |&lane: &usize| lane == 0 || self.triangles[lane] != self.triangles[lane - 1];
-        (0..LEAF).filter(is_first).map(|lane| self.triangles[lane])
+        (0..BLOCK).filter(is_first).map(|lane| self.triangles[lane])
     }
 
     /// Takes over where the triangles are.
     pub(super) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
-        for lane in 0..LEAF {
+        for lane in 0..BLOCK {
             place_face(frame, mesh, self.triangles[lane], &mut self.rows, lane);
         }
     }

@@ -10,7 +10,7 @@ use super::across::Across;
 use super::build::WideBvh;
 use super::candidates::bring_forward;
 use super::gathering::Gathering;
-use super::node::{Child, Node, WIDTH};
+use super::node::{Child, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
@@ -20,7 +20,7 @@ use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::pair_lanes::TOGETHER;
 use crate::proximity::placed::{Best, PlacedLink};
 use crate::proximity::search_frame::SearchLink;
-use crate::proximity::triangle_block::{LEAF, load_vertices};
+use crate::proximity::triangle_block::{BLOCK, load_vertices};
 use fearless_simd::Level;
 
 /// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
@@ -36,8 +36,6 @@ const FEW: usize = TOGETHER / 2;
 pub(super) struct Stack<E> {
     /// Children that wait for their turn, the nearest last.
     waiting: Vec<(E, u32)>,
-    /// Nodes that wait where their order does not matter.
-    nodes: Vec<u32>,
     /// Triangles that may be the nearest, with their lower bounds.
     candidates: Vec<(E, u32)>,
 }
@@ -58,16 +56,18 @@ struct Target<'a, E> {
     limit: E,
     /// What its number must be below.
     below: u32,
-    aim: Aim<'a>,
+    aim: Aim<'a, E>,
 }
 
-enum Aim<'a> {
+enum Aim<'a, E> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
     About(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
+    /// Every triangle that may be within the limit.
+    Every(Gathering<'a, E>),
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -85,6 +85,7 @@ impl<E: Lane> Target<'_, E> {
             // Once a triangle overlaps, the limit is 0 and nothing is below it.
             Aim::About(_, leaves) => *leaves == 0,
             Aim::Any(found) => *found,
+            Aim::Every(_) => false,
         }
     }
 }
@@ -188,52 +189,21 @@ impl<E: Lane> Traversal<'_, E> {
         found: &mut NearTriangles,
     ) {
         let limit = searched.axis_limit(bound);
-        let mut gathering = Gathering::new(self.level, searched, across, found);
-        dispatch!(self.level, simd => self.gather::<E::Pack<_>, E::PackOfEight<_>>(simd, searched, limit, &mut gathering));
-        self.work.axis_distances += gathering.finish(limit);
-    }
-
-    /// Meets every leaf that may hold a triangle within the limit, in the order in which they come.
-    #[inline(always)]
-    fn gather<L: Pack<Element = E>, M: Pack<Element = E, Token = L::Token>>(
-        &mut self,
-        token: L::Token,
-        searched: &SearchLink<E>,
-        limit: E,
-        gathering: &mut Gathering<E>,
-    ) {
-        let (lanes, for_leaves) =
-            (LinkLanes::<L>::new(token, searched), LinkLanes::<M>::new(token, searched));
-        let limit_of_bounds = searched.limit_of_bounds(limit);
-        let squared_limit = limit_of_bounds * limit_of_bounds;
-        let waiting = &mut self.stack.nodes;
-        waiting.clear();
-        waiting.push(0);
-        while let Some(node) = waiting.pop() {
-            self.work.nodes += 1;
-            let node = &self.tree.nodes[node as usize];
-            let mut near = near_children(token, node, &lanes, searched, squared_limit).0;
-            while near != 0 {
-                let child = near.trailing_zeros() as usize;
-                near &= near - 1;
-                match Child::unpack(node.children[child]) {
-                    Child::Node(node) => waiting.push(node),
-                    Child::Leaf(leaf) => {
-                        self.work.visited += LEAF as u64;
-                        gathering.add(token, &for_leaves, self.tree, leaf, self.mesh, limit);
-                    }
-                }
-            }
+        let aim = Aim::Every(Gathering::new(self.level, searched, across, found));
+        let mut target = Target { searched, limit, below: u32::MAX, aim };
+        self.search(&mut target, [None; 2]);
+        if let Aim::Every(gathering) = target.aim {
+            self.work.axis_distances += gathering.finish(limit);
         }
     }
 
     #[inline(never)] // compiled for each instruction set, not for each aim as well
     fn search(&mut self, target: &mut Target<E>, start: [Option<u32>; 2]) {
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>, E::PackOfEight<_>>(simd, target, start));
+        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
     }
 
     #[inline(always)]
-    fn descend<L: Pack<Element = E>, M: Pack<Element = E, Token = L::Token>>(
+    fn descend<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         target: &mut Target<E>,
@@ -263,13 +233,19 @@ impl<E: Lane> Traversal<'_, E> {
             match Child::unpack(child) {
                 Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
-                Child::Leaf(leaf) => self.visit_leaf::<M>(token, leaf, target),
+                Child::Leaf(leaf) => match &mut target.aim {
+                    Aim::Every(gathering) => {
+                        self.work.visited += BLOCK as u64;
+                        gathering.add(token, &lanes, self.tree, leaf, self.mesh, target.limit);
+                    }
+                    _ => self.visit_leaf(token, &lanes, leaf, target),
+                },
             }
         }
     }
 
     fn leaf_of(&self, triangle: Option<u32>) -> Option<u32> {
-        self.tree.place_of.get(triangle? as usize).map(|place| place / LEAF as u32)
+        self.tree.place_of.get(triangle? as usize).map(|place| place / BLOCK as u32)
     }
 
     /// Puts the children that may hold a nearer triangle on the stack, the nearest on top.
@@ -283,8 +259,16 @@ impl<E: Lane> Traversal<'_, E> {
     ) {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
-        let squared_limit = target.squared_limit_of_bounds();
-        let (mut near, bounds) = near_children(token, node, lanes, target.searched, squared_limit);
+        let limit = L::splat(token, target.squared_limit_of_bounds());
+        // A link that is shorter than the children does not pass beside them slantwise.
+        let plane_tells = node.largest < target.searched.length;
+        let mut bounds = [E::default(); WIDTH];
+        let mut near = 0;
+        for lane in (0..WIDTH).step_by(L::LANES) {
+            let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
+            squared.store(&mut bounds[lane..]);
+            near |= L::bits(squared.lt(limit)) << lane;
+        }
         let waiting = &mut self.stack.waiting;
         let bottom = waiting.len();
         while near != 0 {
@@ -307,15 +291,20 @@ impl<E: Lane> Traversal<'_, E> {
 
     /// Makes candidates of the leaf's triangles that may be nearest.
     #[inline(always)]
-    fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, target: &mut Target<E>) {
-        self.work.visited += LEAF as u64;
+    fn visit_leaf<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        lanes: &LinkLanes<L>,
+        leaf: u32,
+        target: &mut Target<E>,
+    ) {
+        self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
-        let lanes = LinkLanes::<L>::new(token, target.searched);
-        let (mut lower, mut upper) = ([E::default(); LEAF], [E::default(); LEAF]);
+        let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
         let mut near = 0;
         let limit = L::splat(token, target.limit);
-        for lane in (0..LEAF).step_by(L::LANES) {
-            let vertices = load_vertices(token, &leaf.rows, lane);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
             if lanes.not_behind_plane(vertices, limit) == 0 {
                 continue;
             }
@@ -332,6 +321,7 @@ impl<E: Lane> Traversal<'_, E> {
                 return;
             }
             Aim::About(_, leaves) => *leaves -= 1,
+            Aim::Every(_) => return,
             Aim::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
@@ -403,29 +393,4 @@ impl<E: Lane> Traversal<'_, E> {
             target.below = best.wanted_below();
         }
     }
-}
-
-/// Which children of a node have a squared bound below a limit, one bit each, and the squared bounds.
-#[inline(always)]
-fn near_children<L: Pack>(
-    token: L::Token,
-    node: &Node<L::Element>,
-    lanes: &LinkLanes<L>,
-    searched: &SearchLink<L::Element>,
-    squared_limit: L::Element,
-) -> (u64, [L::Element; WIDTH])
-where
-    L::Element: Lane,
-{
-    let limit = L::splat(token, squared_limit);
-    // A link that is shorter than the children does not pass beside them slantwise.
-    let plane_tells = node.largest < searched.length;
-    let mut bounds = [L::Element::default(); WIDTH];
-    let mut near = 0;
-    for lane in (0..WIDTH).step_by(L::LANES) {
-        let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
-        squared.store(&mut bounds[lane..]);
-        near |= L::bits(squared.lt(limit)) << lane;
-    }
-    (near, bounds)
 }
