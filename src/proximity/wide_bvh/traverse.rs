@@ -10,7 +10,7 @@ use super::across::Across;
 use super::build::WideBvh;
 use super::candidates::bring_forward;
 use super::gathering::Gathering;
-use super::node::{Child, WIDTH};
+use super::node::{Child, Node, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::proximity::Work;
@@ -36,6 +36,8 @@ const FEW: usize = TOGETHER / 2;
 pub(super) struct Stack<E> {
     /// Children that wait for their turn, the nearest last.
     waiting: Vec<(E, u32)>,
+    /// Nodes that wait where their order does not matter.
+    nodes: Vec<u32>,
     /// Triangles that may be the nearest, with their lower bounds.
     candidates: Vec<(E, u32)>,
 }
@@ -56,18 +58,16 @@ struct Target<'a, E> {
     limit: E,
     /// What its number must be below.
     below: u32,
-    aim: Aim<'a, E>,
+    aim: Aim<'a>,
 }
 
-enum Aim<'a, E> {
+enum Aim<'a> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
     About(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
-    /// Every triangle that may be within the limit.
-    Every(Gathering<'a, E>),
 }
 
 impl<E: Lane> Target<'_, E> {
@@ -85,7 +85,6 @@ impl<E: Lane> Target<'_, E> {
             // Once a triangle overlaps, the limit is 0 and nothing is below it.
             Aim::About(_, leaves) => *leaves == 0,
             Aim::Any(found) => *found,
-            Aim::Every(_) => false,
         }
     }
 }
@@ -189,11 +188,41 @@ impl<E: Lane> Traversal<'_, E> {
         found: &mut NearTriangles,
     ) {
         let limit = searched.axis_limit(bound);
-        let aim = Aim::Every(Gathering::new(self.level, searched, across, found));
-        let mut target = Target { searched, limit, below: u32::MAX, aim };
-        self.search(&mut target, [None; 2]);
-        if let Aim::Every(gathering) = target.aim {
-            self.work.axis_distances += gathering.finish(limit);
+        let mut gathering = Gathering::new(self.level, searched, across, found);
+        dispatch!(self.level, simd => self.gather::<E::Pack<_>>(simd, searched, limit, &mut gathering));
+        self.work.axis_distances += gathering.finish(limit);
+    }
+
+    /// Meets every leaf that may hold a triangle within the limit, in the order in which they come.
+    #[inline(always)]
+    fn gather<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        searched: &SearchLink<E>,
+        limit: E,
+        gathering: &mut Gathering<E>,
+    ) {
+        let lanes = LinkLanes::<L>::new(token, searched);
+        let limit_of_bounds = searched.limit_of_bounds(limit);
+        let squared_limit = limit_of_bounds * limit_of_bounds;
+        let waiting = &mut self.stack.nodes;
+        waiting.clear();
+        waiting.push(0);
+        while let Some(node) = waiting.pop() {
+            self.work.nodes += 1;
+            let node = &self.tree.nodes[node as usize];
+            let mut near = near_children(token, node, &lanes, searched, squared_limit).0;
+            while near != 0 {
+                let child = near.trailing_zeros() as usize;
+                near &= near - 1;
+                match Child::unpack(node.children[child]) {
+                    Child::Node(node) => waiting.push(node),
+                    Child::Leaf(leaf) => {
+                        self.work.visited += BLOCK as u64;
+                        gathering.add(token, &lanes, self.tree, leaf, self.mesh, limit);
+                    }
+                }
+            }
         }
     }
 
@@ -233,13 +262,7 @@ impl<E: Lane> Traversal<'_, E> {
             match Child::unpack(child) {
                 Child::Node(node) => self.visit_node(token, &lanes, node, target),
                 Child::Leaf(leaf) if squared >= zero && start.contains(&Some(leaf)) => {}
-                Child::Leaf(leaf) => match &mut target.aim {
-                    Aim::Every(gathering) => {
-                        self.work.visited += BLOCK as u64;
-                        gathering.add(token, &lanes, self.tree, leaf, self.mesh, target.limit);
-                    }
-                    _ => self.visit_leaf(token, &lanes, leaf, target),
-                },
+                Child::Leaf(leaf) => self.visit_leaf(token, &lanes, leaf, target),
             }
         }
     }
@@ -259,16 +282,8 @@ impl<E: Lane> Traversal<'_, E> {
     ) {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
-        let limit = L::splat(token, target.squared_limit_of_bounds());
-        // A link that is shorter than the children does not pass beside them slantwise.
-        let plane_tells = node.largest < target.searched.length;
-        let mut bounds = [E::default(); WIDTH];
-        let mut near = 0;
-        for lane in (0..WIDTH).step_by(L::LANES) {
-            let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
-            squared.store(&mut bounds[lane..]);
-            near |= L::bits(squared.lt(limit)) << lane;
-        }
+        let squared_limit = target.squared_limit_of_bounds();
+        let (mut near, bounds) = near_children(token, node, lanes, target.searched, squared_limit);
         let waiting = &mut self.stack.waiting;
         let bottom = waiting.len();
         while near != 0 {
@@ -321,7 +336,6 @@ impl<E: Lane> Traversal<'_, E> {
                 return;
             }
             Aim::About(_, leaves) => *leaves -= 1,
-            Aim::Every(_) => return,
             Aim::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
@@ -393,4 +407,29 @@ impl<E: Lane> Traversal<'_, E> {
             target.below = best.wanted_below();
         }
     }
+}
+
+/// Which children of a node have a squared bound below a limit, one bit each, and the squared bounds.
+#[inline(always)]
+fn near_children<L: Pack>(
+    token: L::Token,
+    node: &Node<L::Element>,
+    lanes: &LinkLanes<L>,
+    searched: &SearchLink<L::Element>,
+    squared_limit: L::Element,
+) -> (u64, [L::Element; WIDTH])
+where
+    L::Element: Lane,
+{
+    let limit = L::splat(token, squared_limit);
+    // A link that is shorter than the children does not pass beside them slantwise.
+    let plane_tells = node.largest < searched.length;
+    let mut bounds = [L::Element::default(); WIDTH];
+    let mut near = 0;
+    for lane in (0..WIDTH).step_by(L::LANES) {
+        let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
+        squared.store(&mut bounds[lane..]);
+        near |= L::bits(squared.lt(limit)) << lane;
+    }
+    (near, bounds)
 }
