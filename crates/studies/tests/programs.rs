@@ -119,7 +119,7 @@ fn speed_is_measured_drawn_and_quoted() {
     assert_eq!(of, ["ventricle", "cavity", "vessel"]);
     for row in &planner {
         let [touching, free] = [2, 6].map(|column| row[column].parse::<u32>().unwrap());
-        assert!(touching > 100 && free > 100 && touching + free == 1500, "{row:?}");
+        assert!(touching > 100 && free > 100 && touching + free == 10_000, "{row:?}");
     }
     assert_eq!(table(&page, "| scene | triangles | one thread |").len(), 3);
     assert!(page.contains("6,000 triangles divided in four once"), "{page}");
