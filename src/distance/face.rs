@@ -91,6 +91,13 @@ impl<T: Scalar> Face<T> {
         self.across * norm.one().over(norm)
     }
 
+    /// The height above the longest edge; zero without one.
+    #[inline(always)]
+    pub(crate) fn height(&self) -> T {
+        let [_, from, to] = self.vertices;
+        self.across.norm().over((to - from).norm())
+    }
+
     /// Whether the triangle has an area.
     #[inline(always)]
     fn has_area(&self) -> T::Mask {

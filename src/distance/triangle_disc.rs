@@ -12,6 +12,9 @@
 
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
+/// How far rounding may bring a point of the triangle from it, in units of u and numbers near one.
+const ROUNDING: f64 = 32.0;
+
 /// The distance between a triangle and a solid disc with the given centre, normal (of any length but 0) and
 /// radius; (22) to (25).
 #[inline(always)]
@@ -53,7 +56,10 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     let plane_normal = face.normal();
     let nearest = plane_disc::from_centre(plane_normal.dot(a), plane_normal, normal, radius);
     let projection = face.project(nearest.point);
-    let crosses = nearest.distance.le(radius.zero());
+    // A sliver whose height is rounding may seem to hold what is far from it; but no point of a triangle is farther from
+    // its longest edge than its height.
+    let within_height = edges.distance.le(face.height() + radius.lit(ROUNDING * T::UNIT_ROUNDOFF));
+    let crosses = nearest.distance.le(radius.zero()) & within_height;
     let apart = Closest {
         distance: projection.residual.norm(),
         point1: face.at(projection.alpha, projection.beta),

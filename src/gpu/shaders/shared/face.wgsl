@@ -90,6 +90,11 @@ fn face_at(face: Face, alpha: real, beta: real) -> vec3<real> {
     return along(along(face.a, face.b - face.a, alpha), face.c - face.a, beta);
 }
 
+// The height above the longest edge; zero without one.
+fn face_height(face: Face) -> real {
+    return over(norm(face.across), norm(face.c - face.b));
+}
+
 // Whether a point of the plane lies in the triangle.
 fn face_holds_point(face: Face, point: vec3<real>, rounding: real) -> bool {
     let relative = point - face.a;

@@ -1,7 +1,14 @@
 // Triangle against disc: the twin of distance/triangle_disc.rs, which has the cases.
 
+// How far rounding may bring a point of the triangle from it, in units of u and numbers near one.
+const TRIANGLE_DISC_ROUNDING = real(32.0);
+
 // For a disc around the origin, a unit normal and numbers near one.
 fn triangle_disc_from_centre(face: Face, normal: vec3<real>, radius: real) -> Closest {
+    // Case 1.
+    var edges = segment_disc_from_centre(face.a, face.b, normal, radius);
+    edges = closest_nearer(edges, segment_disc_from_centre(face.b, face.c, normal, radius));
+    edges = closest_nearer(edges, segment_disc_from_centre(face.c, face.a, normal, radius));
     // Cases 2 and 3.
     let plane_normal = face_normal(face);
     let nearest = plane_disc_from_centre(dot(plane_normal, face.a), plane_normal, normal, radius);
@@ -12,12 +19,8 @@ fn triangle_disc_from_centre(face: Face, normal: vec3<real>, radius: real) -> Cl
         nearest.point,
     );
     let meeting = Closest(real(0.0), nearest.point, nearest.point);
-    let face_answer = closest_select(nearest.distance <= real(0.0), meeting, apart);
-
-    // Case 1.
-    var edges = segment_disc_from_centre(face.a, face.b, normal, radius);
-    edges = closest_nearer(edges, segment_disc_from_centre(face.b, face.c, normal, radius));
-    edges = closest_nearer(edges, segment_disc_from_centre(face.c, face.a, normal, radius));
+    let within_height = edges.distance <= face_height(face) + TRIANGLE_DISC_ROUNDING * UNIT_ROUNDOFF;
+    let face_answer = closest_select(nearest.distance <= real(0.0) && within_height, meeting, apart);
     return closest_select(projection.inside && face_answer.distance <= edges.distance, face_answer, edges);
 }
 
