@@ -1,4 +1,5 @@
-//! The nearest triangle of one link: nearer children first.
+//! The nearest triangle of one link: nearer children first. Where every triangle within a limit is wanted, their order
+//! does not matter.
 //!
 //! All comparisons are in the precision of the search and of distances from the axis, the link's own distance and its
 //! radius. Where no flat cap decides that is the axis distance F; beyond a flat cap it lies between two bounds. A
