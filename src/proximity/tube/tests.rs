@@ -121,18 +121,24 @@ fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     let section = &tube.sections()[number];
     let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
     let end = start + arcs.stretches[number].length;
-    let from_disc = |s: Real| {
-        let (centre, tangent) = arcs.at(s);
-        let ahead = (x - centre).dot(tangent);
-        let across = (x - centre - tangent * ahead).length();
-        ahead.hypot((across - section.radius).max(0.0))
-    };
-    let mut least = Real::INFINITY;
+    let mut least = distance_from_discs(arcs, [start, end], section.radius, x);
     for (end, s) in [start, end].into_iter().enumerate() {
         if section.faces[end].is_none() {
             least = least.min(((x - arcs.at(s).0).length() - section.radius).max(0.0));
         }
     }
+    least
+}
+
+/// The distance of a point from the discs across the centreline between two arc lengths.
+fn distance_from_discs(arcs: &Arcs, [start, end]: [Real; 2], radius: Real, x: Vector) -> Real {
+    let from_disc = |s: Real| {
+        let (centre, tangent) = arcs.at(s);
+        let ahead = (x - centre).dot(tangent);
+        let across = (x - centre - tangent * ahead).length();
+        ahead.hypot((across - radius).max(0.0))
+    };
+    let mut least = Real::INFINITY;
     // Every local minimum of the first sampling, and around it closer and closer.
     let first = |k: i32| start + (end - start) * Real::from(k.clamp(0, 800)) / 800.0;
     for k in 0..=800 {
@@ -186,4 +192,52 @@ fn witnesses_are_no_nearer_than_the_tube() {
     }
     assert!(checked > 3_000 && touching > 300 && ahead > 300, "{checked} {touching} {ahead}");
     println!("{loose}");
+}
+
+/// What a ball adds to its own section is in the discs of others: the tube is its discs. The joint is about one radius
+/// behind the base, or in front of the tip, and the centreline bends.
+#[test]
+fn balls_at_round_ends_lie_in_discs() {
+    let mut random = Random::new(3);
+    let (mut checked, mut beyond) = (0, 0);
+    for _ in 0..400 {
+        let (radius, narrower) = (random.between(0.2, 2.0), random.between(0.9, 1.0));
+        let mut arc = |longest: Real| {
+            let angle = random.between(0.0, 7.0);
+            let bend = Vector::new(angle.cos(), angle.sin(), 0.0) * (random.between(0.3, 0.95) / radius);
+            (radius * random.between(0.9, longest), bend)
+        };
+        let parts = [vec![arc(1.5)], vec![arc(8.0), arc(8.0)]];
+        let is_turned = random.below(2) == 1;
+        let mut arcs = Arcs::from_frame(random.pose(10.0));
+        for part in if is_turned { [1, 0] } else { [0, 1] } {
+            arcs.push(if part == 0 { radius } else { radius * narrower }, &parts[part]);
+        }
+        let arcs = Arc::new(arcs);
+        let joint = arcs.stretches[0].length;
+        let stretches =
+            [([0.0, joint], arcs.stretches[0].radius), ([joint, arcs.length()], arcs.stretches[1].radius)];
+        let (near, from_face) = if is_turned { (0, arcs.length()) } else { (1, 0.0) };
+        let (face, normal) = arcs.at(from_face);
+        let normal = if is_turned { normal } else { -normal };
+        let (centre, tangent) = arcs.at(joint);
+        let outward = if is_turned { tangent } else { -tangent };
+        for tube in tubes(&mut random, &arcs) {
+            let section = &tube.sections()[near];
+            if section.faces[1 - near].is_some() {
+                continue;
+            }
+            for k in 0..4 {
+                let to = (normal * Real::from(k) + random.direction()).normalize();
+                let to = if to.dot(outward) < 0.0 { -to } else { to };
+                let x = centre + to * section.radius;
+                let beside = stretches.map(|(ends, radius)| distance_from_discs(&arcs, ends, radius, x));
+                let apart = beside[0].min(beside[1]);
+                assert!(apart <= 1e-6 * radius, "{apart} from {x} to {:?}", arcs.stretches);
+                checked += 1;
+                beyond += usize::from((x - face).dot(normal) > -0.1 * radius);
+            }
+        }
+    }
+    assert!(checked > 1_200 && beyond > 120, "{checked} {beyond}");
 }

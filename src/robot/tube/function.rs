@@ -5,9 +5,9 @@ use super::lasting::Lasting;
 use super::section::{Face, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
+use crate::robot::RobotError;
 use crate::robot::modified_cylinder::{check_points, check_radii};
 use crate::robot::scale::direction;
-use crate::robot::{Cap, RobotError};
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
 
@@ -78,15 +78,16 @@ impl Tube {
             });
             start = end;
         }
-        let centre =
-            |section: &Section, end: usize| section.faces[end].map_or(Vector::ZERO, |face| face.centre);
-        let ends = tube.sections.iter().flat_map(|section| [0, 1].map(|end| centre(section, end)));
+        let ends = tube.sections.iter().flat_map(|section| section.faces).flatten().map(|face| face.centre);
         tube.reach = ends.fold(0.0, |reach, point| point.abs().max_element().max(reach)) + start;
-        tube.find_caps(centre);
-        for (index, section) in tube.sections.iter_mut().enumerate() {
-            for (face, cap) in section.faces.iter_mut().zip(tube.caps[index]) {
-                *face = face.filter(|_| cap == Cap::Flat);
-            }
+        for end in [0, 1] {
+            tube.walk(end, |tube, number, limit| {
+                let face = tube.sections[number].faces[end];
+                let is_flat = |face: &Face| tube.is_flat(end, number, limit, face.centre);
+                tube.sections[number].faces[end] = face.filter(is_flat);
+            });
+        }
+        for (index, section) in tube.sections.iter().enumerate() {
             check_faces(section, index)?;
         }
         tube.mark_lasting_faces();

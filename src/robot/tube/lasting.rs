@@ -1,9 +1,10 @@
 //! Which flat ends stay flat while the robot moves.
 //!
-//! Algorithm 1 makes an end flat by the radii alone, at the limits of its walks, or because the end is less than a radius
-//! away from the last limit (`algorithm_1`). Radii do not change during a motion. A distance between two points changes
+//! An end is flat by the radii alone, at the limits of the walks of Algorithm 1, or because it is less than a radius away
+//! from the last limit (`algorithm_1`, `faces`). Radii do not change during a motion. A distance between two points changes
 //! by no more than the points move: if it is D at one time and the points are v and w fast, then it is below the radius
-//! for a time tau before and after as long as D + tau (v + w) is.
+//! for a time tau before and after as long as D + tau (v + w) is. An end of a curve that is flat though farther away is
+//! taken for one that may become round.
 //!
 //! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its two vertices' R_k and
 //! R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links' radii is one by the vertices'. Not the other way
@@ -80,21 +81,5 @@ impl Tube {
             });
         }
         opening
-    }
-
-    /// One walk of Algorithm 1: each section with the one at whose end the last limit is.
-    fn walk(&mut self, end: usize, mut visit: impl FnMut(&mut Self, usize, usize)) {
-        let count = self.sections.len();
-        let mut limit_and_last = None::<(usize, Real)>;
-        for step in 0..count {
-            let number = if end == 0 { step } else { count - 1 - step };
-            let radius = self.sections[number].radius;
-            let limit = match limit_and_last {
-                Some((limit, last)) if radius <= last => limit,
-                _ => number,
-            };
-            limit_and_last = Some((limit, radius));
-            visit(self, number, limit);
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
 
 mod curve;
+mod faces;
 mod from_chain;
 mod function;
 mod lasting;
@@ -13,7 +14,7 @@ pub(super) use function::check_sections;
 pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
-use super::{Cap, RobotError, algorithm_1};
+use super::{Cap, RobotError};
 use curve::{Curve, Foot};
 use parry3d_f64::math::{Real, Vector};
 
@@ -23,17 +24,15 @@ use parry3d_f64::math::{Real, Vector};
 /// the robot, and each query says what error it bears. The query divides the tube only as finely as that takes, and its
 /// answer has bounds.
 ///
-/// A section is a stretch with one radius. Its end is flat at the robot's two ends, on the wider side of a step in
-/// radius, and where a round end would stick out of such a face; elsewhere it is round, and a ball stands there, less what
-/// would stick out of the section's own flat end (Algorithm 1 with each section as a link). Lengths are in one unit, points
-/// in the robot's frame.
+/// A section is a stretch with one radius. The tube ends in a flat face at the robot's two ends and on the wider side of a
+/// step in radius. Lengths are in one unit, points in the robot's frame.
 ///
 /// # What is known of the curve
 /// - [`from_samples`](Self::from_samples): the curve goes through the samples and bends nowhere more than they show. A
 ///   curve that turns more sharply between two samples than at any of them is not covered: sample more densely.
 /// - [`from_function`](Self::from_function): the curve is the function, and its curvature in each section is at most
 ///   what is stated. [`verify`](Self::verify) tries that on samples.
-/// - `Tube::from(&chain)`: straight pieces, whose queries have no error but rounding.
+/// - `Tube::from(&chain)`: straight pieces with the chain's caps, whose queries have no error but rounding.
 ///
 /// Errors of a sensor or of the kinematics are added by [`with_error`](Self::with_error).
 ///
@@ -56,9 +55,8 @@ pub struct Tube {
     error: Real,
     /// The largest coordinate of the centreline, or more.
     reach: Real,
-    /// Memory for the next samples: the ends of the sections, their radii and caps.
+    /// Memory for the next links: their ends and caps.
     ends: Vec<Vector>,
-    radii: Vec<Real>,
     caps: Vec<[Cap; 2]>,
 }
 
@@ -69,7 +67,7 @@ impl Clone for Tube {
         tube
     }
 
-    /// In the memory that it has. What is kept for the next samples stays.
+    /// In the memory that it has. What is kept for the next links stays.
     fn clone_from(&mut self, source: &Self) {
         self.curve.clone_from(&source.curve);
         self.sections.clone_from(&source.sections);
@@ -189,16 +187,6 @@ impl Tube {
         self.curve.at_share(section, share)
     }
 
-    /// Which ends of the sections are flat: Algorithm 1 with each section as a link. `end` tells where sections end.
-    fn find_caps(&mut self, end: impl Fn(&Section, usize) -> Vector) {
-        self.ends.clear();
-        self.radii.clear();
-        self.ends.extend(self.sections.iter().map(|section| end(section, 0)));
-        self.ends.extend(self.sections.last().map(|section| end(section, 1)));
-        self.radii.extend(self.sections.iter().map(|section| section.radius));
-        algorithm_1::from_segment_radii(&self.ends, &self.radii, &mut self.caps);
-    }
-
     pub(crate) fn empty() -> Self {
         Self {
             curve: Curve::default(),
@@ -206,7 +194,6 @@ impl Tube {
             error: 0.0,
             reach: 0.0,
             ends: Vec::new(),
-            radii: Vec::new(),
             caps: Vec::new(),
         }
     }

@@ -22,9 +22,9 @@ use super::curve::Curve;
 use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::distance::Scalar;
+use crate::robot::RobotError;
 use crate::robot::chain::check;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
-use crate::robot::{Cap, RobotError};
 use parry3d_f64::math::{Real, Vector};
 
 /// A segment between two samples.
@@ -219,27 +219,30 @@ impl Tube {
         tangents: Option<[Vector; 2]>,
         rounding: Real,
     ) -> Result<(), RobotError> {
-        self.find_caps(|section, end| points[if end == 0 { section.first } else { section.last } as usize]);
         let last = self.sections.len() - 1;
-        for (number, section) in self.sections.iter_mut().enumerate() {
-            let stretch = &points[section.first as usize..=section.last as usize];
-            for end in [0, 1] {
-                if self.caps[number][end] == Cap::Round {
-                    continue;
+        for end in [0, 1] {
+            self.walk(end, |tube, number, limit| {
+                let section = &tube.sections[number];
+                let stretch = &points[section.first as usize..=section.last as usize];
+                let ahead = |k: usize| if end == 0 { stretch[k] } else { stretch[stretch.len() - 1 - k] };
+                let centre = ahead(0);
+                if !tube.is_flat(end, number, limit, centre) {
+                    return;
                 }
                 let given = match (end, tangents) {
                     (0, Some([tangent, _])) if number == 0 => Some(-tangent),
                     (1, Some([_, tangent])) if number == last => Some(tangent),
                     _ => None,
                 };
-                let ahead = |k: usize| if end == 0 { stretch[k] } else { stretch[stretch.len() - 1 - k] };
                 let (outward, tilt) = match given {
                     Some(outward) => (outward, 0.0),
                     None => direction_at_end(ahead, stretch.len(), section.curvature, rounding),
                 };
-                let centre = ahead(0);
-                section.faces[end] = Some(Face { centre, outward, tilt, lasting: Lasting::WhileNear });
-            }
+                tube.sections[number].faces[end] =
+                    Some(Face { centre, outward, tilt, lasting: Lasting::WhileNear });
+            });
+        }
+        for section in &self.sections {
             super::check_faces(section, section.first as usize)?;
         }
         self.mark_lasting_faces();
