@@ -145,6 +145,13 @@ impl<E: Lane> SearchLink<E> {
         limit + self.error + self.error + self.error
     }
 
+    /// The square of [`SearchLink::limit_of_bounds`].
+    #[inline(always)]
+    pub(super) fn squared_limit_of_bounds(&self, limit: E) -> E {
+        let limit = self.limit_of_bounds(limit);
+        limit * limit
+    }
+
     /// What every triangle at most `limit` from the axis is nearer than: the converse of [`SearchLink::axis_limit`].
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =

@@ -75,8 +75,7 @@ impl<E: Lane> Target<'_, E> {
     /// What the squared bound of a child must be below for it to hold a triangle within the limit.
     #[inline(always)]
     fn squared_limit_of_bounds(&self) -> E {
-        let limit = self.searched.limit_of_bounds(self.limit);
-        limit * limit
+        self.searched.squared_limit_of_bounds(self.limit)
     }
 
     /// Whether nothing can change the answer any more.
@@ -204,8 +203,7 @@ impl<E: Lane> Traversal<'_, E> {
         gathering: &mut Gathering<E>,
     ) {
         let lanes = LinkLanes::<L>::new(token, searched);
-        let limit_of_bounds = searched.limit_of_bounds(limit);
-        let squared_limit = limit_of_bounds * limit_of_bounds;
+        let squared_limit = searched.squared_limit_of_bounds(limit);
         let waiting = &mut self.stack.nodes;
         waiting.clear();
         waiting.push(0);
