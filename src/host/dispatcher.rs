@@ -8,6 +8,7 @@ use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_pair::{RobotPair, links_of};
+use super::thin::Thin;
 use super::voxels;
 use super::watched::Watched;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -24,7 +25,7 @@ use parry3d_f64::shape::Shape;
 ///
 /// A link, or a chain, in either order against a
 ///
-/// | | `Triangle`, `TriMesh`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
+/// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
 /// |---|---|---|---|---|
 /// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
@@ -35,7 +36,8 @@ use parry3d_f64::shape::Shape;
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
-/// They are those that `tests/host/pairs.rs` enforces. Links too large or too small for parry's iterations, beyond
+/// They are those that `tests/host/pairs.rs` enforces. Other shapes without a cross-section, a box that is a line, say, count
+/// as segments or triangles. Links too large or too small for parry's iterations, beyond
 /// 2^50 or below 2^-200, are refused in the last column.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
@@ -81,6 +83,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
         check_pose(pos12)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.intersection_test();
         }
@@ -111,6 +115,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
 
     fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
         check_pose(pos12)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.distance();
         }
@@ -144,6 +150,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<Option<Contact>, Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.contact(prediction);
         }
@@ -180,6 +188,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<ClosestPoints, Unsupported> {
         check_pose(pos12)?;
         check_margin(max_dist)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
         }
@@ -215,6 +225,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(options.max_time_of_impact)?;
         check_margin(options.target_distance)?;
         in_range(local_vel12)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
         }
@@ -272,6 +284,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             let at = |share: Real| start_time + share * duration;
             return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
         }
+        let [pose1, pose2] = [motion1, motion2].map(|motion| motion.position_at_time(start_time));
+        let thin = Thin::of(&pose1.inv_mul(&pose2), g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         let times = (start_time, end_time);
         let moving = ((motion1, g1), (motion2, g2));
         if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {

@@ -16,6 +16,7 @@ use super::joint::Side;
 use super::link_triangle::LinkTriangle;
 use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
+use super::thin::Thin;
 use super::watched::Watched;
 use super::{
     joint, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, robot_mesh_manifold,
@@ -70,6 +71,8 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
+        let thin = Thin::of(pos12, g1, g2);
+        let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
         if let Some(pair) = LinkTriangle::of(g1, g2)? {
             return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);

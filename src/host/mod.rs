@@ -36,6 +36,7 @@ mod robot_pair;
 mod separation;
 mod shape;
 mod support_map;
+mod thin;
 mod voxels;
 mod watched;
 

@@ -3,7 +3,7 @@
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::Unsupported;
-use parry3d_f64::shape::Shape;
+use parry3d_f64::shape::{Shape, TypedShape};
 use std::ops::RangeInclusive;
 
 /// From 2^-200 to 2^50. Beyond, numbers lie so far apart that parry's iterations end on tetrahedra without volume.
@@ -11,7 +11,7 @@ const ITERATED_RANGE: RangeInclusive<Real> =
     Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 50) << 52);
 
 /// The least size of a shape beside the largest coordinate that iterations can tell from nothing: 2^-40.
-const LEAST_SHARE: Real = Real::from_bits((1023 - 40) << 52);
+pub(super) const LEAST_SHARE: Real = Real::from_bits((1023 - 40) << 52);
 
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
@@ -32,14 +32,34 @@ pub(super) fn in_range(point: Vector) -> Result<Real, Unsupported> {
     if point.is_finite() && largest <= COORDINATE_LIMIT { Ok(largest) } else { Err(Unsupported) }
 }
 
-/// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
-/// of lengths leave the range of f64, and where the smaller shape is lost in the rounding of what is large.
-pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
+/// The largest coordinate of a pair in the frame of the first shape.
+pub(super) fn largest(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
     let boxes = [g1.compute_local_aabb(), g2.compute_aabb(pos12)];
     let corners = boxes.iter().flat_map(|bounds| [bounds.mins, bounds.maxs]);
-    let largest = corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element();
+    corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element()
+}
+
+/// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
+/// of lengths leave the range of f64, where the smaller shape is lost in the rounding of what is large, and where a
+/// number is not finite.
+pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
+    let largest = largest(pos12, g1, g2);
+    // Each in its own frame: a turned infinity is NaN, which the extremes of a box leave out.
+    let boxes = [g1.compute_local_aabb(), g2.compute_local_aabb()];
     let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
     let sizes = boxes.iter().map(|bounds| bounds.extents().max_element());
     let is_seen = sizes.into_iter().all(|size| size == 0.0 || size >= LEAST_SHARE * largest);
-    is_finite && ITERATED_RANGE.contains(&largest) && is_seen
+    is_finite && has_numbers(g1) && has_numbers(g2) && ITERATED_RANGE.contains(&largest) && is_seen
+}
+
+/// Whether no corner of a shape is NaN, which boxes leave out.
+fn has_numbers(shape: &dyn Shape) -> bool {
+    let is_finite = |points: &[Vector]| points.iter().all(|point| point.is_finite());
+    match shape.as_typed_shape() {
+        TypedShape::Capsule(capsule) => is_finite(&[capsule.segment.a, capsule.segment.b]),
+        TypedShape::RoundTriangle(round) => is_finite(round.inner_shape.vertices()),
+        TypedShape::ConvexPolyhedron(hull) => is_finite(hull.points()),
+        TypedShape::RoundConvexPolyhedron(round) => is_finite(round.inner_shape.points()),
+        _ => true,
+    }
 }

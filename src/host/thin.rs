@@ -1,0 +1,73 @@
+//! Shapes without a cross-section, as the triangles that they are.
+//!
+//! A segment, a rounded triangle with a border of 0, a box that is a line: of the difference of such a shape and a link,
+//! parry's iterations build tetrahedra without volume, and may panic. To this crate they are triangles, most of them without
+//! an area, and triangles are answered exactly. What is thinner than [`LEAST_SHARE`] of the pair's largest coordinate
+//! counts as thin, and its answers are off by that much.
+
+use super::range::{LEAST_SHARE, largest};
+use super::robot_pair::links_of;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::{Shape, Triangle, TypedShape};
+
+/// What stands for the thin shape of a pair whose other shape is a robot.
+pub(super) struct Thin {
+    triangles: [Option<Triangle>; 2],
+}
+
+impl Thin {
+    pub fn of(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Self {
+        let least = || LEAST_SHARE * largest(pos12, g1, g2);
+        let triangles = match [links_of(g1), links_of(g2)] {
+            [Some(_), None] => [None, triangle_of(g2, least)],
+            [None, Some(_)] => [triangle_of(g1, least), None],
+            _ => [None; 2],
+        };
+        Self { triangles }
+    }
+
+    /// The pair, with a triangle in the place of the thin shape, if there is one.
+    pub fn pair<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> [&'a dyn Shape; 2] {
+        let [first, second] = &self.triangles;
+        let or = |triangle: &'a Option<Triangle>, shape| {
+            triangle.as_ref().map_or(shape, |thin| thin as &dyn Shape)
+        };
+        [or(first, g1), or(second, g2)]
+    }
+}
+
+/// The triangle that a shape is if everything up to `least` across is nothing.
+fn triangle_of(shape: &dyn Shape, least: impl Fn() -> Real) -> Option<Triangle> {
+    let line = |a, b| Some(Triangle::new(a, b, b));
+    let is_thin = |radius: Real| 2.0 * radius <= least();
+    let upright = |half_height: Real| line(Vector::Y * half_height, -Vector::Y * half_height);
+    match shape.as_typed_shape() {
+        TypedShape::Segment(segment) => line(segment.a, segment.b),
+        TypedShape::Capsule(capsule) if is_thin(capsule.radius) => line(capsule.segment.a, capsule.segment.b),
+        TypedShape::RoundTriangle(round) if is_thin(round.border_radius) => Some(round.inner_shape),
+        TypedShape::Cuboid(cuboid) => line_of_box(cuboid.half_extents, 0.5 * least()),
+        TypedShape::RoundCuboid(round) if is_thin(round.border_radius) => {
+            line_of_box(round.inner_shape.half_extents, 0.5 * least())
+        }
+        TypedShape::Cylinder(cylinder) if is_thin(cylinder.radius) => upright(cylinder.half_height),
+        TypedShape::RoundCylinder(round) if is_thin(round.border_radius.max(round.inner_shape.radius)) => {
+            upright(round.inner_shape.half_height)
+        }
+        TypedShape::Cone(cone) if is_thin(cone.radius) => upright(cone.half_height),
+        TypedShape::RoundCone(round) if is_thin(round.border_radius.max(round.inner_shape.radius)) => {
+            upright(round.inner_shape.half_height)
+        }
+        _ => None,
+    }
+}
+
+/// The line that a box is, if two of its half extents are at most `least`.
+fn line_of_box(half_extents: Vector, least: Real) -> Option<Triangle> {
+    let half = match half_extents.to_array().map(|half| half <= least) {
+        [_, true, true] => Vector::X * half_extents.x,
+        [true, _, true] => Vector::Y * half_extents.y,
+        [true, true, _] => Vector::Z * half_extents.z,
+        _ => return None,
+    };
+    Some(Triangle::new(half, -half, -half))
+}
