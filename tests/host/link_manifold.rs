@@ -7,7 +7,7 @@ use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, PointQuery, QueryDispatcher,
 };
-use parry_continuum::parry::shape::{Ball, FeatureId, Shape, TriMesh, TriMeshFlags, Triangle};
+use parry_continuum::parry::shape::{Ball, FeatureId, Segment, Shape, TriMesh, TriMeshFlags, Triangle};
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 use std::collections::BTreeSet;
 
@@ -31,16 +31,19 @@ fn meeting(random: &mut Random) -> (ModifiedCylinder, Triangle, Pose) {
 fn every_point_is_on_both_surfaces_and_the_nearest_is_the_distance() {
     let (mut random, dispatcher) = (Random::new(81), ContinuumDispatcher::default());
     let mut counts = [[0; 2]; 4];
-    for _ in 0..20_000 {
+    for round in 0..20_000 {
         let (link, triangle, pose) = meeting(&mut random);
-        let contact = dispatcher.contact(&pose, &link, &triangle, 0.3).unwrap();
-        let found = manifolds(&pose, &link, &triangle, 0.3);
+        // A segment is a triangle whose corners are on a line.
+        let segment = Segment::new(triangle.a, triangle.b);
+        let wall: &dyn Shape = if round % 4 == 0 { &segment } else { &triangle };
+        let contact = dispatcher.contact(&pose, &link, wall, 0.3).unwrap();
+        let found = manifolds(&pose, &link, wall, 0.3);
         let points = &found[0].points;
         let Some(contact) = contact else {
-            assert!(points.is_empty(), "{link:?} {triangle:?} {pose:?}");
+            assert!(points.is_empty(), "{link:?} {:?} {pose:?}", wall.as_typed_shape());
             continue;
         };
-        let context = || format!("{link:?} {triangle:?} {pose:?} {contact:?} {:?}", found[0]);
+        let context = || format!("{link:?} {:?} {pose:?} {contact:?} {:?}", wall.as_typed_shape(), found[0]);
         let tolerance = 256.0 * U * 6.0;
         let least = points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         // What coincides with a point that is there already is left out.
@@ -52,19 +55,49 @@ fn every_point_is_on_both_surfaces_and_the_nearest_is_the_distance() {
         for point in points {
             let apart = pose * point.local_p2 - point.local_p1;
             assert!((apart - found[0].local_n1 * point.dist).length() < tolerance, "{}", context());
-            let off_triangle = triangle.distance_to_local_point(point.local_p2, true);
-            assert!(off_triangle < 1e-7, "{off_triangle} {}", context());
+            let off_wall = wall.distance_to_local_point(point.local_p2, true);
+            assert!(off_wall < 1e-7, "{off_wall} {}", context());
             // A point deep inside is that of an overlap, which may lie beyond either.
             if contact.dist >= 0.0 {
                 let off_link = link.distance_to_local_point(point.local_p1, false);
                 assert!(off_link.abs() < same.max(tolerance), "{off_link} {}", context());
             }
         }
-        let swapped = &manifolds(&pose.inverse(), &triangle, &link, 0.3)[0].points;
+        let swapped = &manifolds(&pose.inverse(), wall, &link, 0.3)[0].points;
         let least_swapped = swapped.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         assert!((least_swapped - least).abs() < same + 1e-12, "{}", context());
     }
     assert!(counts.iter().flatten().all(|&n| n > 300), "{counts:?}");
+}
+
+/// Of a link that lies along a rail, and of a cap that stands on one, both ends of what they share are contacts.
+#[test]
+fn links_lie_and_stand_on_rails() {
+    let mut random = Random::new(88);
+    let rail = Segment::new(-3.0 * Vector::X, 3.0 * Vector::X);
+    for caps in CAPS {
+        let length = random.between(1.0, 2.0);
+        for axis in [Vector::X, Vector::Y] {
+            let link = ModifiedCylinder::new(Vector::ZERO, axis * length, 0.5, caps).unwrap();
+            let (below, shared) = match (axis == Vector::X, caps[0]) {
+                (true, _) => (0.5, length),
+                (false, Cap::Flat) => (0.0, 1.0),
+                // A ball stands on one point.
+                (false, Cap::Round) => (0.5, 0.0),
+            };
+            let pose =
+                Pose::from_translation(Vector::new(random.between(-0.3, 0.3), below - 0.01, 0.0)).inverse();
+            let found = manifolds(&pose, &link, &rail, 0.1);
+            let along: Vec<_> = found[0].points.iter().map(|point| point.local_p2.x).collect();
+            let least = along.iter().copied().fold(Real::INFINITY, Real::min);
+            let most = along.iter().copied().fold(Real::NEG_INFINITY, Real::max);
+            assert!((most - least - shared).abs() < 1e-6, "{caps:?} {axis} {found:?}");
+            assert!(
+                found[0].points.iter().all(|point| (point.dist + 0.01).abs() < 1e-9),
+                "{caps:?} {axis} {found:?}"
+            );
+        }
+    }
 }
 
 /// Multiplied by 2^k, everything is 2^k times as large, bit for bit.
