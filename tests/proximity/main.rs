@@ -7,6 +7,7 @@ mod chain_cases;
 mod coherence;
 mod contacts;
 mod derivatives;
+mod discs;
 mod far_parts;
 mod fuzz;
 mod large;

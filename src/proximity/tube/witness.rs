@@ -9,6 +9,10 @@
 //! face itself tells: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
 //! than the face's centre, that centre is not the nearest place.
 //!
+//! The face's centre may be nearer than q and the discs around q nearer than the face, though, where the centreline leads
+//! back to x. Then it rises in between: if a place there is farther from x than q, all of the above holds for the rest of
+//! the section, from that place on, which does not have the face.
+//!
 //! A ball at a round end is cut off by the section's own face, should it stick out of that. So where both are near, x
 //! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.
 //!
@@ -18,6 +22,9 @@
 use super::PlacedTube;
 use crate::robot::Section;
 use parry3d_f64::math::{Real, Vector};
+
+/// How many places between a face and a place are tried, each half as far from the latter as the one before.
+const MOST_TRIED: u32 = 6;
 
 /// A point of the tube near a point of the mesh.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +55,13 @@ impl PlacedTube<'_> {
             let ahead = offset.dot(face.outward);
             let from_centre = offset.length();
             let is_behind = ahead + from_centre * face.tilt + rounding <= 0.0;
-            if is_behind
-                || reach < from_centre.min(self.distance_to_crowded_end(section, 1 - end, x)) - rounding
+            let crowded = self.distance_to_crowded_end(section, 1 - end, x);
+            if is_behind || reach < from_centre.min(crowded) - rounding {
+                continue;
+            }
+            let face_arc = if end == 0 { section.start } else { section.end };
+            if reach < crowded - rounding
+                && self.rises_between(section, [foot.arc, face_arc], x, reach + rounding)
             {
                 continue;
             }
@@ -59,9 +71,8 @@ impl PlacedTube<'_> {
             let upper =
                 ahead.abs().hypot((size - section.radius).max(0.0)) + section.radius * face.tilt + rounding;
             if upper < best.upper {
-                let arc = if end == 0 { section.start } else { section.end };
                 let share = if size > section.radius { section.radius / size } else { 1.0 };
-                best = Witness { upper, arc, on_robot: face.centre + across * share };
+                best = Witness { upper, arc: face_arc, on_robot: face.centre + across * share };
             }
         }
         if is_beside {
@@ -70,6 +81,22 @@ impl PlacedTube<'_> {
             best = Witness { upper, arc: foot.arc, on_robot };
         }
         best
+    }
+
+    /// Whether the centreline is seen to be farther from `x` than `least` somewhere between two arc lengths, near the
+    /// first if not farther on.
+    fn rises_between(&self, section: &Section, [from, to]: [Real; 2], x: Vector, least: Real) -> bool {
+        let mut step = 0.5 * (to - from);
+        for _ in 0..MOST_TRIED {
+            let tick = self.tube.tick(section, from + step);
+            let arc = self.tube.arc(section, tick);
+            let is_between = from.min(to) < arc && arc < from.max(to);
+            if is_between && (self.point(section, tick) - x).length() > least {
+                return true;
+            }
+            step *= 0.5;
+        }
+        false
     }
 
     /// How far a round end is from `x`, if its ball may stick out of the face at the section's other end.
