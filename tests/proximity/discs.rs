@@ -1,13 +1,13 @@
 //! Tubes against their discs, one by one: what a curve is where sections are about as short as they are thick, near faces
 //! and joints. A fine chain is no truth there, because the rims of its tilted links stand out.
 
+use crate::tube::all_ways;
 use continuum_testing::narrow_phase::triangle_disc;
-use continuum_testing::{Arcs, Random, Stretch};
+use continuum_testing::{Arcs, Random};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, ProximityError};
-use parry_continuum::{Tube, TubeSection};
 use std::sync::Arc;
 
 /// What the discs that are tried leave open, at the size of these scenes; and how near they come to what is touched.
@@ -71,21 +71,6 @@ fn distance(arcs: &Arcs, mesh: &TriMesh) -> Real {
         (least, start) = (least.min(best.0), end);
     }
     least
-}
-
-/// As a function, and from samples with and without the tangents at its ends.
-fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 3] {
-    let section =
-        |&Stretch { length, radius, curvature }: &Stretch| TubeSection { length, radius, curvature };
-    let sections: Vec<_> = arcs.stretches.iter().map(section).collect();
-    let sharpest = arcs.stretches.iter().fold(0.1, |most: Real, part| most.max(part.curvature));
-    let (points, radii) = arcs.samples((arcs.shortest() / 4.0).min(0.3 / sharpest), &[]);
-    let curve = Arc::clone(arcs);
-    [
-        Tube::from_function(&sections, move |s| curve.at(s)).unwrap(),
-        Tube::from_samples(&points, &radii, Some(arcs.end_tangents())).unwrap(),
-        Tube::from_samples(&points, &radii, None).unwrap(),
-    ]
 }
 
 #[test]

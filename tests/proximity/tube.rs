@@ -57,7 +57,7 @@ fn from_function(arcs: &Arc<Arcs>) -> Tube {
 
 /// The tube as a function, and from samples with and without the tangents at its ends: at least four in each arc, and no
 /// farther apart than a third of the smallest radius of curvature.
-fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 3] {
+pub(super) fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 3] {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let (points, radii) = arcs.samples((arcs.shortest() / 4.0).min(0.2).min(0.3 / sharpest), &[]);
     [
