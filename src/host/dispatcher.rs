@@ -3,11 +3,11 @@
 use super::elements::{self, FieldPair};
 use super::link_cast;
 use super::link_triangle::LinkTriangle;
-use super::link_triangle_cast;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_pair::{RobotPair, links_of};
+use super::straight_cast;
 use super::thin::Thin;
 use super::voxels;
 use super::watched::Watched;
@@ -31,13 +31,13 @@ use parry3d_f64::shape::Shape;
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
 /// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
-/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | parry's: within 1e-5 | parry's: within 1e-5 |
+/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
-/// They are those that `tests/host/pairs.rs` enforces. Other shapes without a cross-section, a box that is a line, say, count
-/// as segments or triangles. Links too large or too small for parry's iterations, beyond
+/// They are those that `tests/host/pairs.rs` enforces. A shape that is no more than a line, such as a capsule of radius 0,
+/// counts as a segment. Links too large or too small for parry's iterations, beyond
 /// 2^50 or below 2^-200, are refused in the last column.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
@@ -83,7 +83,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
         check_pose(pos12)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.intersection_test();
@@ -115,7 +115,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
 
     fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
         check_pose(pos12)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.distance();
@@ -150,7 +150,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<Option<Contact>, Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.contact(prediction);
@@ -188,7 +188,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<ClosestPoints, Unsupported> {
         check_pose(pos12)?;
         check_margin(max_dist)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotPair::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
@@ -225,7 +225,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(options.max_time_of_impact)?;
         check_margin(options.target_distance)?;
         in_range(local_vel12)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
@@ -243,14 +243,16 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => match LinkTriangle::of(g1, g2)? {
-                Some(pair) => link_triangle_cast::cast(&pair, pos12, local_vel12, options),
-                None => {
-                    let inner = self.inner(pos12, g1, g2)?;
-                    let hit = inner.cast_shapes(pos12, local_vel12, g1, g2, options)?;
-                    check_margin(hit.map_or(0.0, |hit| hit.time_of_impact)).map(|()| hit)
+            Parts::None => {
+                if let Some(pair) = LinkTriangle::of(g1, g2)? {
+                    return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
                 }
-            },
+                if let Some(hit) = straight_cast::cast_convex(self, pos12, local_vel12, (g1, g2), options)? {
+                    return Ok(hit);
+                }
+                let hit = self.inner(pos12, g1, g2)?.cast_shapes(pos12, local_vel12, g1, g2, options)?;
+                check_margin(hit.map_or(0.0, |hit| hit.time_of_impact)).map(|()| hit)
+            }
         }
     }
 
@@ -284,8 +286,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             let at = |share: Real| start_time + share * duration;
             return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
         }
-        let [pose1, pose2] = [motion1, motion2].map(|motion| motion.position_at_time(start_time));
-        let thin = Thin::of(&pose1.inv_mul(&pose2), g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let times = (start_time, end_time);
         let moving = ((motion1, g1), (motion2, g2));

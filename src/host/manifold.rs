@@ -71,7 +71,7 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        let thin = Thin::of(pos12, g1, g2);
+        let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
         if let Some(pair) = LinkTriangle::of(g1, g2)? {

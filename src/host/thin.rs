@@ -1,13 +1,13 @@
-//! Shapes without a cross-section, as the triangles that they are.
+//! Segments, and shapes that are no more than a segment or a triangle, as triangles.
 //!
-//! A segment, a rounded triangle with a border of 0, a box that is a line: of the difference of such a shape and a link,
-//! parry's iterations build tetrahedra without volume, and may panic. To this crate they are triangles, most of them without
-//! an area, and triangles are answered exactly. What is thinner than [`LEAST_SHARE`] of the pair's largest coordinate
-//! counts as thin, and its answers are off by that much.
+//! Such shapes are a capsule of radius 0, a rounded triangle with a border of 0, or a box that is a line. parry's iterations
+//! build tetrahedra from the difference of two shapes. With these the tetrahedra have no volume, and parry may panic. To
+//! this crate they are triangles, most of them without an area, and triangles are answered exactly. A thickness of up to
+//! [`LEAST_SHARE`] of the shape's size is left out, and the answers are off by that much.
 
-use super::range::{LEAST_SHARE, largest};
+use super::range::LEAST_SHARE;
 use super::robot_pair::links_of;
-use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};
 
 /// What stands for the thin shape of a pair whose other shape is a robot.
@@ -16,11 +16,10 @@ pub(super) struct Thin {
 }
 
 impl Thin {
-    pub fn of(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Self {
-        let least = || LEAST_SHARE * largest(pos12, g1, g2);
+    pub fn of(g1: &dyn Shape, g2: &dyn Shape) -> Self {
         let triangles = match [links_of(g1), links_of(g2)] {
-            [Some(_), None] => [None, triangle_of(g2, least)],
-            [None, Some(_)] => [triangle_of(g1, least), None],
+            [Some(_), None] => [None, triangle_of(g2)],
+            [None, Some(_)] => [triangle_of(g1), None],
             _ => [None; 2],
         };
         Self { triangles }
@@ -36,34 +35,39 @@ impl Thin {
     }
 }
 
-/// The triangle that a shape is if everything up to `least` across is nothing.
-fn triangle_of(shape: &dyn Shape, least: impl Fn() -> Real) -> Option<Triangle> {
+/// The triangle that a shape is, if it is one.
+fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
     let line = |a, b| Some(Triangle::new(a, b, b));
-    let is_thin = |radius: Real| 2.0 * radius <= least();
     let upright = |half_height: Real| line(Vector::Y * half_height, -Vector::Y * half_height);
+    // Of a size that is not finite, nothing is a small share.
+    let size = shape.compute_local_aabb().extents().max_element();
+    let least = if size.is_finite() { 0.5 * LEAST_SHARE * size } else { 0.0 };
+    let is_thin = |radius: Real| (0.0..=least).contains(&radius);
     match shape.as_typed_shape() {
         TypedShape::Segment(segment) => line(segment.a, segment.b),
         TypedShape::Capsule(capsule) if is_thin(capsule.radius) => line(capsule.segment.a, capsule.segment.b),
         TypedShape::RoundTriangle(round) if is_thin(round.border_radius) => Some(round.inner_shape),
-        TypedShape::Cuboid(cuboid) => line_of_box(cuboid.half_extents, 0.5 * least()),
+        TypedShape::Cuboid(cuboid) => line_of_box(cuboid.half_extents, is_thin),
         TypedShape::RoundCuboid(round) if is_thin(round.border_radius) => {
-            line_of_box(round.inner_shape.half_extents, 0.5 * least())
+            line_of_box(round.inner_shape.half_extents, is_thin)
         }
         TypedShape::Cylinder(cylinder) if is_thin(cylinder.radius) => upright(cylinder.half_height),
-        TypedShape::RoundCylinder(round) if is_thin(round.border_radius.max(round.inner_shape.radius)) => {
+        TypedShape::RoundCylinder(round)
+            if is_thin(round.border_radius) && is_thin(round.inner_shape.radius) =>
+        {
             upright(round.inner_shape.half_height)
         }
         TypedShape::Cone(cone) if is_thin(cone.radius) => upright(cone.half_height),
-        TypedShape::RoundCone(round) if is_thin(round.border_radius.max(round.inner_shape.radius)) => {
+        TypedShape::RoundCone(round) if is_thin(round.border_radius) && is_thin(round.inner_shape.radius) => {
             upright(round.inner_shape.half_height)
         }
         _ => None,
     }
 }
 
-/// The line that a box is, if two of its half extents are at most `least`.
-fn line_of_box(half_extents: Vector, least: Real) -> Option<Triangle> {
-    let half = match half_extents.to_array().map(|half| half <= least) {
+/// The line that a box is, if two of its half extents are thin.
+fn line_of_box(half_extents: Vector, is_thin: impl Fn(Real) -> bool) -> Option<Triangle> {
+    let half = match half_extents.to_array().map(is_thin) {
         [_, true, true] => Vector::X * half_extents.x,
         [true, _, true] => Vector::Y * half_extents.y,
         [true, true, _] => Vector::Z * half_extents.z,

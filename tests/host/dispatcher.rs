@@ -9,7 +9,9 @@ use continuum_testing::narrow_phase::triangle_modified_cylinder;
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastOptions};
-use parry_continuum::parry::shape::{Ball, Compound, HeightField, Shape, SharedShape, TriMesh, Triangle};
+use parry_continuum::parry::shape::{
+    Ball, Compound, HeightField, RoundShape, Shape, SharedShape, TriMesh, Triangle,
+};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 
@@ -254,6 +256,35 @@ fn nothing_that_is_not_finite_gets_a_number() {
         assert!(dispatcher.cast_shapes(&pose, Vector::NAN, robot, &floor, options).is_err());
         options.max_time_of_impact = Real::NAN;
         assert!(dispatcher.cast_shapes(&pose, Vector::X, robot, &floor, options).is_err());
+    }
+}
+
+/// An endless shape is not a thin one, and a turned infinity is NaN, which boxes leave out.
+#[test]
+fn endless_convex_shapes_are_refused() {
+    let (dispatcher, far) = (ContinuumDispatcher::default(), Real::INFINITY);
+    let corners = |b| Triangle::new(Vector::ZERO, b, Vector::X);
+    let rounded = |b, border| RoundShape { inner_shape: corners(b), border_radius: border };
+    let shapes = [
+        SharedShape::capsule_y(1.0, far),
+        SharedShape::capsule(Vector::ZERO, Vector::new(1.0, far, 2.0), 0.5),
+        SharedShape::capsule(Vector::ZERO, Vector::NAN, 0.5),
+        SharedShape::cuboid(1.0, far, far),
+        SharedShape::cuboid(1.0, far, 1.0),
+        SharedShape::cylinder(1.0, far),
+        SharedShape::cone(1.0, far),
+        SharedShape::new(rounded(Vector::Y, far)),
+        SharedShape::new(rounded(Vector::new(1.0, far, 2.0), 0.5)),
+        SharedShape::new(rounded(Vector::NAN, 0.5)),
+    ];
+    let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::X, 0.5).unwrap();
+    let pose = Pose::new(Vector::splat(5.0), Vector::new(0.3, 0.2, 0.1));
+    for shape in shapes {
+        for (pos12, g1, g2) in [(pose, &link as &dyn Shape, &*shape), (pose.inverse(), &*shape, &link)] {
+            // But for motions, in which it may not even be looked at.
+            let answered = ask_everything(&dispatcher, &pos12, g1, g2);
+            assert_eq!(answered[..5], [false; 5], "{:?}", shape.as_typed_shape());
+        }
     }
 }
 

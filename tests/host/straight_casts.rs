@@ -7,7 +7,7 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
     DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions, ShapeCastStatus,
 };
-use parry_continuum::parry::shape::{Shape, Triangle};
+use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
 /// What a hit may be early by, for shapes of size one: the share of the size at which a link touches.
@@ -69,6 +69,69 @@ fn straight_casts_stop_where_the_two_are_as_near_as_they_may() {
     }
     println!("{hits} hits, {misses} misses; parry misses {parry_misses} and is late in {parry_late}");
     assert!(hits > 1500 && misses > 500, "{hits} hits, {misses} misses");
+}
+
+/// A convex shape of about size 1.
+fn convex(random: &mut Random) -> SharedShape {
+    let mut size = || random.between(0.2, 0.8);
+    let (a, b, c) = (size(), size(), size());
+    match random.index(7) {
+        0 => SharedShape::ball(a),
+        1 => SharedShape::cuboid(a, b, c),
+        2 => SharedShape::capsule_y(a, b),
+        3 => SharedShape::cylinder(a, b),
+        4 => SharedShape::cone(a, b),
+        5 => SharedShape::round_cuboid(a, b, c, 0.1),
+        _ => SharedShape::new(random.link()),
+    }
+}
+
+/// The same with other convex shapes, whose distances come from parry's GJK.
+#[test]
+fn straight_casts_meet_convex_shapes_in_time() {
+    let (mut random, ours) = (Random::new(155), ContinuumDispatcher::default());
+    let (mut hits, mut misses, mut parry_misses, mut parry_late) = (0, 0, 0, 0);
+    for _ in 0..2000 {
+        let (link, wall, pose) = (random.link(), convex(&mut random), random.pose(5.0));
+        let velocity = link.start() - pose.translation + random.vector(1.5);
+        let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
+        let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
+        let back = -(pose.rotation.inverse() * velocity);
+        let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
+            [(pose, velocity, &link, &*wall), (pose.inverse(), back, &*wall, &link)];
+        let at = |time: Real| {
+            let pose = Pose::from_translation(velocity * time) * pose;
+            ours.distance(&pose, &link, &*wall).unwrap().distance
+        };
+        if at(0.0) <= target_distance {
+            continue;
+        }
+        let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
+        for (pos12, velocity, g1, g2) in pairs {
+            let context = || format!("{link:?} {:?} {pose:?} {velocity}", wall.as_typed_shape());
+            let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
+                misses += 1;
+                assert_eq!(met, None, "{}", context());
+                continue;
+            };
+            hits += 1;
+            let time = hit.time_of_impact;
+            assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}: {}", context());
+            assert!((at(time) - target_distance).abs() < 1e-5, "{hit:?}: {}, {}", at(time), context());
+            let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
+            assert!(((other - one).length() - target_distance).abs() < 1e-5, "{hit:?}: {}", context());
+            assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
+            match DefaultQueryDispatcher.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() {
+                None => parry_misses += usize::from(met.is_some()),
+                Some(theirs) => {
+                    let late = theirs.time_of_impact - time;
+                    parry_late += usize::from(late * velocity.length() > 1e-4);
+                }
+            }
+        }
+    }
+    println!("{hits} hits, {misses} misses; parry misses {parry_misses} and is late in {parry_late}");
+    assert!(hits > 1000 && misses > 300, "{hits} hits, {misses} misses");
 }
 
 #[test]

@@ -1,0 +1,247 @@
+//! When a link that moves straight meets a triangle or another convex shape: Newton's steps, never late.
+//!
+//! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit vector from the link to the
+//! wall that separates them, and g the gap between them along it. After a time s the gap along the same n is g + s <n, v>,
+//! and the distance at least that, whatever n is. So nothing is within the target distance e before s = (g - e) / -<n, v>,
+//! and nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is their distance as a
+//! function of time, of which these steps are Newton's: they come from the safe side and do not pass the first root.
+//!
+//! They end where the distance is above the target by no more than the wall's [`Wall::TOUCHING`] of the link's size, or by
+//! rounding: the hit is that much early at most, measured along n.
+//!
+//! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. Where these have no volume, as with a
+//! link beside the flat side of a box, it may panic.)
+
+use super::axial::unit;
+use super::link_triangle::{self, LinkContact, LinkTriangle};
+use super::range::{in_range, largest};
+use crate::ModifiedCylinder;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{
+    ClosestPoints, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported,
+};
+use parry3d_f64::shape::{Shape, SupportMap};
+
+/// What rounding leaves of the largest coordinate.
+const ROUNDING: Real = 64.0 * Real::EPSILON;
+/// More than any cast takes: a grazing one halves its error with each step, others square it.
+const MOST_STEPS: usize = 200;
+
+/// What a link may meet, in the link's frame.
+trait Wall {
+    /// The share of a link's size at which it counts as touching.
+    const TOUCHING: Real;
+
+    /// The contact with the wall after it has moved.
+    fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported>;
+
+    /// Where the wall begins along a unit vector before it has moved.
+    fn begins(&self, normal: Vector) -> Real;
+
+    /// The largest coordinate before it has moved.
+    fn largest(&self) -> Result<Real, Unsupported>;
+}
+
+/// The first hit of a link and a triangle, of which the second of the pair moves at `local_vel12` in the frame of the
+/// first.
+///
+/// # Errors
+/// [`Unsupported`] for what is out of range.
+pub(super) fn cast_triangle(
+    pair: &LinkTriangle,
+    pos12: &Pose,
+    local_vel12: Vector,
+    options: ShapeCastOptions,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let way = Way::new(pair.link, pair.link_is_first, pos12, local_vel12);
+    let corners = pair.triangle.vertices().map(|vertex| way.pose * vertex);
+    way.cast(&Corners { link: pair.link, corners }, options)
+}
+
+/// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no such pair.
+/// `dispatcher` tells their contacts.
+///
+/// # Errors
+/// [`Unsupported`] for what is out of range or refused by the dispatcher.
+pub(super) fn cast_convex(
+    dispatcher: &impl QueryDispatcher,
+    pos12: &Pose,
+    local_vel12: Vector,
+    (g1, g2): (&dyn Shape, &dyn Shape),
+    options: ShapeCastOptions,
+) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
+    for (robot, shape, link_is_first) in [(g1, g2, true), (g2, g1, false)] {
+        if let (Some(link), Some(support)) = (robot.as_shape(), shape.as_support_map()) {
+            let way = Way::new(link, link_is_first, pos12, local_vel12);
+            let wall = Convex { dispatcher, link, shape, support, pose: way.pose };
+            return way.cast(&wall, options).map(Some);
+        }
+    }
+    Ok(None)
+}
+
+/// A triangle.
+struct Corners<'a> {
+    link: &'a ModifiedCylinder,
+    corners: [Vector; 3],
+}
+
+impl Wall for Corners<'_> {
+    const TOUCHING: Real = 1e-9;
+
+    fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
+        let moved = self.corners.map(|corner| corner + shift);
+        for corner in moved {
+            in_range(corner)?;
+        }
+        link_triangle::contact(self.link, moved).ok_or(Unsupported)
+    }
+
+    fn begins(&self, normal: Vector) -> Real {
+        self.corners.map(|corner| corner.dot(normal)).into_iter().fold(Real::INFINITY, Real::min)
+    }
+
+    fn largest(&self) -> Result<Real, Unsupported> {
+        self.corners.into_iter().try_fold(0.0, |most: Real, corner| Ok(most.max(in_range(corner)?)))
+    }
+}
+
+/// A convex shape whose contacts come from iterations.
+struct Convex<'a, D> {
+    dispatcher: &'a D,
+    link: &'a ModifiedCylinder,
+    shape: &'a dyn Shape,
+    support: &'a dyn SupportMap,
+    pose: Pose,
+}
+
+impl<D: QueryDispatcher> Wall for Convex<'_, D> {
+    const TOUCHING: Real = 1e-6;
+
+    fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
+        let pose = Pose::from_translation(shift) * self.pose;
+        let points = self.dispatcher.closest_points(&pose, self.link, self.shape, Real::MAX)?;
+        if let ClosestPoints::WithinMargin(on_link, on_wall) = points {
+            let on_wall = pose * on_wall;
+            if let Some(normal) = unit(on_wall - on_link) {
+                let distance = (on_wall - on_link).length();
+                return Ok(LinkContact { distance, on_link, on_triangle: on_wall, normal });
+            }
+        }
+        let contact = self.dispatcher.contact(&pose, self.link, self.shape, 0.0)?;
+        let start = self.link.start();
+        // Where the one says that they meet and the other does not, they touch; nobody knows along what.
+        let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
+        Ok(contact.map_or(touch, |contact| LinkContact {
+            distance: contact.dist.min(0.0),
+            on_link: contact.point1,
+            on_triangle: pose * contact.point2,
+            normal: contact.normal1,
+        }))
+    }
+
+    fn begins(&self, normal: Vector) -> Real {
+        self.support.support_point_toward(&self.pose, -normal).dot(normal)
+    }
+
+    fn largest(&self) -> Result<Real, Unsupported> {
+        Ok(largest(&self.pose, self.link, self.shape))
+    }
+}
+
+/// A link and the way of a wall, in the link's frame.
+struct Way<'a> {
+    link: &'a ModifiedCylinder,
+    link_is_first: bool,
+    /// The wall's.
+    pose: Pose,
+    velocity: Vector,
+}
+
+impl<'a> Way<'a> {
+    fn new(link: &'a ModifiedCylinder, link_is_first: bool, pos12: &Pose, local_vel12: Vector) -> Self {
+        if link_is_first {
+            return Self { link, link_is_first, pose: *pos12, velocity: local_vel12 };
+        }
+        let pose = pos12.inverse();
+        Self { link, link_is_first, pose, velocity: -(pose.rotation * local_vel12) }
+    }
+
+    fn cast<W: Wall>(
+        &self,
+        wall: &W,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let (link, velocity) = (self.link, self.velocity);
+        let (mut time, mut status) = (0.0, ShapeCastStatus::OutOfIterations);
+        let mut contact = finite(wall.contact(Vector::ZERO)?)?;
+        for step in 0..MOST_STEPS {
+            let closing = -contact.normal.dot(velocity);
+            let excess = contact.distance - options.target_distance;
+            if step == 0 && excess <= 0.0 {
+                if !options.stop_at_penetration && closing <= 0.0 {
+                    return Ok(None);
+                }
+                // As parry has it, what just touches is not within.
+                status = if excess < 0.0 {
+                    ShapeCastStatus::PenetratingOrWithinTargetDist
+                } else {
+                    ShapeCastStatus::Converged
+                };
+                break;
+            }
+            let shift = velocity * time;
+            if step > 0 && excess <= self.touching(wall, shift)? {
+                status = ShapeCastStatus::Converged;
+                break;
+            }
+            let normal = contact.normal;
+            let begins = wall.begins(normal) + shift.dot(normal);
+            let gap = begins - link.local_support_point(normal).dot(normal);
+            let next = time + (gap.min(contact.distance) - options.target_distance) / closing;
+            // Written so that NaN, which only comes of what does not move, is never.
+            let may_meet = closing > 0.0 && next <= options.max_time_of_impact;
+            if !may_meet {
+                return Ok(None);
+            }
+            if next <= time {
+                status = ShapeCastStatus::Converged;
+                break;
+            }
+            time = next;
+            contact = finite(wall.contact(velocity * time)?)?;
+        }
+        Ok(Some(self.hit(contact, time, status)))
+    }
+
+    /// What the distance may exceed the target by and still count.
+    fn touching<W: Wall>(&self, wall: &W, shift: Vector) -> Result<Real, Unsupported> {
+        let link = self.link;
+        let mut largest = link.radius().max(wall.largest()?);
+        for place in [shift, link.start(), link.end()] {
+            largest = largest.max(in_range(place)?);
+        }
+        Ok(W::TOUCHING * (link.length() + link.radius()) + ROUNDING * largest)
+    }
+
+    fn hit(&self, contact: LinkContact, time: Real, status: ShapeCastStatus) -> ShapeCastHit {
+        // The wall's own frame does not turn.
+        let to_wall = self.pose.rotation.inverse();
+        let shift = self.velocity * time;
+        let hit = ShapeCastHit {
+            time_of_impact: time,
+            witness1: contact.on_link,
+            witness2: to_wall * (contact.on_triangle - shift - self.pose.translation),
+            normal1: contact.normal,
+            normal2: to_wall * -contact.normal,
+            status,
+            subshape1: 0,
+            subshape2: 0,
+        };
+        if self.link_is_first { hit } else { hit.swapped() }
+    }
+}
+
+fn finite(contact: LinkContact) -> Result<LinkContact, Unsupported> {
+    if contact.distance.is_finite() && contact.normal.is_finite() { Ok(contact) } else { Err(Unsupported) }
+}
