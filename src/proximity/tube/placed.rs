@@ -4,7 +4,7 @@ use super::Piece;
 use crate::distance::Scalar;
 use crate::proximity::ProximityError;
 use crate::proximity::placed::PlacedLink;
-use crate::robot::{COORDINATE_LIMIT, Face, Lasting, Section, Tube};
+use crate::robot::{COORDINATE_LIMIT, Face, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it falls below the range of
@@ -54,7 +54,7 @@ impl<'a> PlacedTube<'a> {
 
     /// The flat ends of a section that bodies may end with.
     pub(super) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
-        section.faces.map(|face| face.filter(|face| face.lasting == Lasting::Always || !self.is_moving))
+        section.faces.map(|face| face.filter(|face| face.lasting.is_safe() || !self.is_moving))
     }
 
     /// Whether a piece has a flat end that bodies take for round.

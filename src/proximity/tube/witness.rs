@@ -9,9 +9,9 @@
 //! face itself tells: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
 //! than the face's centre, that centre is not the nearest place.
 //!
-//! The face's centre may be nearer than q and the discs around q nearer than the face, though, where the centreline leads
-//! back to x. Then it rises in between: if a place there is farther from x than q, all of the above holds for the rest of
-//! the section, from that place on, which does not have the face.
+//! Where the centreline leads back to x, though, the discs around q may be nearer than the face, even if the face's centre is
+//! nearer than q. Then some place between the two is farther from x than q. From that place on, the rest of the section
+//! has no such face, and all of the above holds for it.
 //!
 //! A ball at a round end is cut off by the section's own face, should it stick out of that. So where both are near, x
 //! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.

@@ -1,8 +1,8 @@
 //! Which ends of a curve's sections are flat.
 //!
-//! The tube is its discs. Where one section goes on in the next without a step, or within a wider one, a ball at the end of
-//! a section lies in the discs of both, and a body with a round end is cheaper to find than one with a face. So the walks
-//! of Algorithm 1 (`algorithm_1`) decide here too, but a curve asks for more than the printed distance between limit and
+//! The tube is its discs. Where one section goes on in the next, without a step or within a wider one, a ball at the end
+//! lies in discs of the tube, and a body with a round end is cheaper to find than one with a face. So the walks of
+//! Algorithm 1 (`algorithm_1`) decide here too, but a curve asks for more than the printed distance between limit and
 //! joint: a ball one radius away on a bent centreline sticks out of the limit's face.
 //!
 //! Let the ball have the radius r and the centre e, let p be the limit, the centre of the last face, and x a point of
@@ -14,8 +14,11 @@
 //!   certain;
 //! - if |e - p| > 2 r: x is within r of e, so it is nearer to e than to p.
 //!
-//! Otherwise the end is flat, which a smooth curve may be at any joint. If rounding takes for round what is not, the ball
-//! sticks out by that rounding, and by no more from the discs behind the plane.
+//! The rest of the ball is in the section's own discs, in the ball at its other end, or ahead of its other face, which cuts
+//! the ball off.
+//!
+//! Otherwise the end is flat. That is right at any joint, since discs are all that there is. If rounding takes for round
+//! what is not, the ball sticks out by that rounding, and by no more from the discs behind the plane.
 
 use super::Tube;
 use super::section::Face;

@@ -61,7 +61,7 @@ impl Tube {
                     return Err(RobotError::BadTangent { index });
                 }
                 let outward = direction(if end == 0 { -tangent } else { tangent });
-                Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::WhileNear }))
+                Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::Either }))
             };
             tube.sections.push(Section {
                 first: 0,

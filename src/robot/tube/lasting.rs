@@ -3,8 +3,9 @@
 //! An end is flat by the radii alone, at the limits of the walks of Algorithm 1, or because it is less than a radius away
 //! from the last limit (`algorithm_1`, `faces`). Radii do not change during a motion. A distance between two points changes
 //! by no more than the points move: if it is D at one time and the points are v and w fast, then it is below the radius
-//! for a time tau before and after as long as D + tau (v + w) is. An end of a curve that is flat though farther away is
-//! taken for one that may become round.
+//! for a time tau before and after as long as D + tau (v + w) is.
+//!
+//! At the joints of a curve none of that matters: round or flat, the tube is its discs (`faces`).
 //!
 //! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its two vertices' R_k and
 //! R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links' radii is one by the vertices'. Not the other way
@@ -20,12 +21,21 @@ use parry3d_f64::math::Real;
 pub(crate) enum Lasting {
     /// The robot's own two ends, and the wider side of a step in radius.
     Always,
+    /// At a joint of a curve, whose tube is the same where it is round.
+    Either,
     /// For want of room behind such a face.
     WhileNear,
     /// The same in a chain that may be capped by vertex radii: behind such a face, or any vertex from there on.
     WhileAllNear,
     /// Its direction gets lost.
     Never,
+}
+
+impl Lasting {
+    /// Whether a body with this flat end holds the tube at other times, too.
+    pub(crate) fn is_safe(self) -> bool {
+        matches!(self, Self::Always | Self::Either)
+    }
 }
 
 impl Tube {
@@ -61,7 +71,7 @@ impl Tube {
                 let limits = match face.lasting {
                     Lasting::WhileNear => limit..=limit,
                     Lasting::WhileAllNear => limit.min(number)..=limit.max(number),
-                    Lasting::Always | Lasting::Never => return,
+                    Lasting::Always | Lasting::Either | Lasting::Never => return,
                 };
                 let mut stays = true;
                 for limit in limits.filter(|limit| *limit != number) {

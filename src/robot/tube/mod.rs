@@ -25,7 +25,8 @@ use parry3d_f64::math::{Real, Vector};
 /// answer has bounds.
 ///
 /// A section is a stretch with one radius. The tube ends in a flat face at the robot's two ends and on the wider side of a
-/// step in radius. Lengths are in one unit, points in the robot's frame.
+/// step in radius. Sections that begin or end about a radius from such a face have flat ends too, where they join the
+/// next one. Lengths are in one unit, points in the robot's frame.
 ///
 /// # What is known of the curve
 /// - [`from_samples`](Self::from_samples): the curve goes through the samples and bends nowhere more than they show. A

@@ -239,7 +239,7 @@ impl Tube {
                     None => direction_at_end(ahead, stretch.len(), section.curvature, rounding),
                 };
                 tube.sections[number].faces[end] =
-                    Some(Face { centre, outward, tilt, lasting: Lasting::WhileNear });
+                    Some(Face { centre, outward, tilt, lasting: Lasting::Either });
             });
         }
         for section in &self.sections {

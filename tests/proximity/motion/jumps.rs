@@ -4,7 +4,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
-use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube};
+use parry_continuum::{BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, Tube};
 
 /// Between their ends, motions jump through a wall that no coarse step sees.
 #[test]
@@ -61,4 +61,23 @@ fn an_end_that_becomes_round_counts() {
     let opening = LinearMotion::chain(&line(0.9), &line(1.05), &[1.0; 2]).unwrap();
     let answer = search.clears_motion(&opening, 0.3, 1e-3).unwrap();
     assert!(matches!(answer, MotionAnswer::Contact { t, .. } if t > 0.666), "{answer:?}");
+}
+
+/// A ball at a joint one radius from the base would stick out of it, since the centreline bends. The tube does not.
+#[test]
+fn a_joint_near_the_base_does_not_reach_through_it() {
+    let section = |length, bend| BendingSection { length, radius: 1.0, bend: [bend, 0.0] };
+    let motion = BendingMotion::new(
+        &[section(1.03, 0.5), section(5.0, 0.05)],
+        &[section(1.03, 0.6), section(5.0, 0.1)],
+        Pose::IDENTITY,
+    )
+    .unwrap();
+    // Less than the ball would stick out, and more than the margin.
+    let gap = 0.01;
+    let corners = [[-3.0, -3.0], [3.0, -3.0], [0.0, 5.0]].map(|[x, y]| Vector::new(x, y, -gap));
+    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let mut clears = |margin| search.clears_motion(&motion, margin, 0.05 * gap).unwrap();
+    assert_eq!(clears(0.8 * gap), MotionAnswer::Clear);
+    assert!(matches!(clears(1.2 * gap), MotionAnswer::Contact { .. }));
 }
