@@ -21,11 +21,10 @@ use super::footing::{centre, outward};
 use super::link_triangle::{self, LinkTriangle};
 use super::range::in_range;
 use super::robot_pair::links_of;
+use super::straight_cast::iterated_contact;
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::{
-    ClosestPoints, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported,
-};
+use parry3d_f64::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 
 /// The share of a link's size at which it counts as touching a triangle or a half-space.
@@ -192,24 +191,16 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             }
             Wall::Convex(shape, support) => {
                 share = ITERATED;
-                let points = match self.dispatcher.closest_points(&pos12, link, shape, Real::MAX)? {
-                    ClosestPoints::Disjoint => return Err(Unsupported),
-                    ClosestPoints::WithinMargin(point, other) => Some((point, pos12 * other)),
-                    ClosestPoints::Intersecting => None,
-                };
-                let apart = points.and_then(|(point, other)| Some((point, other, unit(other - point)?)));
-                if let Some((point, other, way)) = apart {
+                let contact = iterated_contact(self.dispatcher, link, shape, &pos12)?;
+                (on_link, normal) = (contact.on_link, contact.normal);
+                if contact.distance > 0.0 {
                     // The two themselves say how far apart they are along it.
-                    let before = (support.support_point_toward(&pos12, -way) - other).dot(way);
-                    (on_link, on_wall, normal) = (point, other + way * before, way);
-                    distance = (on_wall - link.local_support_point_toward(way)).dot(way);
+                    let before =
+                        (support.support_point_toward(&pos12, -normal) - contact.on_triangle).dot(normal);
+                    on_wall = contact.on_triangle + normal * before;
+                    distance = (on_wall - link.local_support_point_toward(normal)).dot(normal);
                 } else {
-                    let contact = self.dispatcher.contact(&pos12, link, shape, 0.0)?;
-                    (on_link, on_wall, normal) = match contact {
-                        Some(contact) => (contact.point1, pos12 * contact.point2, contact.normal1),
-                        None => (link.start(), link.start(), Vector::X),
-                    };
-                    distance = 0.0;
+                    (on_wall, distance) = (contact.on_triangle, 0.0);
                 }
             }
         }

@@ -120,24 +120,7 @@ impl<D: QueryDispatcher> Wall for Convex<'_, D> {
 
     fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
         let pose = Pose::from_translation(shift) * self.pose;
-        let points = self.dispatcher.closest_points(&pose, self.link, self.shape, Real::MAX)?;
-        if let ClosestPoints::WithinMargin(on_link, on_wall) = points {
-            let on_wall = pose * on_wall;
-            if let Some(normal) = unit(on_wall - on_link) {
-                let distance = (on_wall - on_link).length();
-                return Ok(LinkContact { distance, on_link, on_triangle: on_wall, normal });
-            }
-        }
-        let contact = self.dispatcher.contact(&pose, self.link, self.shape, 0.0)?;
-        let start = self.link.start();
-        // Where the one says that they meet and the other does not, they touch; nobody knows along what.
-        let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
-        Ok(contact.map_or(touch, |contact| LinkContact {
-            distance: contact.dist.min(0.0),
-            on_link: contact.point1,
-            on_triangle: pose * contact.point2,
-            normal: contact.normal1,
-        }))
+        iterated_contact(self.dispatcher, self.link, self.shape, &pose)
     }
 
     fn begins(&self, normal: Vector) -> Real {
@@ -147,6 +130,39 @@ impl<D: QueryDispatcher> Wall for Convex<'_, D> {
     fn largest(&self) -> Result<Real, Unsupported> {
         Ok(largest(&self.pose, self.link, self.shape))
     }
+}
+
+/// The contact of a link and a convex shape at a pose in the link's frame. Where they overlap the distance is 0 or less.
+///
+/// # Errors
+/// [`Unsupported`] for what the dispatcher refuses.
+pub(super) fn iterated_contact(
+    dispatcher: &impl QueryDispatcher,
+    link: &ModifiedCylinder,
+    shape: &dyn Shape,
+    pose: &Pose,
+) -> Result<LinkContact, Unsupported> {
+    match dispatcher.closest_points(pose, link, shape, Real::MAX)? {
+        ClosestPoints::Disjoint => return Err(Unsupported),
+        ClosestPoints::WithinMargin(on_link, on_wall) => {
+            let on_wall = pose * on_wall;
+            if let Some(normal) = unit(on_wall - on_link) {
+                let distance = (on_wall - on_link).dot(normal);
+                return Ok(LinkContact { distance, on_link, on_triangle: on_wall, normal });
+            }
+        }
+        ClosestPoints::Intersecting => {}
+    }
+    let contact = dispatcher.contact(pose, link, shape, 0.0)?;
+    let start = link.start();
+    // Where the one says that they meet and the other does not, they touch; nobody knows along what.
+    let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
+    Ok(contact.map_or(touch, |contact| LinkContact {
+        distance: contact.dist.min(0.0),
+        on_link: contact.point1,
+        on_triangle: pose * contact.point2,
+        normal: contact.normal1,
+    }))
 }
 
 /// A link and the way of a wall, in the link's frame.
@@ -174,6 +190,7 @@ impl<'a> Way<'a> {
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let (link, velocity) = (self.link, self.velocity);
         let (mut time, mut status) = (0.0, ShapeCastStatus::OutOfIterations);
+        let largest = link.radius().max(wall.largest()?);
         let mut contact = finite(wall.contact(Vector::ZERO)?)?;
         for step in 0..MOST_STEPS {
             let closing = -contact.normal.dot(velocity);
@@ -191,7 +208,9 @@ impl<'a> Way<'a> {
                 break;
             }
             let shift = velocity * time;
-            if step > 0 && excess <= self.touching(wall, shift)? {
+            if step > 0
+                && excess <= W::TOUCHING * (link.length() + link.radius()) + self.rounding(largest, shift)?
+            {
                 status = ShapeCastStatus::Converged;
                 break;
             }
@@ -214,14 +233,12 @@ impl<'a> Way<'a> {
         Ok(Some(self.hit(contact, time, status)))
     }
 
-    /// What the distance may exceed the target by and still count.
-    fn touching<W: Wall>(&self, wall: &W, shift: Vector) -> Result<Real, Unsupported> {
-        let link = self.link;
-        let mut largest = link.radius().max(wall.largest()?);
-        for place in [shift, link.start(), link.end()] {
+    /// What rounding can do to a distance after the wall, whose largest coordinate is given, has moved.
+    fn rounding(&self, mut largest: Real, shift: Vector) -> Result<Real, Unsupported> {
+        for place in [shift, self.link.start(), self.link.end()] {
             largest = largest.max(in_range(place)?);
         }
-        Ok(W::TOUCHING * (link.length() + link.radius()) + ROUNDING * largest)
+        Ok(ROUNDING * largest)
     }
 
     fn hit(&self, contact: LinkContact, time: Real, status: ShapeCastStatus) -> ShapeCastHit {

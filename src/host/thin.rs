@@ -35,14 +35,17 @@ impl Thin {
     }
 }
 
-/// The triangle that a shape is, if it is one.
+/// The triangle that a shape of another kind is, if it is one.
 fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
     let line = |a, b| Some(Triangle::new(a, b, b));
     let upright = |half_height: Real| line(Vector::Y * half_height, -Vector::Y * half_height);
-    // Of a size that is not finite, nothing is a small share.
-    let size = shape.compute_local_aabb().extents().max_element();
-    let least = if size.is_finite() { 0.5 * LEAST_SHARE * size } else { 0.0 };
-    let is_thin = |radius: Real| (0.0..=least).contains(&radius);
+    // Only for the kinds that may be thin: every pair of parts comes by here.
+    let is_thin = |radius: Real| {
+        let size = shape.compute_local_aabb().extents().max_element();
+        // Of a size that is not finite, nothing is a small share.
+        let least = if size.is_finite() { 0.5 * LEAST_SHARE * size } else { 0.0 };
+        (0.0..=least).contains(&radius)
+    };
     match shape.as_typed_shape() {
         TypedShape::Segment(segment) => line(segment.a, segment.b),
         TypedShape::Capsule(capsule) if is_thin(capsule.radius) => line(capsule.segment.a, capsule.segment.b),

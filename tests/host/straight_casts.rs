@@ -1,17 +1,18 @@
-//! Casts of links that move straight against triangles: never late, early by no more than is said, and beside parry's.
+//! Casts of links that move straight against triangles and other convex shapes: never late, and early by no
+//! more than is said.
 
 use crate::draw::Draw;
 use crate::scene::floor_mesh;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::query::{
-    DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions, ShapeCastStatus,
-};
+use parry_continuum::parry::query::{QueryDispatcher, ShapeCastOptions, ShapeCastStatus};
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
 /// What a hit may be early by, for shapes of size one: the share of the size at which a link touches.
 const EARLY: Real = 1e-8;
+/// The same where contacts come from iterations.
+const ITERATED: Real = 1e-5;
 
 /// A link, a triangle, where it is, and a velocity that is often towards the link.
 fn scene(random: &mut Random) -> (ModifiedCylinder, Triangle, Pose, Vector) {
@@ -22,52 +23,59 @@ fn scene(random: &mut Random) -> (ModifiedCylinder, Triangle, Pose, Vector) {
     (link, triangle, pose, velocity)
 }
 
+/// A hit is early by at most `early`, and none is late. How many hits and misses there were.
+fn stops_in_time(
+    random: &mut Random,
+    (link, wall): (&ModifiedCylinder, &dyn Shape),
+    pose: Pose,
+    velocity: Vector,
+    early: Real,
+) -> [usize; 2] {
+    let ours = ContinuumDispatcher::default();
+    let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
+    let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
+    let back = -(pose.rotation.inverse() * velocity);
+    let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
+        [(pose, velocity, link, wall), (pose.inverse(), back, wall, link)];
+    let at = |time: Real| {
+        let pose = Pose::from_translation(velocity * time) * pose;
+        ours.distance(&pose, link, wall).unwrap().distance
+    };
+    let [mut hits, mut misses] = [0; 2];
+    if at(0.0) <= target_distance {
+        return [hits, misses];
+    }
+    let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
+    for (pos12, velocity, g1, g2) in pairs {
+        let context = || format!("{link:?} {:?} {pose:?} {velocity}", wall.as_typed_shape());
+        let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
+            misses += 1;
+            assert_eq!(met, None, "{}", context());
+            continue;
+        };
+        hits += 1;
+        let time = hit.time_of_impact;
+        assert_eq!(hit.status, ShapeCastStatus::Converged);
+        assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}: {}", context());
+        assert!((at(time) - target_distance).abs() < early, "{hit:?}: {}, {}", at(time), context());
+        // Points that are as far apart, on either shape, along the normal.
+        let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
+        assert!(((other - one).length() - target_distance).abs() < early, "{hit:?}: {}", context());
+        assert!(((other - one).dot(hit.normal1) - target_distance).abs() < early, "{hit:?}: {}", context());
+        assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
+    }
+    [hits, misses]
+}
+
 #[test]
 fn straight_casts_stop_where_the_two_are_as_near_as_they_may() {
-    let (mut random, ours) = (Random::new(151), ContinuumDispatcher::default());
-    let (mut hits, mut misses, mut parry_misses, mut parry_late) = (0, 0, 0, 0);
+    let (mut random, mut counts) = (Random::new(151), [0; 2]);
     for _ in 0..3000 {
         let (link, triangle, pose, velocity) = scene(&mut random);
-        let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
-        let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
-        let back = -(pose.rotation.inverse() * velocity);
-        let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
-            [(pose, velocity, &link, &triangle), (pose.inverse(), back, &triangle, &link)];
-        let at = |time: Real| {
-            let pose = Pose::from_translation(velocity * time) * pose;
-            ours.distance(&pose, &link, &triangle).unwrap().distance
-        };
-        if at(0.0) <= target_distance {
-            continue;
-        }
-        let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
-        for (pos12, velocity, g1, g2) in pairs {
-            let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
-                misses += 1;
-                assert_eq!(met, None, "{link:?} {triangle:?} {pose:?} {velocity}");
-                continue;
-            };
-            hits += 1;
-            let time = hit.time_of_impact;
-            assert_eq!(hit.status, ShapeCastStatus::Converged);
-            assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}");
-            assert!((at(time) - target_distance).abs() < EARLY, "{hit:?}: {}", at(time));
-            // Points that are as far apart, on either shape, along the normal.
-            let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
-            assert!(((other - one).length() - target_distance).abs() < EARLY, "{hit:?}");
-            assert!(((other - one).dot(hit.normal1) - target_distance).abs() < EARLY, "{hit:?}");
-            assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
-            // parry's own, on the same two shapes.
-            match DefaultQueryDispatcher.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() {
-                None => parry_misses += usize::from(met.is_some()),
-                Some(theirs) => {
-                    let late = theirs.time_of_impact - time;
-                    parry_late += usize::from(late * velocity.length() > 1e-4);
-                }
-            }
-        }
+        let found = stops_in_time(&mut random, (&link, &triangle), pose, velocity, EARLY);
+        counts = [0, 1].map(|k| counts[k] + found[k]);
     }
-    println!("{hits} hits, {misses} misses; parry misses {parry_misses} and is late in {parry_late}");
+    let [hits, misses] = counts;
     assert!(hits > 1500 && misses > 500, "{hits} hits, {misses} misses");
 }
 
@@ -89,48 +97,14 @@ fn convex(random: &mut Random) -> SharedShape {
 /// The same with other convex shapes, whose distances come from parry's GJK.
 #[test]
 fn straight_casts_meet_convex_shapes_in_time() {
-    let (mut random, ours) = (Random::new(155), ContinuumDispatcher::default());
-    let (mut hits, mut misses, mut parry_misses, mut parry_late) = (0, 0, 0, 0);
+    let (mut random, mut counts) = (Random::new(155), [0; 2]);
     for _ in 0..2000 {
         let (link, wall, pose) = (random.link(), convex(&mut random), random.pose(5.0));
         let velocity = link.start() - pose.translation + random.vector(1.5);
-        let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
-        let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
-        let back = -(pose.rotation.inverse() * velocity);
-        let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
-            [(pose, velocity, &link, &*wall), (pose.inverse(), back, &*wall, &link)];
-        let at = |time: Real| {
-            let pose = Pose::from_translation(velocity * time) * pose;
-            ours.distance(&pose, &link, &*wall).unwrap().distance
-        };
-        if at(0.0) <= target_distance {
-            continue;
-        }
-        let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
-        for (pos12, velocity, g1, g2) in pairs {
-            let context = || format!("{link:?} {:?} {pose:?} {velocity}", wall.as_typed_shape());
-            let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
-                misses += 1;
-                assert_eq!(met, None, "{}", context());
-                continue;
-            };
-            hits += 1;
-            let time = hit.time_of_impact;
-            assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}: {}", context());
-            assert!((at(time) - target_distance).abs() < 1e-5, "{hit:?}: {}, {}", at(time), context());
-            let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
-            assert!(((other - one).length() - target_distance).abs() < 1e-5, "{hit:?}: {}", context());
-            assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
-            match DefaultQueryDispatcher.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() {
-                None => parry_misses += usize::from(met.is_some()),
-                Some(theirs) => {
-                    let late = theirs.time_of_impact - time;
-                    parry_late += usize::from(late * velocity.length() > 1e-4);
-                }
-            }
-        }
+        let found = stops_in_time(&mut random, (&link, &*wall), pose, velocity, ITERATED);
+        counts = [0, 1].map(|k| counts[k] + found[k]);
     }
-    println!("{hits} hits, {misses} misses; parry misses {parry_misses} and is late in {parry_late}");
+    let [hits, misses] = counts;
     assert!(hits > 1000 && misses > 300, "{hits} hits, {misses} misses");
 }
 
