@@ -70,6 +70,18 @@ pub enum MeshFileError {
         /// All labels that voxels have, 0 among them, in ascending order.
         present: Vec<u32>,
     },
+    /// A label was asked for, but a file of triangles has none.
+    #[error("{} holds triangles without labels ({format}); ask for no label instead of {label}, or give the segmentation",
+            file.display())]
+    #[non_exhaustive]
+    WithoutLabels {
+        /// The file.
+        file: PathBuf,
+        /// The format that its name promises.
+        format: &'static str,
+        /// The label that was asked for.
+        label: u32,
+    },
     /// All voxels of a label map are 0.
     #[error("{} holds no segment, because all its voxels are 0; export the segmentation again", file.display())]
     #[non_exhaustive]

@@ -29,7 +29,8 @@ pub struct Options {
     /// Multiplies every coordinate, for example 1000 for metres to millimetres. A label map has a unit and comes in
     /// millimetres before it is multiplied.
     pub scale: f64,
-    /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
+    /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside. For a file
+    /// of triangles it is an error.
     pub label: Option<u32>,
 }
 
@@ -45,7 +46,8 @@ impl Options {
         Self { scale, ..Self::default() }
     }
 
-    /// The same, but of a label map the surface of this label, or of all that are not 0.
+    /// The same, but of a label map the surface of this label, or of all that are not 0. A file of triangles has no
+    /// labels: asked for one, it is an error.
     pub fn with_label(self, label: Option<u32>) -> Self {
         Self { label, ..self }
     }
@@ -82,6 +84,14 @@ impl Format {
         }
     }
 
+    fn has_labels(self) -> bool {
+        match self {
+            Self::Stl | Self::Obj | Self::Ply => false,
+            #[cfg(feature = "label-maps")]
+            Self::Nifti | Self::Nrrd => true,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Stl => "STL",
@@ -107,7 +117,8 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 ///
 /// # Errors
 /// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not finite; a triangle
-/// names a vertex that is not there; a label map has no voxel of the label, or holds an image instead; or the scale is not a positive number.
+/// names a vertex that is not there; a label map has no voxel of the label, or holds an image instead; a label is asked
+/// of a file of triangles; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     // The name and the kind of file first: a device may never end.
@@ -133,6 +144,9 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         return Err(MeshFileError::Scale { scale });
     }
     let file = path.to_owned();
+    if let Some(label) = options.label.filter(|_| !format.has_labels()) {
+        return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });
+    }
     let broken = |reason: String| {
         let (file, format) = (path.to_owned(), format.name());
         match text::looks_like(bytes) {

@@ -68,6 +68,17 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
 }
 
 #[test]
+fn a_label_of_triangles_is_refused() {
+    let options = Options::default().with_label(Some(2));
+    let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec();
+    for (name, bytes) in [("a.stl", binary_stl(&ring())), ("a.obj", obj)] {
+        assert!(read(name, &bytes).is_ok());
+        let labelled = from_bytes(name, &bytes, &options).map_err(|e| e.to_string());
+        refused(name, labelled, "holds triangles without labels");
+    }
+}
+
+#[test]
 fn a_file_is_looked_at_before_it_is_read() {
     let loaded = |path: &str| load(path).map_err(|error| error.to_string());
     refused("nowhere", loaded("nowhere/brain.stl"), "nowhere/brain.stl");
