@@ -48,8 +48,16 @@ impl RigidMotion {
         let way = (from.rotation.inverse() * to.rotation).normalize();
         let way = if way.w < 0.0 { -way } else { way };
         let shift = to.translation - from.translation;
-        Ok(Self { tube, from, shift, turn: way.to_scaled_axis() })
+        Ok(Self { tube, from, shift, turn: scaled_axis(way) })
     }
+}
+
+/// The axis of a rotation by half a turn or less, times its angle. (`to_scaled_axis` takes angles below 2e-8 for none.)
+fn scaled_axis(rotation: Rotation) -> Vector {
+    let half = Vector::new(rotation.x, rotation.y, rotation.z);
+    let sine = half.length();
+    // The sine of half of the angle, which is as long as the angle where its square vanishes.
+    half * if sine > 0.0 { 2.0 * sine.atan2(rotation.w) / sine } else { 2.0 }
 }
 
 impl Motion for RigidMotion {

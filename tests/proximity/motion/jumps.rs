@@ -81,3 +81,27 @@ fn a_joint_near_the_base_does_not_reach_through_it() {
     assert_eq!(clears(0.8 * gap), MotionAnswer::Clear);
     assert!(matches!(clears(1.2 * gap), MotionAnswer::Contact { .. }));
 }
+
+/// However little a robot turns, its tip moves.
+#[test]
+fn the_smallest_turn_counts() {
+    let tube = Tube::from(&Chain::capsules(&[Vector::ZERO, 40.0 * Vector::Z], &[0.5]).unwrap());
+    for angle in [1e-6, 1.9e-8, 1e-9] {
+        // Tips that turn about x move along -y, half as far as the wall is away, or twice.
+        let moved = 40.0 * angle;
+        let wall = |share: Real| {
+            let y = -0.5 - share * moved;
+            let corners = [[-9.0, 39.5], [9.0, 39.5], [0.0, 45.0]].map(|[x, z]| Vector::new(x, y, z));
+            BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap()
+        };
+        let motion =
+            RigidMotion::new(tube.clone(), [Pose::IDENTITY, Pose::new(Vector::ZERO, Vector::X * angle)])
+                .unwrap();
+        let clears = |share| wall(share).clears_motion(&motion, 0.0, 0.01 * moved).unwrap();
+        assert!(matches!(clears(0.5), MotionAnswer::Contact { .. }), "{angle}");
+        assert_eq!(clears(2.0), MotionAnswer::Clear, "{angle}");
+        let half = motion.shape(0.5, &mut tube.clone()).unwrap();
+        let tip = half * (40.0 * Vector::Z);
+        assert!((tip.y + 0.5 * moved).abs() < 1e-3 * moved, "{angle}: {tip}");
+    }
+}
