@@ -327,3 +327,21 @@ fn the_contacts_of_all_answers_are_those_of_each() {
     }
     assert!(kinks > 5 && touching > 100, "{kinks} {touching}");
 }
+
+/// A margin beyond everything finds what any margin does that is large enough.
+#[test]
+fn a_margin_without_end_finds_all_contacts() {
+    let mut found = 0;
+    for seed in 0..300 {
+        let random = &mut Random::new(seed);
+        let (mesh, robot) = (small_mesh(random), small_robot(random));
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        let all = contacts(&mut search, &robot, 1e3);
+        found += all.len();
+        for margin in [1e12, 1e16, 1e160, f64::INFINITY] {
+            assert_eq!(contacts(&mut search, &robot, margin), all, "{seed}: {margin}");
+        }
+        assert!(!search.clears(&robot, &Pose::IDENTITY, f64::INFINITY).unwrap());
+    }
+    assert!(found > 600, "{found}");
+}

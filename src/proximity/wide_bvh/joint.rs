@@ -225,6 +225,7 @@ impl<E: Lane> JointSearch<'_, E> {
             squared.store(&mut apart[lane..]);
             near |= may_meet << lane;
         }
+        near &= node.used();
         let bottom = waiting.len();
         while near != 0 {
             let child = near.trailing_zeros() as usize;

@@ -69,7 +69,8 @@ pub(super) struct Leaf<E> {
 }
 
 impl<E: Lane> Node<E> {
-    /// Bounds far beyond anything, so that unused children are never near.
+    /// Bounds beyond anything of a mesh, so that unused children are only near where no limit rules out anything:
+    /// [`Node::used`] drops them there.
     pub(super) fn empty() -> Self {
         let far = E::round(1.0e9 * E::FARTHEST);
         let (zero, one) = (E::default(), E::default().one());
@@ -99,6 +100,12 @@ impl<E: Lane> Node<E> {
         for (row, value) in rows.into_iter().flatten().enumerate() {
             self.rows[row * WIDTH + child] = value;
         }
+    }
+
+    /// The children in use, one bit each.
+    #[inline(always)]
+    pub(super) fn used(&self) -> u64 {
+        (1 << self.count) - 1
     }
 
     #[cfg(test)]

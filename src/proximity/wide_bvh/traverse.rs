@@ -430,5 +430,5 @@ where
         squared.store(&mut bounds[lane..]);
         near |= L::bits(squared.lt(limit)) << lane;
     }
-    (near, bounds)
+    (near & node.used(), bounds)
 }
