@@ -24,6 +24,15 @@ pub(crate) struct PlacedRobot<'a> {
     pose: &'a Pose,
     /// Base and tip in the mesh's frame.
     ends: [Vector; 2],
+    /// By how much a rotation that is not quite of unit length stretches the robot.
+    stretch: Real,
+    /// What rounding can do to the place of a link in a capsule.
+    ///
+    /// A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, the length of the error), and a moved one by u more
+    /// of where it comes to be. |q|^2 |p| is no longer than that place and the translation together, and a length at most
+    /// 1.74 times its largest coordinate: 37 u of the largest coordinates of both. Twice that, for the capsule and for the
+    /// link, is less than 128 u.
+    slack: Real,
 }
 
 impl<'a> PlacedRobot<'a> {
@@ -33,7 +42,14 @@ impl<'a> PlacedRobot<'a> {
         let links = robot.links();
         let ends = [pose * links[0].start(), pose * links[links.len() - 1].end()];
         check_pose(robot, pose, ends)?;
-        Ok(Self { robot, pose, ends })
+        let stretch = pose.rotation.length_squared().max(1.0);
+        let around = match robot.link_tree()[0] {
+            LinkNode::Inner { bound, .. } => bound.radius * stretch,
+            LinkNode::Leaf(_) => 0.0,
+        };
+        let largest = ends[0].abs().max(ends[1].abs()).max(pose.translation.abs()).max_element();
+        let slack = 128.0 * Real::UNIT_ROUNDOFF * (2.0 * largest + around);
+        Ok(Self { robot, pose, ends, stretch, slack })
     }
 
     /// The links in the robot's frame.
@@ -62,7 +78,14 @@ impl<'a> PlacedRobot<'a> {
 
     /// A capsule around links in the mesh's frame.
     pub(super) fn bound(&self, bound: &BoundingCapsule) -> PlacedLink {
-        PlacedLink::between(self.pose * bound.start, self.pose * bound.end, bound.radius, [false; 2])
+        let ([start, end], radius) = self.capsule(bound);
+        PlacedLink::between(start, end, radius, [false; 2])
+    }
+
+    /// The ends of its axis, and a radius that holds the links as they are placed one by one.
+    #[inline(always)]
+    fn capsule(&self, bound: &BoundingCapsule) -> ([Vector; 2], Real) {
+        ([self.pose * bound.start, self.pose * bound.end], bound.radius * self.stretch + self.slack)
     }
 
     /// Base and tip in the mesh's frame.
@@ -76,7 +99,8 @@ impl<'a> PlacedRobot<'a> {
     pub(super) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
         match node {
             LinkNode::Inner { bound, .. } => {
-                ([self.pose * bound.start, self.pose * bound.end], bound.radius, [false; 2])
+                let (ends, radius) = self.capsule(bound);
+                (ends, radius, [false; 2])
             }
             LinkNode::Leaf(link) => {
                 let link = self.robot.links()[*link].transformed(self.pose);

@@ -110,3 +110,39 @@ fn what_is_far_away_does_not_make_queries_slow() {
         }
     }
 }
+
+/// So far out that the ends of links are rounded to a grid, each on its own: links may leave the line between base and tip.
+#[test]
+fn robots_far_out_clear_exactly_what_their_distance_exceeds() {
+    let (mut off, mut clear) = (0, 0);
+    for seed in 0..3000 {
+        let random = &mut Random::new(seed);
+        let far = 2.0_f64.powi(30 + random.below(13) as i32);
+        let grid = far * f64::EPSILON;
+        let points: Vec<_> = (0..=2 + random.below(6))
+            .map(|k| Vector::new(random.between(-1.0, 1.0) * grid, 0.0, 0.3 * f64::from(k)))
+            .collect();
+        let robot = Chain::capsules(&points, &vec![0.1; points.len() - 1]).unwrap();
+        let place = Vector::X * far;
+        let corners = [[-0.75, -0.5], [0.75, -0.5], [0.0, 2.0]];
+        let corners = corners.map(|[y, z]| place + Vector::new(0.25 + random.between(0.0, 0.1), y, z));
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let pose = Pose::from_translation(place);
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        let distance = search.minimum(&robot, &pose).unwrap().distance;
+        let placed = points.iter().map(|&point| (pose * point).x - far);
+        off += usize::from(placed.fold(0.0, f64::max) > 0.0 && distance > 0.0);
+        let mut found = Vec::new();
+        for (margin, clears) in [(distance, false), (distance.next_down(), distance > 0.0)] {
+            if margin < 0.0 {
+                continue;
+            }
+            let mut fresh = BvhSearch::new(&mesh).unwrap();
+            assert_eq!(fresh.clears(&robot, &pose, margin).unwrap(), clears, "{seed}: {margin}");
+            fresh.within(&robot, &pose, margin, &mut found).unwrap();
+            assert_eq!(found.is_empty(), clears, "{seed}: {margin}");
+            clear += usize::from(clears);
+        }
+    }
+    assert!(off > 1000 && clear > 2000, "{off} {clear}");
+}
