@@ -193,6 +193,8 @@ impl<M: Motion> MotionSearch<'_, M> {
     /// Fills the tube with the shape at `t`.
     fn shape(&mut self, t: Real) -> Result<Pose, ProximityError> {
         let MotionMemory { tube, sections, sampled, .. } = &mut *self.memory;
+        // Only what this shape states counts.
+        tube.forget_error();
         let pose = self.motion.shape(t, tube)?;
         sections.check(t, tube)?;
         // In debug builds the shapes that come along also try the stated speeds.

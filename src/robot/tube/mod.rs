@@ -138,6 +138,11 @@ impl Tube {
         Ok(self)
     }
 
+    /// Takes back the error that was stated.
+    pub(crate) fn forget_error(&mut self) {
+        self.error = 0.0;
+    }
+
     /// The length of the centreline; between samples, of the lines that join them.
     pub fn length(&self) -> Real {
         self.sections.last().map_or(0.0, |section| section.end)

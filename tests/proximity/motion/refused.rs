@@ -89,3 +89,22 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     let lost = Pose::from_translation(Vector::splat(Real::NAN));
     assert!(RigidMotion::new(Tube::from(&Chain::capsules(&a, &[1.0]).unwrap()), [lost, lost]).is_err());
 }
+
+/// What one motion states of its tube is not left to the next, which says nothing of it.
+#[test]
+fn an_error_is_not_left_to_the_next_motion() {
+    let mut search = anatomy();
+    let inside = ventricle::entry().translation;
+    let line = [inside, inside + Vector::Z * 0.3];
+    let made = |t: Real, tube: &mut Tube| {
+        tube.set_samples(&line, &[0.1], None)?;
+        Ok(Pose::from_translation(Vector::Z * (0.1 * t)))
+    };
+    let motion = Made(made, || 0.1);
+    let fresh = search.clears_motion(&motion, 0.2, 1e-3);
+    assert_eq!(fresh, Ok(MotionAnswer::Clear));
+    let blurred = Tube::from_samples(&line, &[0.1], None).unwrap().with_error(50.0).unwrap();
+    let blurred = RigidMotion::new(blurred, [Pose::IDENTITY; 2]).unwrap();
+    assert_ne!(search.clears_motion(&blurred, 0.2, 1e-3), Ok(MotionAnswer::Clear));
+    assert_eq!(search.clears_motion(&motion, 0.2, 1e-3), fresh);
+}
