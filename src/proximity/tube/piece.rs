@@ -16,6 +16,9 @@ pub(crate) struct Piece {
 /// room that a ball needs, because the body around a piece is wider than the tube.
 const ROOM: Real = 1.125;
 
+/// More pieces of a section are never begun with: what is near the wall is halved, and thin wires would begin with millions.
+const MOST_PIECES: u32 = 1024;
+
 impl PlacedTube<'_> {
     /// The arc lengths of a piece's ends.
     pub(crate) fn arcs(&self, piece: &Piece) -> [Real; 2] {
@@ -67,7 +70,7 @@ impl PlacedTube<'_> {
             // By k l^2 / 8, and never turning by more than 1 rad.
             let longest = (8.0 * coarse / section.curvature).sqrt().min(1.0 / section.curvature);
             // A number out of range becomes the nearest that is in it, and NaN becomes 0.
-            let count = ((length / longest).ceil() as u32).max(1).min(to - from);
+            let count = ((length / longest).ceil() as u32).clamp(1, MOST_PIECES).min(to - from);
             let tick =
                 |k: u32| (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32;
             pieces.extend((0..count).rev().map(|k| Piece {

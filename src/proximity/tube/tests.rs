@@ -241,3 +241,24 @@ fn balls_at_round_ends_lie_in_discs() {
     }
     assert!(checked > 1_200 && beyond > 120, "{checked} {beyond}");
 }
+
+/// A thin wire is begun with as many pieces as its bends need, not with millions.
+#[test]
+fn thin_wires_begin_with_few_pieces() {
+    let arc = |s: Real| {
+        (
+            Vector::new(1.0 - (0.1 * s).cos(), 0.0, (0.1 * s).sin()) * 10.0,
+            Vector::new((0.1 * s).sin(), 0.0, (0.1 * s).cos()),
+        )
+    };
+    for radius in [0.0, 1e-300, 1e-9, 0.1] {
+        let sections = [TubeSection { length: 10.0, radius, curvature: 0.1 }; 2];
+        let tube = Tube::from_function(&sections, arc).unwrap();
+        let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 10.0).unwrap();
+        for coarse in [0.0, radius, 1.0, 1e3] {
+            let mut pieces = Vec::new();
+            placed.begin(coarse, &mut pieces);
+            assert!((2..2100).contains(&pieces.len()), "{radius}, {coarse}: {}", pieces.len());
+        }
+    }
+}

@@ -120,7 +120,7 @@ impl TubeSearch<'_> {
         last: Option<Place>,
     ) -> Result<(Decision, Option<Place>), ProximityError> {
         let mut decision = Decision::Clear;
-        self.begin(margin);
+        self.begin(margin.max(resolution));
         while let Some(piece) = self.pieces.pop() {
             let outer = self.outer(&piece)?;
             let is_wide =
