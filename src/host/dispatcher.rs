@@ -53,7 +53,8 @@ use parry3d_f64::shape::Shape;
 /// # Errors
 /// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
 /// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a rotation that is not of unit
-/// length, for a margin that is NaN, and for the queries that parry has not got for voxels.
+/// length, for a margin that is NaN, for height fields and voxels of a negative scale, and for the queries that parry has
+/// not got for voxels.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -98,7 +99,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let (true, Some(ball)) = (has_parts(g1), g2.as_ball()) {
             return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
         }
-        match Parts::of(g1, g2) {
+        match Parts::of(g1, g2)? {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 details::intersection_test_composite_shape_shape(watched, pos12, parts, g2)
             }),
@@ -123,7 +124,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.distance();
         }
-        match Parts::of(g1, g2) {
+        match Parts::of(g1, g2)? {
             Parts::Composite(parts) => {
                 let answer = Watched::ask(self, |watched| {
                     details::distance_composite_shape_shape(watched, pos12, parts, g2)
@@ -158,7 +159,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.contact(prediction);
         }
-        match Parts::of(g1, g2) {
+        match Parts::of(g1, g2)? {
             // A negative prediction asks for an overlap; parry's composites want it positive.
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 details::contact_composite_shape_shape(watched, pos12, parts, g2, prediction.max(0.0))
@@ -196,7 +197,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.closest_points(max_dist);
         }
-        match Parts::of(g1, g2) {
+        match Parts::of(g1, g2)? {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 // The search wants parts strictly nearer than its bound.
                 let bound = max_dist.max(0.0).next_up();
@@ -230,10 +231,25 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
         }
-        match Parts::of(g1, g2) {
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                details::cast_shapes_composite_shape_shape(watched, pos12, local_vel12, parts, g2, options)
-            }),
+        match Parts::of(g1, g2)? {
+            Parts::Composite(parts) => {
+                let latest = options.max_time_of_impact;
+                // The search wants hits strictly earlier than its bound, and goes through all that is never met for a
+                // bound above the largest number.
+                let max_time_of_impact = latest.next_up().min(Real::MAX);
+                let options = ShapeCastOptions { max_time_of_impact, ..options };
+                let hit = Watched::ask(self, |watched| {
+                    details::cast_shapes_composite_shape_shape(
+                        watched,
+                        pos12,
+                        local_vel12,
+                        parts,
+                        g2,
+                        options,
+                    )
+                })?;
+                Ok(hit.filter(|hit| hit.time_of_impact <= latest))
+            }
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
@@ -293,7 +309,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
             return Ok(hit);
         }
-        match Parts::of(g1, g2) {
+        match Parts::of(g1, g2)? {
             Parts::Composite(parts) => elements::cast_parts_nonlinear(
                 self,
                 (motion1, parts),

@@ -14,6 +14,7 @@
 use super::dispatcher::ContinuumDispatcher;
 use super::joint::Side;
 use super::link_triangle::LinkTriangle;
+use super::parts::check_scale;
 use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
 use super::thin::Thin;
@@ -46,6 +47,8 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
+        check_scale(g1)?;
+        check_scale(g2)?;
         // parry loosens boxes by the prediction, and wants it positive.
         let prediction = prediction.max(0.0);
         if !robot_mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {

@@ -1,5 +1,6 @@
 //! How a pair of shapes is taken apart.
 
+use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 
 /// The shape of a pair that consists of others.
@@ -18,8 +19,13 @@ pub(super) enum Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// The first shape is taken apart first.
-    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Self {
-        if let Some(composite) = g1.as_composite_shape() {
+    ///
+    /// # Errors
+    /// As [`check_scale`].
+    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
+        check_scale(g1)?;
+        check_scale(g2)?;
+        Ok(if let Some(composite) = g1.as_composite_shape() {
             Self::Composite(composite)
         } else if let Some(field) = g1.as_heightfield() {
             Self::Field(field)
@@ -29,8 +35,19 @@ impl<'a> Parts<'a> {
             Self::OfSecond
         } else {
             Self::None
-        }
+        })
     }
+}
+
+/// What parry finds cells of.
+///
+/// # Errors
+/// [`Unsupported`] for height fields and voxels that a negative scale mirrors: of these parry looks for cells between a
+/// box's upper corner and its lower one, where there are none.
+pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
+    let scale =
+        shape.as_heightfield().map(HeightField::scale).or_else(|| shape.as_voxels().map(Voxels::voxel_size));
+    if scale.is_some_and(|scale| scale.min_element() < 0.0) { Err(Unsupported) } else { Ok(()) }
 }
 
 /// Whether `shape` consists of others.

@@ -4,8 +4,12 @@ use crate::dispatcher::ROUNDING;
 use crate::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
-use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher, ShapeCastOptions};
-use parry_continuum::parry::shape::{Shape, SharedShape, Voxels};
+use parry_continuum::parry::query::{
+    ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastOptions,
+};
+use parry_continuum::parry::shape::{HeightField, Shape, SharedShape, Voxels};
+use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Chain, ContinuumDispatcher};
 
 /// Every pair of a robot and a composite, with the poses that bring them near each other.
@@ -127,4 +131,46 @@ fn voxels_are_met_and_cast_against_but_have_no_distance() {
     let hit =
         dispatcher.cast_shapes(&place, Vector::X, &voxels, &robot, ShapeCastOptions::default()).unwrap();
     assert!((hit.unwrap().time_of_impact - 1.75).abs() < 1e-4, "{hit:?}");
+}
+
+/// parry finds no cell of what a negative scale mirrors.
+#[test]
+fn mirrored_height_fields_and_voxels_are_refused() {
+    let field = HeightField::new(Array2::new(3, 3, vec![1.0; 9]), Vector::new(2.0, 1.0, 2.0));
+    let voxels = Voxels::new(Vector::ONE, &[IVector::new(0, 0, 0), IVector::new(1, 0, 0)]);
+    let robot = Chain::capsules(&[Vector::new(-0.9, 0.9, 0.3), Vector::new(0.9, 1.1, 0.4)], &[0.25]).unwrap();
+    let dispatcher = ContinuumDispatcher::default();
+    let mirrors = [Vector::new(-1.0, 1.0, 1.0), Vector::new(1.0, -1.0, 1.0)];
+    for scale in mirrors.into_iter().chain([Vector::ONE]) {
+        let shapes: [SharedShape; 2] =
+            [SharedShape::new(field.clone().scaled(scale)), SharedShape::new(voxels.clone().scaled(scale))];
+        for wall in shapes {
+            let pairs: [[&dyn Shape; 2]; 2] = [[&robot, &*wall], [&*wall, &robot]];
+            for [g1, g2] in pairs {
+                let found = dispatcher.intersection_test(&Pose::IDENTITY, g1, g2);
+                let hit =
+                    dispatcher.cast_shapes(&Pose::IDENTITY, Vector::Y, g1, g2, ShapeCastOptions::default());
+                let still = NonlinearRigidMotion::identity();
+                let turned = dispatcher.cast_shapes_nonlinear(&still, g1, &still, g2, 0.0, 1.0, true);
+                let (mut manifolds, mut workspace) = (Vec::<ContactManifold<(), ()>>::new(), None);
+                let manifold = dispatcher.contact_manifolds(
+                    &Pose::IDENTITY,
+                    g1,
+                    g2,
+                    0.1,
+                    &mut manifolds,
+                    &mut workspace,
+                );
+                if scale == Vector::ONE {
+                    assert!(found.unwrap().intersecting);
+                    assert!(hit.unwrap().is_some() && turned.unwrap().is_some() && manifold.is_ok());
+                } else {
+                    assert!(found.is_err() && hit.is_err() && turned.is_err() && manifold.is_err());
+                    assert!(dispatcher.distance(&Pose::IDENTITY, g1, g2).is_err());
+                    assert!(dispatcher.contact(&Pose::IDENTITY, g1, g2, 0.1).is_err());
+                    assert!(dispatcher.closest_points(&Pose::IDENTITY, g1, g2, 0.1).is_err());
+                }
+            }
+        }
+    }
 }
