@@ -191,7 +191,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             }
             Wall::Convex(shape, support) => {
                 share = ITERATED;
-                let contact = iterated_contact(self.dispatcher, link, shape, &pos12)?;
+                let contact = iterated_contact(self.dispatcher, link, (shape, support), &pos12)?;
                 (on_link, normal) = (contact.on_link, contact.normal);
                 if contact.distance > 0.0 {
                     // The two themselves say how far apart they are along it.

@@ -9,7 +9,8 @@
 //! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they
 //!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
 //!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
-//!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal.
+//!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal. Where none of
+//!    them keeps the two apart, as with a rim that all but touches an edge aslant, those of case 3 are tried too.
 //! 2. **The triangle enters, the axis is outside, and no flat cap is near.** A capsule is its axis swollen by a ball, so
 //!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
 //!    distance `F`. What a flat cap cuts away makes no shorter way out as long as it is at least as far along the axis
@@ -65,6 +66,7 @@ impl<'a> LinkTriangle<'a> {
 }
 
 /// Where a link and a triangle meet, in the frame of both.
+#[derive(Clone, Copy)]
 pub(super) struct LinkContact {
     /// Distance, or minus the length of the least separating translation.
     pub distance: Real,
@@ -155,13 +157,14 @@ impl Local {
         }
         // Case 1.
         if distance > 0.0 {
-            let (_, normal) = self.widest_gap([unit(on_triangle - on_link), outward], distance);
-            return Some(LinkContact { distance, on_link, on_triangle, normal });
+            let mut best = self.widest_gap([unit(on_triangle - on_link), outward], distance);
+            if best.0 <= 0.0 {
+                best = self.widest_of_all(best);
+            }
+            return Some(LinkContact { distance, on_link, on_triangle, normal: best.1 });
         }
         // Case 3.
-        let mut best = self.widest_gap([outward, None], Real::INFINITY);
-        separation::directions(link, self.triangle, |n| best = self.wider(best, n));
-        let (gap, normal) = best;
+        let (gap, normal) = self.widest_of_all(self.widest_gap([outward, None], Real::INFINITY));
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
         Some(LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal })
@@ -200,6 +203,12 @@ impl Local {
         for n in turned.flatten().chain(lines.flat_map(|n| [n, -n])) {
             best = self.wider(best, n);
         }
+        best
+    }
+
+    /// The best direction so far or one of those in which a least translation can be.
+    fn widest_of_all(&self, mut best: (Real, Vector)) -> (Real, Vector) {
+        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
         best
     }
 

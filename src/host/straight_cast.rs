@@ -2,9 +2,14 @@
 //!
 //! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit vector from the link to the
 //! wall that separates them, and g the gap between them along it. After a time s the gap along the same n is g + s <n, v>,
-//! and the distance at least that, whatever n is. So nothing is within the target distance e before s = (g - e) / -<n, v>,
-//! and nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is their distance as a
-//! function of time, of which these steps are Newton's: they come from the safe side and do not pass the first root.
+//! and the distance at least that, whatever n is. So where g > e nothing is within the target distance e before
+//! s = (g - e) / -<n, v>, and nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is
+//! their distance as a function of time, of which these steps are Newton's: they come from the safe side and do not pass the
+//! first root.
+//!
+//! Where g is not above e by more than rounding, n tells nothing: the two touch. At the start, and if the host does not stop
+//! there, they are let go when they part along n; but only if n is known. Points that are close to one another have no
+//! direction between them, and two that may part or not are held.
 //!
 //! They end where the distance is above the target by no more than the wall's [`Wall::TOUCHING`] of the link's size, or by
 //! rounding: the hit is that much early at most, measured along n.
@@ -16,6 +21,7 @@ use super::axial::unit;
 use super::link_triangle::{self, LinkContact, LinkTriangle};
 use super::range::{in_range, largest};
 use crate::ModifiedCylinder;
+use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported,
@@ -120,7 +126,7 @@ impl<D: QueryDispatcher> Wall for Convex<'_, D> {
 
     fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
         let pose = Pose::from_translation(shift) * self.pose;
-        iterated_contact(self.dispatcher, self.link, self.shape, &pose)
+        iterated_contact(self.dispatcher, self.link, (self.shape, self.support), &pose)
     }
 
     fn begins(&self, normal: Vector) -> Real {
@@ -139,30 +145,43 @@ impl<D: QueryDispatcher> Wall for Convex<'_, D> {
 pub(super) fn iterated_contact(
     dispatcher: &impl QueryDispatcher,
     link: &ModifiedCylinder,
-    shape: &dyn Shape,
+    (shape, support): (&dyn Shape, &dyn SupportMap),
     pose: &Pose,
 ) -> Result<LinkContact, Unsupported> {
-    match dispatcher.closest_points(pose, link, shape, Real::MAX)? {
+    let gap = |normal: Vector| {
+        (support.support_point_toward(pose, -normal) - link.local_support_point_toward(normal)).dot(normal)
+    };
+    let apart = match dispatcher.closest_points(pose, link, shape, Real::MAX)? {
         ClosestPoints::Disjoint => return Err(Unsupported),
+        ClosestPoints::Intersecting => None,
         ClosestPoints::WithinMargin(on_link, on_wall) => {
-            let on_wall = pose * on_wall;
-            if let Some(normal) = unit(on_wall - on_link) {
-                let distance = (on_wall - on_link).dot(normal);
-                return Ok(LinkContact { distance, on_link, on_triangle: on_wall, normal });
-            }
+            let on_triangle = pose * on_wall;
+            unit(on_triangle - on_link).map(|normal| {
+                let distance = (on_triangle - on_link).dot(normal);
+                LinkContact { distance, on_link, on_triangle, normal }
+            })
         }
-        ClosestPoints::Intersecting => {}
+    };
+    if let Some(apart) = &apart
+        && gap(apart.normal) > 0.5 * apart.distance
+    {
+        return Ok(*apart);
     }
-    let contact = dispatcher.contact(pose, link, shape, 0.0)?;
-    let start = link.start();
-    // Where the one says that they meet and the other does not, they touch; nobody knows along what.
-    let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
-    Ok(contact.map_or(touch, |contact| LinkContact {
-        distance: contact.dist.min(0.0),
+    // They overlap, or are so close that rounding has turned the way between their points.
+    let contact = dispatcher.contact(pose, link, shape, Real::MAX)?.map(|contact| LinkContact {
+        distance: if apart.is_some() { contact.dist } else { contact.dist.min(0.0) },
         on_link: contact.point1,
         on_triangle: pose * contact.point2,
         normal: contact.normal1,
-    }))
+    });
+    let start = link.start();
+    // Where the one says that they meet and the other does not, they touch; nobody knows along what.
+    let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
+    Ok(match (contact, apart) {
+        (Some(contact), Some(apart)) if gap(contact.normal) < gap(apart.normal) => apart,
+        (Some(contact), _) => contact,
+        (None, apart) => apart.unwrap_or(touch),
+    })
 }
 
 /// A link and the way of a wall, in the link's frame.
@@ -193,10 +212,18 @@ impl<'a> Way<'a> {
         let largest = link.radius().max(wall.largest()?);
         let mut contact = finite(wall.contact(Vector::ZERO)?)?;
         for step in 0..MOST_STEPS {
-            let closing = -contact.normal.dot(velocity);
+            let normal = contact.normal;
+            let closing = -normal.dot(velocity);
             let excess = contact.distance - options.target_distance;
-            if step == 0 && excess <= 0.0 {
-                if !options.stop_at_penetration && closing <= 0.0 {
+            let shift = velocity * time;
+            let begins = wall.begins(normal) + shift.dot(normal);
+            let gap = begins - link.local_support_point(normal).dot(normal);
+            let ahead = gap.min(contact.distance) - options.target_distance;
+            let (rounding, touching) =
+                (self.rounding(largest, shift)?, W::TOUCHING * (link.length() + link.radius()));
+            if step == 0 && (excess <= 0.0 || ahead <= rounding) {
+                let is_known = contact.distance < 0.0 || gap >= contact.distance - touching - rounding;
+                if !options.stop_at_penetration && is_known && closing <= 0.0 {
                     return Ok(None);
                 }
                 // As parry has it, what just touches is not within.
@@ -207,19 +234,15 @@ impl<'a> Way<'a> {
                 };
                 break;
             }
-            let shift = velocity * time;
-            if step > 0
-                && excess <= W::TOUCHING * (link.length() + link.radius()) + self.rounding(largest, shift)?
-            {
+            if step > 0 && excess <= touching + rounding || ahead <= rounding {
                 status = ShapeCastStatus::Converged;
                 break;
             }
-            let normal = contact.normal;
-            let begins = wall.begins(normal) + shift.dot(normal);
-            let gap = begins - link.local_support_point(normal).dot(normal);
-            let next = time + (gap.min(contact.distance) - options.target_distance) / closing;
-            // Written so that NaN, which only comes of what does not move, is never.
-            let may_meet = closing > 0.0 && next <= options.max_time_of_impact;
+            let next = time + ahead / closing;
+            // Written so that NaN, which only comes of what does not move, is never. Nor is anything met that would have to
+            // come from beyond the range of both.
+            let may_meet =
+                closing > 0.0 && next <= options.max_time_of_impact && is_within_reach(velocity * next);
             if !may_meet {
                 return Ok(None);
             }
@@ -257,6 +280,12 @@ impl<'a> Way<'a> {
         };
         if self.link_is_first { hit } else { hit.swapped() }
     }
+}
+
+/// Whether a wall that is moved so far can meet a link at all: the wall's coordinates are within the limit, and a link
+/// reaches to twice the limit.
+fn is_within_reach(shift: Vector) -> bool {
+    shift.abs().max_element() <= 4.0 * COORDINATE_LIMIT
 }
 
 fn finite(contact: LinkContact) -> Result<LinkContact, Unsupported> {

@@ -23,3 +23,4 @@ mod scene;
 mod serialised;
 mod shape;
 mod straight_casts;
+mod touching;
