@@ -15,6 +15,7 @@
 //! matter. Nothing is kept from one call to the next but what the host stores with its points, which are
 //! matched by feature.
 
+use super::axial::unit;
 use super::link_triangle::{LinkTriangle, Local};
 use super::meeting::Meeting;
 use super::{crest, feature, footing, rim};
@@ -56,6 +57,8 @@ pub(super) fn update<M, C: Default + Copy>(
         return Ok(());
     }
     let normal = if link_is_first { n1 } else { n2 };
+    // A rotation that is not quite of unit length is not to be taken for a turn.
+    let normal = unit(normal).unwrap_or(normal);
     let is_turned = (normal - found.normal).length() > TURNED;
 
     let mut meeting =

@@ -39,7 +39,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// What parry finds cells of.
+/// Whether parry finds the cells of a shape.
 ///
 /// # Errors
 /// [`Unsupported`] for height fields and voxels that a negative scale mirrors: of these parry looks for cells between a

@@ -7,9 +7,9 @@
 //! their distance as a function of time, of which these steps are Newton's: they come from the safe side and do not pass the
 //! first root.
 //!
-//! Where g is not above e by more than rounding, n tells nothing: the two touch. At the start, and if the host does not stop
-//! there, they are let go when they part along n; but only if n is known. Points that are close to one another have no
-//! direction between them, and two that may part or not are held.
+//! Where g is not above e, n tells nothing: the two touch. At the start, and if the host does not stop there, they are let go
+//! when they part along n; but only if n is known. Points that are close to one another have no direction between them, and
+//! two that may part or not are held.
 //!
 //! They end where the distance is above the target by no more than the wall's [`Wall::TOUCHING`] of the link's size, or by
 //! rounding: the hit is that much early at most, measured along n.
@@ -223,7 +223,8 @@ impl<'a> Way<'a> {
                 (self.rounding(largest, shift)?, W::TOUCHING * (link.length() + link.radius()));
             if step == 0 && (excess <= 0.0 || ahead <= rounding) {
                 let is_known = contact.distance < 0.0 || gap >= contact.distance - touching - rounding;
-                if !options.stop_at_penetration && is_known && closing <= 0.0 {
+                let may_go = if options.stop_at_penetration { excess > 0.0 && ahead > 0.0 } else { is_known };
+                if may_go && closing <= 0.0 {
                     return Ok(None);
                 }
                 // As parry has it, what just touches is not within.

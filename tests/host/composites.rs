@@ -8,7 +8,7 @@ use parry_continuum::parry::query::{
     ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
     ShapeCastOptions,
 };
-use parry_continuum::parry::shape::{HeightField, Shape, SharedShape, Voxels};
+use parry_continuum::parry::shape::{Ball, HeightField, Shape, SharedShape, Voxels};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Chain, ContinuumDispatcher};
 
@@ -145,6 +145,10 @@ fn mirrored_height_fields_and_voxels_are_refused() {
         let shapes: [SharedShape; 2] =
             [SharedShape::new(field.clone().scaled(scale)), SharedShape::new(voxels.clone().scaled(scale))];
         for wall in shapes {
+            let ball = Ball::new(0.1);
+            let far = Pose::from_translation(Vector::splat(1e3));
+            let meets = dispatcher.intersection_test(&far, &*wall, &ball).map(|found| found.intersecting);
+            assert_eq!(meets.ok(), (scale == Vector::ONE).then_some(false));
             let pairs: [[&dyn Shape; 2]; 2] = [[&robot, &*wall], [&*wall, &robot]];
             for [g1, g2] in pairs {
                 let found = dispatcher.intersection_test(&Pose::IDENTITY, g1, g2);

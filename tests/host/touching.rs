@@ -53,9 +53,9 @@ fn a_ball_that_touches_a_link_is_met_or_let_go() {
     assert!(apart > 300 && overlapping > 300, "{apart} {overlapping}");
 }
 
-/// With a box GJK tells the contacts.
+/// With a box GJK tells the contacts. What is apart by more than its tolerance may go.
 #[test]
-fn a_box_that_touches_a_link_is_met() {
+fn a_box_that_touches_a_link_is_met_and_one_beside_it_let_go() {
     let wall = Cuboid::new(Vector::new(1.5, 1.25, 0.75));
     for r in (1..=20).map(|k| 0.05 * Real::from(k)) {
         for caps in [[Cap::Round; 2], [Cap::Flat; 2], [Cap::Flat, Cap::Round]] {
@@ -66,6 +66,11 @@ fn a_box_that_touches_a_link_is_met() {
                     for hit in casts(&link, &wall, place, into, stop) {
                         let hit = hit.unwrap_or_else(|| panic!("no hit: {link:?} {place} {stop}"));
                         assert!(hit.time_of_impact <= 1e-5, "{link:?} {place}: {hit:?}");
+                    }
+                    for beside in [1e-7, 1e-5, 1e-3].map(|gap| place - into * gap) {
+                        for hit in casts(&link, &wall, beside, -into, stop) {
+                            assert!(hit.is_none(), "{link:?} {beside}: {hit:?}");
+                        }
                     }
                 }
             }
@@ -117,7 +122,7 @@ fn an_edge_that_touches_a_rim_aslant_is_met_or_let_go() {
     assert!(apart > 300 && met > 3000 && gone > 1500, "{apart} {met} {gone}");
 }
 
-/// A hit at the very end of the time counts, whatever the wall consists of.
+/// A hit at the very end of the time counts, whether the wall is a triangle or a mesh.
 #[test]
 fn the_last_moment_belongs_to_a_cast() {
     let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, 0.5).unwrap();

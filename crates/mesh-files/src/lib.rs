@@ -144,9 +144,6 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         return Err(MeshFileError::Scale { scale });
     }
     let file = path.to_owned();
-    if let Some(label) = options.label.filter(|_| !format.has_labels()) {
-        return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });
-    }
     let broken = |reason: String| {
         let (file, format) = (path.to_owned(), format.name());
         match text::looks_like(bytes) {
@@ -177,6 +174,9 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         #[cfg(feature = "label-maps")]
         Format::Nrrd => surface(label_map::nrrd::read(bytes)),
     }?;
+    if let Some(label) = options.label.filter(|_| !format.has_labels()) {
+        return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });
+    }
     if mesh.triangles.is_empty() {
         return Err(MeshFileError::Empty { file });
     }

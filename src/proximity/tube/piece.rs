@@ -48,7 +48,8 @@ impl PlacedTube<'_> {
     }
 
     /// The pieces to begin with, those near faces first, so that they come last from a stack: they cost most, and a
-    /// bound from the others spares most of them. The others leave their chord by about `coarse`.
+    /// bound from the others spares most of them. The others leave their chord by about `coarse`, unless that would make
+    /// too many.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
         pieces.clear();
         for number in (0..self.sections().len() as u32).rev() {

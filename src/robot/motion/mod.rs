@@ -58,7 +58,8 @@ use parry3d_f64::math::{Pose, Real};
 pub trait Motion {
     /// Makes `tube` the robot's shape at time `t`, and gives its pose in the mesh's frame.
     ///
-    /// `tube` holds some shape from before; [`Tube::set_samples`] and [`Tube::set_chain`] use its memory again.
+    /// `tube` holds some shape from before; [`Tube::set_samples`] and [`Tube::set_chain`] use its memory again. An error
+    /// that was stated by [`Tube::with_error`] is forgotten: each shape states its own.
     ///
     /// # Errors
     /// There is no such shape. Queries pass the error on.

@@ -38,6 +38,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
     let (mut before, mut here) = (Sampled::default(), Sampled::default());
     for step in 0..=steps {
         let t = Real::from(step) / Real::from(steps);
+        tube.forget_error();
         let pose = motion.shape(t, &mut tube)?;
         sections.check(t, &tube)?;
         std::mem::swap(&mut before, &mut here);

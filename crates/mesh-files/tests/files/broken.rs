@@ -76,6 +76,8 @@ fn a_label_of_triangles_is_refused() {
         let labelled = from_bytes(name, &bytes, &options).map_err(|e| e.to_string());
         refused(name, labelled, "holds triangles without labels");
     }
+    let misnamed = from_bytes("a.stl", b"NRRD0004\ntype: uchar\n\n", &options).map_err(|e| e.to_string());
+    refused("misnamed", misnamed, "give it the extension of what it holds");
 }
 
 #[test]
