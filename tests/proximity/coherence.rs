@@ -232,3 +232,38 @@ fn minima_in_a_row_are_those_of_a_cold_engine() {
 fn a_hundred_thousand_minima_in_a_row_are_those_of_a_cold_engine() {
     many_minima_in_a_row(100_000);
 }
+
+/// Whoever stays where he is, touching, and asks again is told again: of links that stick out of the mesh, whose distances
+/// are known less well.
+#[test]
+fn a_touch_is_not_forgotten() {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(|[x, y]| Vector::new(x, y, 0.0));
+    let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [1, 3, 2]]).unwrap();
+    for size in [1.0, 1e-3, 37.0] {
+        let (mut touched, mesh) = (0, mesh.clone().scaled(Vector::splat(size)));
+        for far in (0..60).map(|k| 2.0 + 0.025 * f64::from(k)) {
+            for radius in [0.15, 0.2, 0.25, 0.3] {
+                let robot = |z: f64| {
+                    let points =
+                        [Vector::new(-0.5, 0.0, radius + 0.02), Vector::Z * far, Vector::new(0.5, 0.0, z)];
+                    Chain::capsules(&points.map(|point| point * size), &[radius * size; 2]).unwrap()
+                };
+                let (before, now) = (robot(radius + 0.06), robot(radius - 0.03));
+                let mut search = BvhSearch::new(&mesh).unwrap();
+                search.minimum(&before, &Pose::IDENTITY).unwrap();
+                search.minimum(&now, &Pose::IDENTITY).unwrap();
+                for bound in [0.0, 1e-12 * size, 1e-3 * size] {
+                    let found = search.minimum_within(&now, &Pose::IDENTITY, bound).unwrap();
+                    assert_eq!(
+                        found.map(|found| (found.link, found.distance)),
+                        Some((1, 0.0)),
+                        "{far} {radius}"
+                    );
+                    assert!(!search.clears(&now, &Pose::IDENTITY, bound).unwrap());
+                    touched += 1;
+                }
+            }
+        }
+        assert_eq!(touched, 720);
+    }
+}

@@ -136,7 +136,7 @@ impl<E: Lane> Traversal<'_, E> {
     /// seemed as near if one was met. Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
     ///
     /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So nothing is nearer than
-    /// the nearest candidate and the limit that is left.
+    /// the nearest candidate, the limit that is left, and what was measured: a triangle that overlaps is at once.
     pub(super) fn nearest_and_kept(
         &mut self,
         link: &PlacedLink,
@@ -157,7 +157,8 @@ impl<E: Lane> Traversal<'_, E> {
         target.limit = target.limit.min(searched.axis_limit(best.bound()));
         self.settle(&mut target);
         let best = if let Aim::Nearest(_, best) = target.aim { best } else { best };
-        (best, searched.at_least(least.0.into()), least.1)
+        let apart = searched.at_least(least.0.into());
+        (best, best.nearest().map_or(apart, |nearest| apart.min(nearest.distance)), least.1)
     }
 
     /// A triangle nearly as near as the nearest, or any that overlaps the link.
