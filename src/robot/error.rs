@@ -164,11 +164,11 @@ pub enum RobotError {
     },
     /// Samples are too far apart for a curve that bends so much.
     #[error(
-        "around point {index} the centreline bends so sharply that it may turn by {turn} rad between two points; \
-         give more points there, or use a Chain for a robot of straight links"
+        "the centreline bends so sharply that it may turn by {turn} rad between point {index} and the next; give more points \
+         there, check the end tangents if there are any, or use a Chain for a robot of straight links"
     )]
     TurnsTooSharply {
-        /// Position of the point in the input.
+        /// Position of the point in the input after which the section's longest distance begins.
         index: usize,
         /// The largest curvature times the longest distance between points of the section, rad.
         turn: Real,

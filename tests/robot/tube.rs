@@ -35,6 +35,11 @@ fn bad_samples_are_named() {
     // A corner, and a bend that is tighter than the tube is wide.
     let corner = [Vector::ZERO, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)];
     assert!(matches!(refuse(&corner, &[0.1; 3], None), RobotError::TurnsTooSharply { .. }));
+    // A shaft of two points before a bend: it is the shaft that needs more, however many the bend has.
+    let mut shaft = vec![Vector::Z * -20.0, Vector::Z * -20.0];
+    shaft
+        .extend((0..40).map(|k| f64::from(k) * 0.02).map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 5.0));
+    assert!(matches!(refuse(&shaft, &[0.1; 41], None), RobotError::TurnsTooSharply { index: 1, .. }));
     let arc: Vec<_> =
         (0..40).map(|k| f64::from(k) * 0.1).map(|a| Vector::new(a.cos(), a.sin(), 0.0)).collect();
     assert!(matches!(refuse(&arc, &[1.01; 39], None), RobotError::BendsWithinRadius { .. }));

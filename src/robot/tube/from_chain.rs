@@ -95,7 +95,8 @@ impl Tube {
             start = end;
         }
         self.error = 0.0;
-        self.reach = points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
+        // Lengths along the tube are rounded too.
+        self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
         self.curve = Curve::Samples { points, arcs };
         self.mark_lasting_faces();
     }

@@ -61,8 +61,8 @@ fn curvature_between(before: &Segment, segment: &Segment) -> Real {
 struct Open {
     section: Section,
     longest: Real,
-    /// The sample where it bends most.
-    sharpest: usize,
+    /// The sample before its longest segment.
+    longest_from: usize,
     /// How many turns it has inside.
     turns: usize,
     /// The curvature that the turns at steps in radius show.
@@ -82,44 +82,43 @@ impl Open {
             deviation: 0.0,
             faces: [None; 2],
         };
-        Self { section, longest: 0.0, sharpest: first, turns: 0, at_ends: 0.0 }
+        Self { section, longest: 0.0, longest_from: first, turns: 0, at_ends: 0.0 }
     }
 
     /// Takes note of the turn from one segment to the next.
     #[inline(always)]
-    fn bend(&mut self, before: &Segment, segment: &Segment, sample: usize) {
+    fn bend(&mut self, before: &Segment, segment: &Segment) {
         self.turns += 1;
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
         // Most turns are no larger than the largest so far, which is seen without a root and a division.
         let known = self.section.curvature * (0.5 * (segment.length + before.length)) - noise;
         if known < 0.0 || squared > known * known {
-            self.raise(curvature_between(before, segment), sample);
+            self.raise(curvature_between(before, segment));
         }
     }
 
     /// Takes note of the turn between a segment and the direction at one of its ends.
-    fn bend_from(&mut self, direction: Vector, segment: &Segment, sample: usize) {
+    fn bend_from(&mut self, direction: Vector, segment: &Segment) {
         let turn = (segment.direction - direction).length() + segment.noise;
-        self.raise(turn / (0.5 * segment.length), sample);
+        self.raise(turn / (0.5 * segment.length));
     }
 
-    fn raise(&mut self, curvature: Real, sample: usize) {
+    fn raise(&mut self, curvature: Real) {
         if curvature > self.section.curvature {
             self.section.curvature = curvature;
-            self.sharpest = sample;
         }
     }
 
     fn close(mut self, last: usize, end: Real) -> Result<Section, RobotError> {
         if self.turns < 2 {
-            self.raise(self.at_ends, last);
+            self.raise(self.at_ends);
         }
         let section = &mut self.section;
         (section.last, section.end) = (last as u32, end);
         let bend = section.curvature * self.longest;
         if bend > 1.0 {
-            return Err(RobotError::TurnsTooSharply { index: self.sharpest, turn: bend });
+            return Err(RobotError::TurnsTooSharply { index: self.longest_from, turn: bend });
         }
         section.stretch = 1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF;
         let longest = self.longest * section.stretch;
@@ -166,7 +165,7 @@ impl Tube {
             let Some(segment) = Segment::between(points[last], sample, rounding) else { continue };
             if let Some(before) = &before {
                 if radius == open.section.radius {
-                    open.bend(before, &segment, k);
+                    open.bend(before, &segment);
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
@@ -179,7 +178,7 @@ impl Tube {
             } else {
                 open.section.radius = radius;
                 if let Some([tangent, _]) = tangents {
-                    open.bend_from(tangent, &segment, 0);
+                    open.bend_from(tangent, &segment);
                 }
             }
             arc += segment.length;
@@ -188,12 +187,12 @@ impl Tube {
             points[last] = sample;
             arcs[last] = arc;
             if segment.length > open.longest {
-                open.longest = segment.length;
+                (open.longest, open.longest_from) = (segment.length, k);
             }
             before = Some(segment);
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
-            open.bend_from(tangent, &segment, samples.len() - 1);
+            open.bend_from(tangent, &segment);
         }
         points.truncate(last + 1);
         arcs.truncate(last + 1);
@@ -201,7 +200,8 @@ impl Tube {
             Ok(section) => self.sections.push(section),
             Err(error) => result = result.and(Err(error)),
         }
-        self.reach = reach;
+        // Lengths along the tube are rounded too.
+        self.reach = reach.max(arc);
         if last == 0 {
             result = Err(RobotError::AllPointsEqual);
         }
