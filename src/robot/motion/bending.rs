@@ -20,7 +20,7 @@
 
 use super::{Motion, Speed};
 use crate::distance::Scalar;
-use crate::robot::modified_cylinder::check_points;
+use crate::robot::COORDINATE_LIMIT;
 use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -113,11 +113,18 @@ impl BendingMotion {
     /// The two differ in number or in radii; a length that is not positive, or a number that is not finite; or a section
     /// with a flat end whose curvature times its radius may be 1 or more.
     pub fn new(from: &[BendingSection], to: &[BendingSection], pose: Pose) -> Result<Self, RobotError> {
-        let differs = |k: &usize| from.get(*k).map(|s| s.radius) != to.get(*k).map(|s| s.radius);
+        // Radii that are not numbers are refused below.
+        let same = |a: Real, b: Real| a == b || a.is_nan() && b.is_nan();
+        let differs = |k: &usize| match (from.get(*k), to.get(*k)) {
+            (Some(from), Some(to)) => !same(from.radius, to.radius),
+            _ => true,
+        };
         if let Some(index) = (0..from.len().max(to.len())).find(differs) {
             return Err(RobotError::SectionsDiffer { index });
         }
-        check_points(&[pose.translation])?;
+        if !(pose.is_finite() && pose.translation.abs().max_element() <= COORDINATE_LIMIT) {
+            return Err(RobotError::BadPose { limit: COORDINATE_LIMIT });
+        }
         let bend = |section: &BendingSection| Vector::new(section.bend[0], section.bend[1], 0.0);
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),

@@ -2,7 +2,7 @@
 
 use super::anatomy;
 use continuum_scene::ventricle;
-use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{FirstContact, MotionAnswer, ProximityError};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
@@ -82,11 +82,19 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         BendingMotion::new(&[section], &[thick], Pose::IDENTITY).unwrap_err(),
         RobotError::SectionsDiffer { index: 0 }
     );
+    let unknown = BendingSection { radius: Real::NAN, ..section };
+    let refused = BendingMotion::new(&[unknown], &[unknown], Pose::IDENTITY);
+    assert!(matches!(refused, Err(RobotError::BadRadius { .. })), "{refused:?}");
     assert!(BendingMotion::new(&[section], &[section, section], Pose::IDENTITY).is_err());
     assert!(BendingMotion::new(&[], &[], Pose::IDENTITY).is_err());
     let endless = BendingSection { length: Real::INFINITY, ..section };
     assert!(BendingMotion::new(&[section], &[endless], Pose::IDENTITY).is_err());
+    let turned = Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(Real::NAN, 0.0, 0.0, 1.0));
     let lost = Pose::from_translation(Vector::splat(Real::NAN));
+    for pose in [lost, turned] {
+        let refused = BendingMotion::new(&[section], &[section], pose);
+        assert!(matches!(refused, Err(RobotError::BadPose { .. })), "{refused:?}");
+    }
     assert!(RigidMotion::new(Tube::from(&Chain::capsules(&a, &[1.0]).unwrap()), [lost, lost]).is_err());
 }
 
