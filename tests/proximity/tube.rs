@@ -3,7 +3,7 @@
 use continuum_scene::ctr::{self, Robot};
 use continuum_scene::ventricle;
 use continuum_testing::{Arcs, Random, Stretch};
-use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Certificate, Clearance, Decision, Proximity, ProximityError};
 use parry_continuum::{Chain, RobotError, Tube, TubeSection};
@@ -358,4 +358,55 @@ fn a_tube_that_cannot_be_asked_about_is_refused() {
     }
     assert!(tube.set_samples(&[Vector::ZERO, Vector::X * f64::NAN], &[0.1], None).is_err());
     assert_eq!(search.clearance(&tube, &Pose::IDENTITY, 0.1), Err(ProximityError::EmptyTube));
+}
+
+/// The error that is stated is that of every point, rims of flat faces among them.
+#[test]
+fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
+    let (mut random, mut near) = (Random::new(6), 0);
+    for _ in 0..400 {
+        let (length, radius) = (random.between(2.0, 20.0), random.between(0.5, 2.0));
+        let curvature = random.between(0.0, 0.3) / radius;
+        let arc = move |s: f64| {
+            let (sin, cos) = (curvature * s).sin_cos();
+            (Vector::new(1.0 - cos, 0.0, sin) / curvature, Vector::new(sin, 0.0, cos))
+        };
+        let tube = Tube::from_function(&[TubeSection { length, radius, curvature }], arc).unwrap();
+        // The robot itself, turned about a place of the curve and moved.
+        let (centre, turn) = (arc(random.unit() * length).0, random.direction() * random.between(0.0, 0.05));
+        let turned = Pose::from_parts(Vector::ZERO, Pose::new(Vector::ZERO, turn).rotation);
+        let shift = random.direction() * random.between(0.0, 0.2);
+        let own = Pose::from_translation(centre + shift) * turned * Pose::from_translation(-centre);
+        let off = (0..=64).map(|k| arc(length * f64::from(k) / 64.0).0).map(|p| (own * p - p).length());
+        let error = 1.001 * off.fold(0.0, f64::max) + radius * turn.length();
+        // A wall near the tip, across or aslant.
+        let (tip, normal) = arc(length);
+        let normal = (normal + random.direction() * random.between(0.0, 0.7)).normalize();
+        let aside = normal.cross(random.direction()).normalize();
+        let middle = tip + normal * random.between(0.0, 4.0) * error;
+        let corners = [aside * 9.0, normal.cross(aside) * 9.0, -(aside + normal.cross(aside)) * 9.0];
+        let wall = TriMesh::new(corners.map(|corner| middle + corner).to_vec(), vec![[0, 1, 2]]).unwrap();
+        let mut search = BvhSearch::new(&wall).unwrap();
+        let truth = search.clearance(&tube, &own, 1e-3).unwrap();
+        let doubtful = tube.with_error(error).unwrap();
+        let found = search.clearance(&doubtful, &Pose::IDENTITY, 100.0).unwrap();
+        assert!(found.lower <= truth.upper && truth.lower <= found.upper, "{found:?} {truth:?} {error}");
+        let cleared = search.tube_clears(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
+        assert!(!matches!(cleared, Ok(Decision::Clear)), "{truth:?} {error}");
+        near += usize::from(0.0 < truth.lower && truth.lower < 2.0 * error);
+    }
+    assert!(near > 100, "{near}");
+}
+
+/// A rotation that was rounded to single precision is no scale.
+#[test]
+fn a_pose_of_single_precision_keeps_lengths() {
+    let tube = Tube::from(&Chain::cylinders(&[Vector::ZERO, 5.0 * Vector::Z], &[1.0]).unwrap());
+    let corners = [[-99.0, -99.0], [99.0, -99.0], [0.0, 99.0]].map(|[x, y]| Vector::new(x, y, 15.0));
+    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    for w in [1.0, 0.99999994, 1.0000001, 0.5, 3.0] {
+        let pose = Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 0.0, w));
+        let found = search.clearance(&tube, &pose, 1e-9).unwrap();
+        assert!(found.lower <= 10.0 && 10.0 <= found.upper, "{w}: {found:?}");
+    }
 }

@@ -30,7 +30,8 @@
 //! the rest both ends lie farther out by x = min(e / A, sqrt(e)) with e = r slack / 16: the body is then longer than
 //! A + x, and e / (A + x) is at most x. The back moves aside by less than a slack.
 //!
-//! Points are known to `error`: a chord is then turned by up to 2 error / |chord|, and everything is `error` wider.
+//! Points of the discs are known to `error`: everything is `error` wider. What is led by the chord may also be where the
+//! centreline's points are off, which turns the chord by up to 2 error / |chord|.
 
 use super::{Piece, PlacedTube};
 use crate::proximity::placed::PlacedLink;

@@ -15,7 +15,8 @@ const LEAST_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedTube<'a> {
     pub(super) tube: &'a Tube,
-    pub(super) pose: &'a Pose,
+    /// Its rotation is of unit length.
+    pub(super) pose: Pose,
     /// What rounding can do to any length that is computed here or measured.
     ///
     /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and the mesh's. A measured
@@ -30,7 +31,8 @@ pub(crate) struct PlacedTube<'a> {
 impl<'a> PlacedTube<'a> {
     /// # Errors
     /// The tube has no section, or the pose is not finite or moves it out of range.
-    pub(crate) fn new(tube: &'a Tube, pose: &'a Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
+    pub(crate) fn new(tube: &'a Tube, pose: &Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
+        let pose = rigid(pose);
         if !pose.is_finite() {
             return Err(ProximityError::PoseNotFinite);
         }
@@ -109,4 +111,13 @@ impl<'a> PlacedTube<'a> {
     pub(super) fn face(&self, face: &Face) -> Face {
         Face { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
     }
+}
+
+/// The pose with a rotation of unit length, as it is if that is so but for rounding.
+fn rigid(pose: &Pose) -> Pose {
+    let squared = pose.rotation.length_squared();
+    if (squared - 1.0).abs() <= 4.0 * Real::EPSILON {
+        return *pose;
+    }
+    Pose::from_parts(pose.translation, pose.rotation.normalize())
 }

@@ -262,3 +262,24 @@ fn thin_wires_begin_with_few_pieces() {
         }
     }
 }
+
+/// Lengths along a tube are rounded, too, where it winds to and fro in little room.
+#[test]
+fn bodies_hold_links_of_a_long_chain() {
+    let mut random = Random::new(9);
+    let points: Vec<_> = (0..=20_000).map(|k| random.point() + Vector::X * Real::from(k % 2)).collect();
+    let chain = crate::Chain::cylinders(&points, &[0.01; 20_000]).unwrap();
+    let tube = Tube::from(&chain);
+    let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 1.0).unwrap();
+    for (number, (section, link)) in tube.sections().iter().zip(chain.links()).enumerate() {
+        let outer = placed.outer(&Piece { section: number as u32, from: section.first, to: section.last });
+        let [start, end] = [outer.body.start(), outer.body.end()].map(Vec3::from);
+        let across = link.axis().cross(random.direction()).normalize() * link.radius();
+        for centre in [link.start(), link.end()] {
+            let rim = Vec3::from(centre + across);
+            let (radius, flat) = (outer.body.radius(), outer.body.flat());
+            let beyond = point_modified_cylinder(rim, start, end, radius, flat).distance;
+            assert!(beyond <= 0.0, "{number}: {beyond:e}");
+        }
+    }
+}

@@ -54,7 +54,7 @@ pub struct Tube {
     sections: Vec<Section>,
     /// How far the curve may be from what was given.
     error: Real,
-    /// The largest coordinate of the centreline, or more.
+    /// The largest coordinate of the centreline, or its length, or more.
     reach: Real,
     /// Memory for the next links: their ends and caps.
     ends: Vec<Vector>,
@@ -125,8 +125,9 @@ impl Tube {
         result
     }
 
-    /// The same tube, of whose centreline each point may be off by up to `error`: the error of the sensor or of the
-    /// kinematics. All bounds of answers count it.
+    /// The same tube, each point of which may be off by up to `error`, because the sensor or the kinematics are. For a
+    /// centreline that is off by c and whose direction is off by an angle a, that is c + radius a: the rim of a flat face
+    /// moves as the face turns. All bounds of answers count it.
     ///
     /// # Errors
     /// The error is not finite or negative.
