@@ -363,7 +363,7 @@ fn a_tube_that_cannot_be_asked_about_is_refused() {
 /// The error that is stated is that of every point, rims of flat faces among them.
 #[test]
 fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
-    let (mut random, mut near) = (Random::new(6), 0);
+    let (mut random, mut near, mut apart) = (Random::new(6), 0, 0);
     for _ in 0..400 {
         let (length, radius) = (random.between(2.0, 20.0), random.between(0.5, 2.0));
         let curvature = random.between(0.0, 0.3) / radius;
@@ -383,19 +383,20 @@ fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
         let (tip, normal) = arc(length);
         let normal = (normal + random.direction() * random.between(0.0, 0.7)).normalize();
         let aside = normal.cross(random.direction()).normalize();
-        let middle = tip + normal * random.between(0.0, 4.0) * error;
+        let middle = tip + normal * random.between(0.0, 12.0) * error;
         let corners = [aside * 9.0, normal.cross(aside) * 9.0, -(aside + normal.cross(aside)) * 9.0];
         let wall = TriMesh::new(corners.map(|corner| middle + corner).to_vec(), vec![[0, 1, 2]]).unwrap();
         let mut search = BvhSearch::new(&wall).unwrap();
         let truth = search.clearance(&tube, &own, 1e-3).unwrap();
         let doubtful = tube.with_error(error).unwrap();
-        let found = search.clearance(&doubtful, &Pose::IDENTITY, 100.0).unwrap();
+        let found = search.clearance(&doubtful, &Pose::IDENTITY, 8.0 * error + 1e-3).unwrap();
+        apart += usize::from(found.lower > 0.0);
         assert!(found.lower <= truth.upper && truth.lower <= found.upper, "{found:?} {truth:?} {error}");
         let cleared = search.tube_clears(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
         assert!(!matches!(cleared, Ok(Decision::Clear)), "{truth:?} {error}");
         near += usize::from(0.0 < truth.lower && truth.lower < 2.0 * error);
     }
-    assert!(near > 100, "{near}");
+    assert!(near > 30 && apart > 100, "{near} {apart}");
 }
 
 /// A rotation that was rounded to single precision is no scale.
