@@ -3,7 +3,7 @@
 use super::elements::{self, FieldPair};
 use super::link_cast;
 use super::link_triangle::LinkTriangle;
-use super::parts::{Parts, check_scale, has_parts};
+use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_pair::{RobotPair, links_of};
@@ -92,8 +92,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.intersection_test();
         }
-        check_scale(g1)?;
-        check_scale(g2)?;
+        let parts = Parts::of(g1, g2)?;
         // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
         if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
             return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
@@ -101,7 +100,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let (true, Some(ball)) = (has_parts(g1), g2.as_ball()) {
             return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
         }
-        match Parts::of(g1, g2)? {
+        match parts {
             Parts::Composite(parts) => Watched::ask(self, |watched| {
                 details::intersection_test_composite_shape_shape(watched, pos12, parts, g2)
             }),

@@ -168,7 +168,7 @@ pub enum RobotError {
          there, check the end tangents if there are any, or use a Chain for a robot of straight links"
     )]
     TurnsTooSharply {
-        /// Position of the point in the input after which the section's longest distance begins.
+        /// Position in the input of the point before the longest gap of the section.
         index: usize,
         /// The largest curvature times the longest distance between points of the section, rad.
         turn: Real,

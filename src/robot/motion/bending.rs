@@ -18,9 +18,8 @@
 //! where the last section counts as far as s. All terms grow with the lengths, so the longest during the motion count.
 //! With lengths that change at constant rates, s' is linear in the share and largest at an end of the piece.
 
-use super::{Motion, Speed};
+use super::{Motion, Speed, check_pose};
 use crate::distance::Scalar;
-use crate::robot::COORDINATE_LIMIT;
 use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -122,9 +121,7 @@ impl BendingMotion {
         if let Some(index) = (0..from.len().max(to.len())).find(differs) {
             return Err(RobotError::SectionsDiffer { index });
         }
-        if !(pose.is_finite() && pose.translation.abs().max_element() <= COORDINATE_LIMIT) {
-            return Err(RobotError::BadPose { limit: COORDINATE_LIMIT });
-        }
+        check_pose(&pose)?;
         let bend = |section: &BendingSection| Vector::new(section.bend[0], section.bend[1], 0.0);
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),

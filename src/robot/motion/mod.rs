@@ -15,7 +15,7 @@ pub(crate) use sections::Sections;
 pub(crate) use verify::Sampled;
 pub use verify::verify_motion;
 
-use super::{RobotError, Tube};
+use super::{COORDINATE_LIMIT, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, and a promise of how fast it moves.
@@ -81,4 +81,10 @@ pub struct Speed {
     /// The speed at which its direction turns, in rad. The rim of a disc moves by so much times the radius relative to
     /// the disc's centre.
     pub turn: Real,
+}
+
+/// A pose of a motion that is finite and within range.
+fn check_pose(pose: &Pose) -> Result<(), RobotError> {
+    let is_good = pose.is_finite() && pose.translation.abs().max_element() <= COORDINATE_LIMIT;
+    if is_good { Ok(()) } else { Err(RobotError::BadPose { limit: COORDINATE_LIMIT }) }
 }

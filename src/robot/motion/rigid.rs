@@ -5,9 +5,9 @@
 //! turns faster than w. |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is
 //! within k l^2 / 8 of its chord, where the larger of the chord's two ends counts.
 
-use super::{Motion, Speed};
+use super::{Motion, Speed, check_pose};
 use crate::distance::Scalar;
-use crate::robot::{COORDINATE_LIMIT, RobotError, Tube};
+use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
 /// The motion of a tube that does not change its shape, evenly from one pose to another.
@@ -40,11 +40,8 @@ impl RigidMotion {
     /// # Errors
     /// A pose is not finite or out of range.
     pub fn new(tube: Tube, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
-        let is_good =
-            |pose: &Pose| pose.is_finite() && pose.translation.abs().max_element() <= COORDINATE_LIMIT;
-        if !(is_good(&from) && is_good(&to)) {
-            return Err(RobotError::BadPose { limit: COORDINATE_LIMIT });
-        }
+        check_pose(&from)?;
+        check_pose(&to)?;
         let way = (from.rotation.inverse() * to.rotation).normalize();
         let way = if way.w < 0.0 { -way } else { way };
         let shift = to.translation - from.translation;
