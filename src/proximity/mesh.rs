@@ -2,11 +2,12 @@
 
 use super::MeshError;
 use super::checks::check_vertices;
+use super::lazy::Lazy;
 use super::parallel::each;
 use super::shared_parts::SharedParts;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Vertices and triangles.
 #[derive(Clone)]
@@ -16,7 +17,7 @@ pub(crate) struct Mesh {
     /// The vertices that triangles use, unless all are used.
     used: Option<Vec<u32>>,
     /// For those who ask which triangles are joined, found at the first question.
-    parts: OnceLock<Arc<SharedParts>>,
+    parts: Lazy<Arc<SharedParts>>,
     /// What they were before the vertices moved.
     parts_before: Option<Arc<SharedParts>>,
 }
@@ -43,7 +44,7 @@ impl Mesh {
         let used = (!is_used.iter().all(|&is_used| is_used)).then(|| {
             (0..).zip(&is_used).filter(|(_, is_used)| **is_used).map(|(vertex, _)| vertex).collect()
         });
-        Self { vertices, indices, used, parts: OnceLock::new(), parts_before: None }
+        Self { vertices, indices, used, parts: Lazy::new(), parts_before: None }
     }
 
     /// Whether the vertices can move there.
@@ -88,7 +89,7 @@ impl Mesh {
 
     /// The corners and edges that triangles share.
     pub(super) fn parts(&self) -> &SharedParts {
-        self.parts.get_or_init(|| {
+        self.parts.get_or_build(|| {
             let before = self.parts_before.as_ref().filter(|before| before.stay(&self.vertices));
             before.map_or_else(|| Arc::new(SharedParts::new(&self.vertices, &self.indices)), Arc::clone)
         })

@@ -15,6 +15,7 @@
 //! | `placed` | the robot in the mesh's frame, and the measurement of a link and a triangle in double precision |
 //! | `measure_lanes`, `pair_lanes` | the same measurement, several triangles or pairs together |
 //! | `mesh` | the mesh as every engine keeps it |
+//! | `parallel`, `lazy` | work for all cores, and what is built by one thread while others may wait for it |
 //! | `winding/` | how the mesh winds around a point, and on which side of it that is; `wide_bvh/winding` sums it up |
 //! | `certificate` | proofs of an answer |
 //! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
@@ -36,6 +37,7 @@ mod error;
 mod exhaustive;
 mod feature;
 mod feet;
+mod lazy;
 mod link_lanes;
 mod local_minima;
 mod measure_lanes;

@@ -5,3 +5,4 @@ mod links;
 mod my_robot;
 mod programs;
 mod public_names;
+mod threads;

@@ -19,6 +19,7 @@ mod planner;
 mod scenes;
 mod side;
 mod thin_links;
+mod threads;
 mod ties;
 mod tube;
 mod visits;

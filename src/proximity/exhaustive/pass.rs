@@ -5,16 +5,15 @@ use super::kernels::Kernels;
 use super::scan::{Findings, Job, JobLink, SharedBound};
 use crate::Chain;
 use crate::distance::Scalar;
+use crate::proximity::lazy::Lazy;
 use crate::proximity::mesh::Mesh;
+use crate::proximity::parallel::{each, threads};
 use crate::proximity::placed::{Nearest, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use crate::proximity::{LinkProximity, ProximityError, Work};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A mesh in the precision of the search.
@@ -23,18 +22,18 @@ pub(super) struct Triangles<T> {
     pub mesh: Mesh,
     blocks: Blocks<T>,
     /// For links that single precision does not resolve, filled when the first of them comes.
-    double: OnceLock<Blocks<f64>>,
+    double: Lazy<Blocks<f64>>,
 }
 
 impl<T: Kernels> Triangles<T> {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
         let blocks = Blocks::new(&mesh, |faces, spheres| T::prepare(level, faces, spheres));
-        Self { mesh, blocks, double: OnceLock::new() }
+        Self { mesh, blocks, double: Lazy::new() }
     }
 
     fn double(&self, level: Level) -> &Blocks<f64> {
         self.double
-            .get_or_init(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
+            .get_or_build(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
     }
 
     /// Takes over that the vertices of the mesh have moved.
@@ -111,7 +110,7 @@ impl<T: Kernels> Pass<T> {
         bounds.resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || {
             SharedBound::new(aim.bound())
         });
-        findings.resize_with(threads(links * triangles.mesh.len()), Findings::default);
+        findings.resize_with(threads_for(links * triangles.mesh.len()), Findings::default);
         for findings in &mut *findings {
             findings.work = Work::default();
             findings.within.clear();
@@ -193,18 +192,11 @@ impl<T: Kernels> Pass<T> {
 }
 
 /// Fewer pairs than this are not worth a second thread.
-#[cfg(feature = "parallel")]
 const PAIRS_PER_THREAD: usize = 1 << 17;
 
 /// How many threads are worth while.
-#[cfg(feature = "parallel")]
-fn threads(pairs: usize) -> usize {
-    rayon::current_num_threads().min(1 + pairs / PAIRS_PER_THREAD)
-}
-
-#[cfg(not(feature = "parallel"))]
-fn threads(_: usize) -> usize {
-    1
+fn threads_for(pairs: usize) -> usize {
+    threads().min(1 + pairs / PAIRS_PER_THREAD)
 }
 
 /// Has every thread take the next chunk until there is none.
@@ -213,7 +205,7 @@ fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [F
         E::first_bounds(level, job);
     }
     let next = AtomicUsize::new(0);
-    let work = |findings: &mut Findings| {
+    each(findings, |_, findings| {
         loop {
             let chunk = next.fetch_add(1, Ordering::Relaxed);
             if chunk >= job.chunks() {
@@ -225,10 +217,5 @@ fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [F
                 E::scan_every_pair(level, job, chunk, findings);
             }
         }
-    };
-    #[cfg(feature = "parallel")]
-    if findings.len() > 1 {
-        return findings.par_iter_mut().for_each(work);
-    }
-    findings.iter_mut().for_each(work);
+    });
 }

@@ -2,9 +2,9 @@
 
 use super::build::WideBvh;
 use crate::distance::lanes::Lane;
+use crate::proximity::lazy::Lazy;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::triangle_block::{BLOCK, first_of_face, from_on, place_points};
-use std::sync::OnceLock;
 
 /// The corners beyond the edges of a leaf's triangles.
 #[derive(Clone)]
@@ -17,21 +17,21 @@ pub(super) struct Corners<E> {
 
 /// The corners beyond the edges of all triangles, found when a leaf is first asked for.
 #[derive(Clone)]
-pub(super) struct Across<E>(Vec<OnceLock<Corners<E>>>);
+pub(super) struct Across<E>(Vec<Lazy<Corners<E>>>);
 
 impl<E: Lane> Across<E> {
     pub(super) fn new(tree: &WideBvh<E>) -> Self {
-        Self(tree.leaves.iter().map(|_| OnceLock::new()).collect())
+        Self(tree.leaves.iter().map(|_| Lazy::new()).collect())
     }
 
     /// Forgets where the corners are.
     pub(super) fn forget(&mut self) {
-        self.0.iter_mut().for_each(|leaf| *leaf = OnceLock::new());
+        self.0.iter_mut().for_each(|leaf| *leaf = Lazy::new());
     }
 
     /// Those of a leaf, in the frame of the search.
     pub(super) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &Corners<E> {
-        self.0[leaf as usize].get_or_init(|| {
+        self.0[leaf as usize].get_or_build(|| {
             let mut corners = Corners { rows: [E::round(f64::NAN); 9 * BLOCK], firsts: 0 };
             for (lane, &triangle) in tree.leaves[leaf as usize].triangles.iter().enumerate() {
                 let first = first_of_face::<E>(&tree.frame, mesh, triangle);

@@ -7,13 +7,13 @@ use super::rough_sides::RoughSides;
 use super::traverse::{Stack, Traversal};
 use super::winding::FarFields;
 use crate::proximity::Work;
+use crate::proximity::lazy::Lazy;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::near_triangle::NearTriangles;
 use crate::proximity::placed::{Best, Nearest, PlacedLink, PlacedRobot};
 use crate::proximity::search_frame::SearchLink;
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
-use std::sync::OnceLock;
 
 /// The sides of the mesh are found when so many robots were met: a planner meets more, a controller never does.
 const ROBOTS_MET: u32 = 64;
@@ -26,35 +26,35 @@ pub(super) struct Hierarchy {
     pub reach: Real,
     single: WideBvh<f32>,
     /// For those who ask for contacts, begun at the first question.
-    across: OnceLock<Across<f32>>,
+    across: Lazy<Across<f32>>,
     /// For links that single precision does not resolve, built when the first of them comes.
-    double: OnceLock<WideBvh<f64>>,
+    double: Lazy<WideBvh<f64>>,
     /// For those who ask on which side of the mesh a point is, built at the first question.
-    far_fields: OnceLock<FarFields>,
+    far_fields: Lazy<FarFields>,
     /// For those who often ask about robots that do not keep away.
-    sides: OnceLock<RoughSides>,
+    sides: Lazy<RoughSides>,
 }
 
 impl Hierarchy {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
         Self {
             single: WideBvh::new(level, &mesh),
-            across: OnceLock::new(),
-            double: OnceLock::new(),
-            far_fields: OnceLock::new(),
-            sides: OnceLock::new(),
+            across: Lazy::new(),
+            double: Lazy::new(),
+            far_fields: Lazy::new(),
+            sides: Lazy::new(),
             reach: reach(mesh.bounds()),
             mesh,
         }
     }
 
     fn double(&self, level: Level) -> &WideBvh<f64> {
-        self.double.get_or_init(|| WideBvh::new(level, &self.mesh))
+        self.double.get_or_build(|| WideBvh::new(level, &self.mesh))
     }
 
     /// What the side of a point is found by. The division of either hierarchy serves.
     pub(super) fn around(&self) -> (&Mesh, &WideBvh<f32>, &FarFields) {
-        let fields = self.far_fields.get_or_init(|| FarFields::new(&self.single, &self.mesh));
+        let fields = self.far_fields.get_or_build(|| FarFields::new(&self.single, &self.mesh));
         (&self.mesh, &self.single, fields)
     }
 
@@ -220,7 +220,7 @@ impl MeshSearch<'_> {
         let level = self.level;
         let Scratch { single_pairs, double_pairs, met, work, .. } = &mut *self.scratch;
         let sides =
-            if *met < ROBOTS_MET { sides.get() } else { Some(sides.get_or_init(|| RoughSides::new(mesh))) };
+            if *met < ROBOTS_MET { sides.get() } else { Some(sides.get_or_build(|| RoughSides::new(mesh))) };
         let first = sides.and_then(|sides| sides.crossing(robot));
         let search = JointSearch { level, tree: single, robot, margin, first, pairs: single_pairs, work };
         let mut answer = search.keeps_away(mesh);
@@ -245,7 +245,7 @@ impl MeshSearch<'_> {
         let Hierarchy { mesh, single, across, .. } = self.hierarchy;
         match self.hierarchy.searched(self.level, link) {
             Searched::Single(searched) => {
-                let across = across.get_or_init(|| Across::new(single));
+                let across = across.get_or_build(|| Across::new(single));
                 self.single().within(&searched, bound, Some(across), found);
             }
             // Such links are rare: they do without the corners beyond the edges.
