@@ -19,6 +19,7 @@
 
 mod at_level;
 mod bounds;
+pub(crate) mod depth;
 mod disc_solver;
 mod dispatch;
 mod double_double;

@@ -13,51 +13,13 @@
 
 use crate::ModifiedCylinder;
 use crate::distance::Scalar;
+pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
 use parry3d_f64::math::{Real, Vector};
-use std::ops::RangeInclusive;
 
 /// The power of two that brings `x` near one, and its inverse.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
     let down = x.power_of_two_to_unity();
     (down, 1.0 / down)
-}
-
-/// The unit vector along `v`, or nothing when `v` is zero or not finite.
-pub(super) fn unit(v: Vector) -> Option<Vector> {
-    let squared = v.length_squared();
-    if SQUARES.contains(&squared) {
-        return Some(v / squared.sqrt());
-    }
-    let largest = v.abs().max_element();
-    if !v.is_finite() || largest == 0.0 {
-        return None;
-    }
-    let v = v * power_of_two(largest).0;
-    Some(v / v.length())
-}
-
-/// Squares that have lost nothing to the range of f64, nor has any that is part of them and matters.
-const SQUARES: RangeInclusive<Real> = 1e-200..=1e200;
-
-/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is
-/// along the axis as far as rounding can tell.
-pub(super) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
-    let across = v - axis * v.dot(axis);
-    let first = unit(across)?;
-    // The rounding of the difference is that of `v`.
-    if 4.0 * across.length_squared() >= v.length_squared() {
-        return Some(first);
-    }
-    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is
-    // far shorter then, and otherwise perpendicular to the last digit.
-    let second = first - axis * first.dot(axis);
-    let length = second.length();
-    (length > 0.5).then(|| second / length)
-}
-
-/// Some unit vector perpendicular to the unit vector `axis`.
-pub(super) fn perpendicular(axis: Vector) -> Vector {
-    axis.any_orthonormal_vector()
 }
 
 /// The unit axis of `link`; any unit vector for a ball.

@@ -1,25 +1,9 @@
-//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does.
-//!
-//! Let `a` be the axis point nearest to another convex body, `b` that body's nearest point, `d` their distance and `n`
-//! the unit vector from `a` to `b`. Let the link have the radius `r`, and a flat end, if it has one, be `t > 0` away
-//! from `a` along the axis. So `n` does not lean towards a flat end, and
-//!
-//! 1. **Apart**, `d > r`, link and capsule are as far from the body: the point `a + r n` belongs to both.
-//! 2. **Overlapping**, `0 < d <= r`, the capsule is out after the way `p = r - d` along `n`. No way out of the link is
-//!    shorter where `t >= p`. For a unit vector `m` at the cosine `c` to `n`, the overlap along `m` is at least
-//!    `h - d c`, with `h` how far the link reaches along `m` from `a`. If `m` leans towards a flat end, at a cosine `z`
-//!    to the axis and a sine `s`,
-//!    ```text
-//!    h >= r s + t z,   c <= s,   so   h - d c >= p c + r (s - c) + t z >= p (s + z) >= p   for c >= 0,
-//!    ```
-//!    and `h - d c >= min(r, t) >= p` otherwise. If it does not, `h >= r` and `h - d c >= r - d`.
-//!
-//! For two links, whose radii add up, the same holds with `p = r1 + r2 - d` where each link with a flat end also has
-//! `p <= r`: the excess of `h` over `r c` of one such link alone is at least `p (1 - c)` then, and what is left is
-//! `p c`.
+//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does: see
+//! `distance/depth/foot.rs`.
 
 use super::axial::axis_or_x;
-use crate::{Cap, ModifiedCylinder};
+use crate::ModifiedCylinder;
+use crate::distance::depth::to_flat;
 use parry3d_f64::math::{Real, Vector};
 
 /// A point of a link's axis.
@@ -32,9 +16,6 @@ pub(super) struct Foot {
 impl Foot {
     pub fn new(link: &ModifiedCylinder, on_axis: Vector) -> Self {
         let axis = axis_or_x(link);
-        let along = [(on_axis - link.start()).dot(axis), (link.end() - on_axis).dot(axis)];
-        let is_flat = link.caps().map(|cap| cap == Cap::Flat);
-        let ends = along.into_iter().zip(is_flat).filter(|(_, is_flat)| *is_flat);
-        Self { to_flat: ends.map(|(along, _)| along).fold(Real::INFINITY, Real::min) }
+        Self { to_flat: to_flat(on_axis - link.start(), link.end() - on_axis, axis, link.flat()) }
     }
 }

@@ -1,10 +1,8 @@
 //! The contact of a link and a triangle: how far apart they are, or by how much to move them apart, and along
 //! what.
 //!
-//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the
-//! direction `n`. Moving the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is.
-//! So every `n` gives a lower bound on the distance while they are apart (the best `n` attains it), and a
-//! translation that separates them when they overlap (the best `n` gives the least).
+//! The directions and the gaps along them are those of `distance/depth`: there `gap(n)` is how far the triangle begins
+//! beyond the end of the link in the direction `n`.
 //!
 //! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they
 //!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
@@ -14,22 +12,20 @@
 //! 2. **The triangle enters, the axis is outside, and no flat cap is near.** A capsule is its axis swollen by a ball, so
 //!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
 //!    distance `F`. What a flat cap cuts away makes no shorter way out as long as it is at least as far along the axis
-//!    as the overlap is deep: see [`foot`](super::foot).
+//!    as the overlap is deep: see `distance/depth/foot.rs`.
 //! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
-//!    [`separation`](super::separation), where the least translation must be. Moved apart by it the two touch,
+//!    `distance/depth/separation.rs`, where the least translation must be. Moved apart by it the two touch,
 //!    and the touching points are the contact's.
 
-use super::axial::{perpendicular, power_of_two, unit, unit_across};
+use super::axial::{power_of_two, unit};
 use super::foot::Foot;
-use super::{separation, support_map};
-use crate::distance::{Face, Vec3, segment_triangle, triangle_modified_cylinder};
+pub(super) use crate::distance::depth::face_normal;
+use crate::distance::depth::{self, ROUNDING};
+use crate::distance::{Link, Vec3, segment_triangle, triangle_modified_cylinder};
 use crate::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, Triangle};
-
-/// What rounding can do to a distance or a gap where numbers are near one.
-const ROUNDING: Real = 8.0 * Real::EPSILON;
 
 /// A link and a finite triangle, in either order.
 pub(super) struct LinkTriangle<'a> {
@@ -125,6 +121,11 @@ impl Local {
         triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
     }
 
+    fn pair(&self) -> depth::LinkTriangle {
+        let Self { link, triangle, .. } = self;
+        depth::LinkTriangle::new(Link::new(link.end().into(), link.radius(), link.flat()), *triangle)
+    }
+
     /// The contact, in local units, if the two are at most `margin` apart.
     pub fn contact_within(&self, margin: Real) -> Option<LinkContact> {
         let (link, radius) = (&self.link, self.link.radius());
@@ -146,7 +147,7 @@ impl Local {
             }
             // Cases 1 and 2.
             if distance > 0.0 || foot.to_flat > ROUNDING - distance {
-                let (_, normal) = self.widest_gap([Some(outward), None], distance);
+                let (_, normal) = self.pair().widest_gap([Some(outward), None], distance);
                 let (on_link, on_triangle) = (on_axis + normal * radius, on_axis + from_axis);
                 return Some(LinkContact { distance, on_link, on_triangle, normal });
             }
@@ -157,71 +158,17 @@ impl Local {
         }
         // Case 1.
         if distance > 0.0 {
-            let mut best = self.widest_gap([unit(on_triangle - on_link), outward], distance);
+            let mut best = self.pair().widest_gap([unit(on_triangle - on_link), outward], distance);
             if best.0 <= 0.0 {
-                best = self.widest_of_all(best);
+                best = self.pair().widest_of_all(best);
             }
             return Some(LinkContact { distance, on_link, on_triangle, normal: best.1 });
         }
         // Case 3.
-        let (gap, normal) = self.widest_of_all(self.widest_gap([outward, None], Real::INFINITY));
+        let (gap, normal) =
+            self.pair().widest_of_all(self.pair().widest_gap([outward, None], Real::INFINITY));
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
         Some(LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal })
     }
-
-    /// The largest gap and its direction, among the features' normals and `more`, as they are and made
-    /// perpendicular to the edges and the axis; or the first gap that is as large as `enough`, but for rounding.
-    fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> (Real, Vector) {
-        let enough = enough - ROUNDING;
-        let [a, b, c] = self.triangle;
-        let edges = [b - a, c - b, a - c];
-        let axis = self.link.axis();
-        // Some direction across whatever direction there is, should nothing else be left.
-        let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
-        let mut best = (Real::NEG_INFINITY, across);
-        // The first of equals stays, so `more` goes first.
-        for n in more.into_iter().flatten() {
-            best = self.wider(best, n);
-        }
-        if best.0 >= enough {
-            return best;
-        }
-        let face = face_normal(self.triangle);
-        for n in face.into_iter().flat_map(|n| [n, -n]) {
-            best = self.wider(best, n);
-        }
-        if best.0 >= enough {
-            return best;
-        }
-        let edges = edges.map(unit);
-        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
-        let lines = [unit(axis), Some(across)].into_iter().chain(products).flatten();
-        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
-        let turned =
-            more.into_iter().flatten().flat_map(|n| straight().map(move |line| unit_across(n, line)));
-        for n in turned.flatten().chain(lines.flat_map(|n| [n, -n])) {
-            best = self.wider(best, n);
-        }
-        best
-    }
-
-    /// The best direction so far or one of those in which a least translation can be.
-    fn widest_of_all(&self, mut best: (Real, Vector)) -> (Real, Vector) {
-        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
-        best
-    }
-
-    /// The best direction so far or `n`, whichever has the larger gap.
-    fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
-        let (centre, reach) = support_map::reach(&self.link, n);
-        let beyond = self.triangle.map(|vertex| (vertex - centre).dot(n));
-        let gap = beyond[0].min(beyond[1]).min(beyond[2]) - reach;
-        if gap > best.0 { (gap, n) } else { best }
-    }
-}
-
-/// The unit normal of a triangle whose numbers are near one, if it has one.
-pub(super) fn face_normal(triangle: [Vector; 3]) -> Option<Vector> {
-    unit(Vector::from(Face::new(triangle.map(Vec3::from)).normal()))
 }

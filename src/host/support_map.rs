@@ -14,7 +14,7 @@ use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature::{self, crest_end};
 use super::footing::centre;
 use crate::{Cap, ModifiedCylinder};
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
 /// Exact support points (see the head of this file); the start point for a direction of length zero.
@@ -32,18 +32,6 @@ impl SupportMap for ModifiedCylinder {
         };
         centre(self, end) + offset * self.radius()
     }
-}
-
-/// The end that the support point along a unit vector belongs to, and how far that point is beyond it.
-pub(super) fn reach(link: &ModifiedCylinder, dir: Vector) -> (Vector, Real) {
-    let axis = axis_or_x(link);
-    let lean = axis.dot(dir);
-    let end = usize::from(lean > 0.0);
-    let share = match link.caps()[end] {
-        Cap::Round => 1.0,
-        Cap::Flat => (dir - axis * lean).length(),
-    };
-    (centre(link, end), share * link.radius())
 }
 
 /// A polygon near the support point (see the head of this file).

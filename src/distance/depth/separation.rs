@@ -21,16 +21,16 @@
 //! the normal as it stands, so the translation separates; and as the depth is least there, a small error of
 //! the normal costs its square.
 
-use super::axial::{perpendicular, unit, unit_across};
+use super::direction::{perpendicular, unit, unit_across};
 use super::ellipse::way_out_above;
-use crate::{Cap, ModifiedCylinder};
+use crate::distance::Link;
 use parry3d_f64::math::{Real, Vector, Vector2};
 
 /// The unit normals of the table and their opposites, handed one by one to `consider`.
-pub(super) fn directions(link: &ModifiedCylinder, triangle: [Vector; 3], mut consider: impl FnMut(Vector)) {
+pub(super) fn directions(link: &Link<Real>, triangle: [Vector; 3], mut consider: impl FnMut(Vector)) {
     let [a, b, c] = triangle;
     let edges = [b - a, c - b, a - c].map(unit);
-    let axis = unit(link.axis());
+    let axis = unit(Vector::from(link.axis));
     let mut both_ways = |n: Option<Vector>| {
         if let Some(n) = n {
             consider(n);
@@ -42,25 +42,21 @@ pub(super) fn directions(link: &ModifiedCylinder, triangle: [Vector; 3], mut con
         both_ways(axis.and_then(|axis| unit_across(edge.cross(axis), edge)));
     }
     for vertex in triangle {
-        let from_start = vertex - link.start();
         // On the axis all ways out are as long.
-        let lateral = axis.map(|axis| unit_across(from_start, axis).unwrap_or_else(|| perpendicular(axis)));
+        let lateral = axis.map(|axis| unit_across(vertex, axis).unwrap_or_else(|| perpendicular(axis)));
         both_ways(lateral);
     }
     for end in 0..2 {
-        let centre = if end == 0 { link.start() } else { link.end() };
+        let centre = if end == 0 { Vector::ZERO } else { Vector::from(link.end) };
         for (corner, vertex) in triangle.into_iter().enumerate() {
             let offset = vertex - centre;
-            match link.caps()[end] {
-                Cap::Round => {
-                    both_ways(unit(offset));
-                    both_ways(edges[corner].and_then(|edge| unit_across(offset, edge)));
-                }
-                Cap::Flat => {
-                    let outward = axis.map(|axis| if end == 0 { -axis } else { axis });
-                    let faced = outward.zip(edges[corner]);
-                    both_ways(faced.and_then(|(way, edge)| across_rim(way, link.radius(), offset, edge)));
-                }
+            if link.flat[end] {
+                let outward = axis.map(|axis| if end == 0 { -axis } else { axis });
+                let faced = outward.zip(edges[corner]);
+                both_ways(faced.and_then(|(way, edge)| across_rim(way, link.radius, offset, edge)));
+            } else {
+                both_ways(unit(offset));
+                both_ways(edges[corner].and_then(|edge| unit_across(offset, edge)));
             }
         }
     }

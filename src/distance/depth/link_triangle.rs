@@ -1,0 +1,96 @@
+//! A link and a triangle along one direction and another: by how much a plane keeps them apart, or what it takes to move
+//! them apart.
+//!
+//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the direction `n`.
+//! Moving the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is. So every `n` gives a lower
+//! bound on the distance while they are apart (the best `n` attains it), and a translation that separates them when they
+//! overlap (the best `n` gives the least).
+
+use super::direction::{perpendicular, unit, unit_across};
+use super::separation;
+use crate::distance::{Face, Link, Vec3};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding can do to a distance or a gap where numbers are near one.
+pub(crate) const ROUNDING: Real = 8.0 * Real::EPSILON;
+
+/// A link and a triangle, from the link's start and near one.
+#[derive(Clone, Copy)]
+pub(crate) struct LinkTriangle {
+    pub link: Link<Real>,
+    pub triangle: [Vector; 3],
+}
+
+impl LinkTriangle {
+    pub(crate) fn new(link: Link<Real>, triangle: [Vector; 3]) -> Self {
+        // Without an axis there is no cap.
+        let has_axis = link.axis != Vec3::zero(0.0);
+        Self { link: Link { flat: link.flat.map(|flat| flat && has_axis), ..link }, triangle }
+    }
+
+    /// The largest gap and its direction, among the features' normals and `more`, as they are and made
+    /// perpendicular to the edges and the axis; or the first gap that is as large as `enough`, but for rounding.
+    pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> (Real, Vector) {
+        let enough = enough - ROUNDING;
+        let [a, b, c] = self.triangle;
+        let edges = [b - a, c - b, a - c];
+        let axis = Vector::from(self.link.axis);
+        // Some direction across whatever direction there is, should nothing else be left.
+        let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
+        let mut best = (Real::NEG_INFINITY, across);
+        // The first of equals stays, so `more` goes first.
+        for n in more.into_iter().flatten() {
+            best = self.wider(best, n);
+        }
+        if best.0 >= enough {
+            return best;
+        }
+        let face = face_normal(self.triangle);
+        for n in face.into_iter().flat_map(|n| [n, -n]) {
+            best = self.wider(best, n);
+        }
+        if best.0 >= enough {
+            return best;
+        }
+        let edges = edges.map(unit);
+        let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
+        let lines = [unit(axis), Some(across)].into_iter().chain(products).flatten();
+        let straight = || edges.into_iter().chain([unit(axis)]).flatten();
+        let turned =
+            more.into_iter().flatten().flat_map(|n| straight().map(move |line| unit_across(n, line)));
+        for n in turned.flatten().chain(lines.flat_map(|n| [n, -n])) {
+            best = self.wider(best, n);
+        }
+        best
+    }
+
+    /// The best direction so far or one of those in which a least translation can be.
+    pub(crate) fn widest_of_all(&self, mut best: (Real, Vector)) -> (Real, Vector) {
+        separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
+        best
+    }
+
+    /// The best direction so far or `n`, whichever has the larger gap.
+    fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
+        let (centre, reach) = self.reach(n);
+        let beyond = self.triangle.map(|vertex| (vertex - centre).dot(n));
+        let gap = beyond[0].min(beyond[1]).min(beyond[2]) - reach;
+        if gap > best.0 { (gap, n) } else { best }
+    }
+
+    /// The end of the axis that the link's point furthest along a unit vector belongs to, and how far that point is
+    /// beyond it.
+    fn reach(&self, n: Vector) -> (Vector, Real) {
+        let Link { end, axis, radius, flat } = self.link;
+        let axis = Vector::from(axis);
+        let lean = axis.dot(n);
+        let at_end = lean > 0.0;
+        let share = if flat[usize::from(at_end)] { (n - axis * lean).length() } else { 1.0 };
+        (if at_end { end.into() } else { Vector::ZERO }, share * radius)
+    }
+}
+
+/// The unit normal of a triangle whose numbers are near one, if it has one.
+pub(crate) fn face_normal(triangle: [Vector; 3]) -> Option<Vector> {
+    unit(Vector::from(Face::new(triangle.map(Vec3::from)).normal()))
+}

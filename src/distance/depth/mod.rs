@@ -1,0 +1,13 @@
+//! How deep two simple shapes overlap: the least translation that separates them.
+//!
+//! Numbers in and numbers out, in coordinates from the link's start and near one, in double precision.
+
+mod direction;
+mod ellipse;
+mod foot;
+mod link_triangle;
+mod separation;
+
+pub(crate) use direction::{perpendicular, unit, unit_across};
+pub(crate) use foot::to_flat;
+pub(crate) use link_triangle::{LinkTriangle, ROUNDING, face_normal};
