@@ -2,7 +2,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`Random`], the same anywhere |
+//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`Random`], the same anywhere |
 //! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
 //! | programs | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
@@ -15,6 +15,7 @@ pub mod disc_problems;
 pub mod gpu;
 pub mod kernels;
 pub mod narrow_phase;
+pub mod placements;
 pub mod precision;
 pub mod problems;
 #[cfg(feature = "programs")]
