@@ -53,11 +53,25 @@ pub enum MeshFileError {
         found: &'static str,
     },
     /// It holds no triangle.
-    #[error("{} holds no triangles; export the surface, not only its points", file.display())]
+    #[error("{} holds no triangles{}; export the surface, not only its points", file.display(), without_area(*skipped_faces))]
     #[non_exhaustive]
     Empty {
         /// The file.
         file: PathBuf,
+        /// How many faces it has, all without area.
+        skipped_faces: usize,
+    },
+    /// It would take more memory than the options allow.
+    #[error("reading {} would take {} MiB of memory, but {} MiB are allowed; crop it or make it coarser, \
+             or raise Options::memory_limit", file.display(), bytes.div_ceil(MIB), limit / MIB)]
+    #[non_exhaustive]
+    TooLarge {
+        /// The file.
+        file: PathBuf,
+        /// How many bytes it would take, at most.
+        bytes: u64,
+        /// How many are allowed.
+        limit: u64,
     },
     /// A label map has no voxel with the label that was asked for.
     #[error("{} has no voxel with label {label}, but with {}; choose one of them", file.display(), listed(present))]
@@ -67,7 +81,7 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The label that was asked for.
         label: u32,
-        /// All labels that voxels have, 0 among them, in ascending order.
+        /// The labels that voxels have, 0 among them, in ascending order; of more than 1000 the lowest 1000.
         present: Vec<u32>,
     },
     /// A label was asked for, but a file of triangles has none.
@@ -122,6 +136,18 @@ pub enum MeshFileError {
         /// The scale that was asked for.
         scale: f64,
     },
+}
+
+/// Bytes in a mebibyte.
+const MIB: u64 = 1 << 20;
+
+/// Why there may be no triangles in spite of faces.
+fn without_area(skipped_faces: usize) -> String {
+    match skipped_faces {
+        0 => String::new(),
+        1 => ", but a face without area".into(),
+        _ => format!(", but {skipped_faces} faces without area"),
+    }
 }
 
 /// Some labels, as an error shows them.

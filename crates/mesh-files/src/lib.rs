@@ -1,7 +1,9 @@
 //! Triangle meshes from STL, OBJ and PLY files, and from segmentations in NIfTI and NRRD files.
 //!
 //! [`load`] reads a file by its extension. What comes back is whole: there is at least one triangle, every vertex is
-//! finite, and every triangle names vertices that are there. What is wrong with a file is said in one line.
+//! finite, and every triangle names three different vertices that are there. What is wrong with a file is said in one
+//! line. Faces without area are left out, and [`Mesh::skipped_faces`] counts them. How much memory reading may take is
+//! limited by [`Options::memory_limit`].
 //!
 //! STL and OBJ are read here, because their errors must name the line; PLY's grammar and NIfTI's header are left to
 //! the crates that know them.
@@ -32,11 +34,19 @@ pub struct Options {
     /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside. For a file
     /// of triangles it is an error.
     pub label: Option<u32>,
+    /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless something else is said.
+    ///
+    /// What would take more is refused before the memory is taken, with [`MeshFileError::TooLarge`]. A label map takes 5
+    /// bytes for each voxel of the smallest box around the label, and at most 134 for each face between a voxel of the
+    /// label and another one; its voxels are never kept as a whole, however small their archive is. A file of triangles
+    /// takes memory in proportion to its size, whatever its header counts; one that is itself larger than the limit is
+    /// refused by [`load_with`] before it is read.
+    pub memory_limit: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { scale: 1.0, label: None }
+        Self { scale: 1.0, label: None, memory_limit: 2 << 30 }
     }
 }
 
@@ -50,6 +60,11 @@ impl Options {
     /// labels: asked for one, it is an error.
     pub fn with_label(self, label: Option<u32>) -> Self {
         Self { label, ..self }
+    }
+
+    /// The same, but with so many bytes of memory at most, beside those of the file.
+    pub fn with_memory_limit(self, memory_limit: u64) -> Self {
+        Self { memory_limit, ..self }
     }
 }
 
@@ -118,7 +133,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 /// # Errors
 /// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not finite; a triangle
 /// names a vertex that is not there; a label map has no voxel of the label, or holds an image instead; a label is asked
-/// of a file of triangles; or the scale is not a positive number.
+/// of a file of triangles; it takes more memory than the options allow; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     // The name and the kind of file first: a device may never end.
@@ -127,6 +142,10 @@ pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, Mesh
     let kind = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !kind.is_file() {
         return Err(unreadable("it is not a file".into()));
+    }
+    if kind.len() > options.memory_limit {
+        let (file, bytes, limit) = (path.to_owned(), kind.len(), options.memory_limit);
+        return Err(MeshFileError::TooLarge { file, bytes, limit });
     }
     let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
     from_bytes(path, &bytes, options)
@@ -153,10 +172,13 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
     };
     #[cfg(feature = "label-maps")]
     let surface = |read: Result<label_map::Volume, Fault>| {
-        read.and_then(|volume| volume.surface(options.label)).map_err(|fault| {
+        read.and_then(|volume| volume.surface(options.label, options.memory_limit)).map_err(|fault| {
             let file = path.to_owned();
             match (fault, options.label) {
                 (Fault::Broken(reason), _) => broken(reason),
+                (Fault::TooLarge(bytes), _) => {
+                    MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
+                }
                 (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
                 (Fault::NoneOf(present), Some(label)) => {
                     MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
@@ -178,7 +200,7 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });
     }
     if mesh.triangles.is_empty() {
-        return Err(MeshFileError::Empty { file });
+        return Err(MeshFileError::Empty { file, skipped_faces: mesh.skipped_faces });
     }
     let count = mesh.vertices.len();
     if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count) {

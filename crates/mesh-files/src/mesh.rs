@@ -23,12 +23,29 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The frame of the coordinates, where the file states it.
     pub frame: Option<Frame>,
+    /// How many faces of the file are not among the triangles, because they name fewer than three different vertices and
+    /// so have no area. Each counts once, whatever its number of corners; the others keep their order. A polygon that names
+    /// a vertex twice and has area all the same is cut as any other, and is not counted. In an STL file the corners at
+    /// exactly the same place are one vertex. Faces whose vertices differ stay, be they ever so thin.
+    pub skipped_faces: usize,
 }
 
 impl Mesh {
     /// Vertices and triangles, the vertices as any type that three numbers make, such as glam's or parry's vectors.
     pub fn into_parts<Vertex: From<[f64; 3]>>(self) -> (Vec<Vertex>, Vec<[u32; 3]>) {
         (self.vertices.into_iter().map(Vertex::from).collect(), self.triangles)
+    }
+
+    /// Adds a face, cut into a fan about its first corner, without the triangles that name a vertex twice.
+    pub(crate) fn add_face(&mut self, corners: &[u32]) {
+        let before = self.triangles.len();
+        if let Some((&first, others)) = corners.split_first() {
+            let fan = others.windows(2).map(|edge| [first, edge[0], edge[1]]);
+            self.triangles.extend(fan.filter(|[a, b, c]| a != b && b != c && c != a));
+        }
+        if self.triangles.len() == before {
+            self.skipped_faces += 1;
+        }
     }
 
     /// The mesh in the given frame; none if its own is unknown.

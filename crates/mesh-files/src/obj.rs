@@ -1,4 +1,5 @@
-//! OBJ: its vertices and faces. Polygons are cut into fans; all objects of the file make one mesh.
+//! OBJ: its vertices and faces. Polygons are cut into fans, faces without area are left out; all objects of the file make
+//! one mesh.
 
 use crate::mesh::Mesh;
 use crate::text::{lines, noted_frame, number, shown};
@@ -25,11 +26,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
             Some("f") => {
                 let corner = |word| corner(word, mesh.vertices.len(), line);
                 let corners = words.map(corner).collect::<Result<Vec<_>, _>>()?;
-                let &[first, _, _, ..] = corners.as_slice() else {
-                    return Err(format!("the face in line {line} has fewer than 3 corners"));
-                };
                 last = corners.iter().map(|&corner| (corner, line)).fold(last, Ord::max);
-                mesh.triangles.extend(corners[1..].windows(2).map(|edge| [first, edge[0], edge[1]]));
+                mesh.add_face(&corners);
             }
             _ => {}
         }

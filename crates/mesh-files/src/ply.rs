@@ -1,10 +1,13 @@
-//! PLY, ASCII and binary. Polygons are cut into fans.
+//! PLY, ASCII and binary. Polygons are cut into fans, faces without area are left out.
 
 use crate::mesh::Mesh;
 use crate::text::{noted_frame, shown, without_mark};
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
 use std::io::Cursor;
+
+/// So many elements are read at once: what the header counts is not believed, nor is the rest of an element kept.
+const AT_ONCE: usize = 4096;
 
 /// The names of a face's list of vertices.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -22,8 +25,15 @@ impl PropertyAccess for Element {
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         let number = match property {
+            Property::Char(value) => Some(value.into()),
+            Property::UChar(value) => Some(value.into()),
+            Property::Short(value) => Some(value.into()),
+            Property::UShort(value) => Some(value.into()),
+            Property::Int(value) => Some(value.into()),
+            Property::UInt(value) => Some(value.into()),
+            Property::Float(value) => Some(value.into()),
             Property::Double(value) => Some(value),
-            ref other => other.to_f32_lossy().map(f64::from),
+            _ => None,
         };
         match (name, number) {
             ("x", Some(value)) => self.place[0] = value,
@@ -45,27 +55,32 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let mut mesh = Mesh { frame: noted_frame(bytes), ..Mesh::default() };
     for (_, definition) in &header.elements {
         let name = shown(&definition.name);
-        let is_vertex = definition.name == "vertex";
-        if is_vertex {
-            for axis in ["x", "y", "z"] {
-                if !has(definition, axis) {
-                    return Err(format!("its vertices have no property '{axis}'"));
-                }
-            }
+        let (is_vertex, is_face) = (definition.name == "vertex", definition.name == "face");
+        if is_vertex && let Some(axis) = ["x", "y", "z"].into_iter().find(|axis| !has(definition, axis)) {
+            return Err(format!("its vertices have no property '{axis}'"));
         }
-        let elements = parser.read_payload_for_element(&mut source, definition, &header).map_err(|_| {
-            let count = definition.count;
-            format!("the {count} of element '{name}' end early, or hold what their header does not announce")
-        })?;
-        if is_vertex {
-            mesh.vertices = elements.into_iter().map(|element| element.place).collect();
-        } else if definition.name == "face" {
-            for (index, face) in elements.into_iter().enumerate() {
-                let corners = face.corners.unwrap_or_default();
-                let &[first, _, _, ..] = corners.as_slice() else {
-                    return Err(format!("face {index} has no list of 3 or more vertices, each at least 0"));
-                };
-                mesh.triangles.extend(corners[1..].windows(2).map(|edge| [first, edge[0], edge[1]]));
+        // Without properties they have no bytes, and there may be any number of them.
+        if definition.properties.is_empty() && header.encoding != Encoding::Ascii {
+            continue;
+        }
+        let mut part = definition.clone();
+        for first in (0..definition.count).step_by(AT_ONCE) {
+            part.count = AT_ONCE.min(definition.count - first);
+            let elements = parser.read_payload_for_element(&mut source, &part, &header).map_err(|_| {
+                let count = definition.count;
+                format!(
+                    "the {count} of element '{name}' end early, or hold what their header does not announce"
+                )
+            })?;
+            if is_vertex {
+                mesh.vertices.extend(elements.into_iter().map(|element| element.place));
+            } else if is_face {
+                for (face, index) in elements.into_iter().zip(first..) {
+                    let corners = face
+                        .corners
+                        .ok_or_else(|| format!("face {index} has no list of vertices, each at least 0"))?;
+                    mesh.add_face(&corners);
+                }
             }
         }
     }

@@ -1,4 +1,5 @@
-//! STL, binary and ASCII. It names no vertices, so corners at exactly the same place become one.
+//! STL, binary and ASCII. It names no vertices, so corners at exactly the same place become one,
+//! and facets with fewer than three of them are left out.
 
 use crate::mesh::{Merger, Mesh};
 use crate::text::{lines, noted_frame, number, shown, without_mark};
@@ -38,20 +39,18 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
 }
 
 fn binary(body: &[u8]) -> Mesh {
-    let mut merger = Merger::default();
-    let triangles = body.as_chunks::<TRIANGLE>().0.iter().map(|triangle| {
+    let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
+    for triangle in body.as_chunks::<TRIANGLE>().0 {
         // The normal comes first; it follows from the corners.
         let at = |i: usize| f32::from_le_bytes([0, 1, 2, 3].map(|byte| triangle[12 + 4 * i + byte])).into();
-        [0, 3, 6].map(|corner| merger.number([at(corner), at(corner + 1), at(corner + 2)]))
-    });
-    let triangles = triangles.collect();
-    Mesh { vertices: merger.vertices, triangles, frame: None }
+        mesh.add_face(&[0, 3, 6].map(|corner| merger.number([at(corner), at(corner + 1), at(corner + 2)])));
+    }
+    Mesh { vertices: merger.vertices, ..mesh }
 }
 
 /// The words of an ASCII file after the name of its solid, in any case.
 fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
-    let mut merger = Merger::default();
-    let mut triangles = Vec::new();
+    let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
     let mut corners = Vec::new();
     let mut is_open = false;
     for (line, text) in lines(bytes) {
@@ -70,10 +69,13 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
                     corners.push(merger.number([next()?, next()?, next()?]));
                 }
                 "endfacet" => {
-                    let triangle = corners.as_slice().try_into().map_err(|_| {
-                        format!("the facet that ends in line {line} has {} vertices, not 3", corners.len())
-                    })?;
-                    triangles.push(triangle);
+                    if corners.len() != 3 {
+                        let count = corners.len();
+                        return Err(format!(
+                            "the facet that ends in line {line} has {count} vertices, not 3"
+                        ));
+                    }
+                    mesh.add_face(&corners);
                     corners.clear();
                 }
                 _ => return Err(format!("line {line} has the unknown word '{}'", shown(word))),
@@ -83,5 +85,5 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
     if is_open || !corners.is_empty() {
         return Err("it ends without 'endsolid', so it may be cut short".into());
     }
-    Ok(Mesh { vertices: merger.vertices, triangles, frame: None })
+    Ok(Mesh { vertices: merger.vertices, ..mesh })
 }

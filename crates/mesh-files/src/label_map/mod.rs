@@ -8,6 +8,7 @@ use crate::mesh::{Frame, Mesh};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
 use std::collections::BTreeSet;
+use voxels::Voxels;
 
 /// The most voxels that are read; their numbers, with room around, fit in 32 bits.
 const MOST_VOXELS: u64 = 1 << 31;
@@ -18,7 +19,9 @@ pub enum Fault {
     Broken(String),
     /// A voxel holds this, which is no label.
     NotALabel(f64),
-    /// No voxel is in the surface; the voxels have these labels.
+    /// The surface would take so many bytes.
+    TooLarge(u64),
+    /// No voxel is in the surface; where a label was asked for, the voxels have these.
     NoneOf(BTreeSet<u32>),
 }
 
@@ -35,9 +38,9 @@ impl From<&str> for Fault {
 }
 
 /// A label for each voxel, the first axis fastest, and where the voxels are.
-pub struct Volume {
+pub struct Volume<'a> {
     sizes: [usize; 3],
-    labels: Vec<u32>,
+    voxels: Voxels<'a>,
     place: Place,
     frame: Option<Frame>,
 }
@@ -97,36 +100,45 @@ impl SignedDistance for Voxel {
     }
 }
 
-impl Volume {
-    /// The surface of the voxels with this label, or of all that are not 0.
-    pub fn surface(&self, label: Option<u32>) -> Result<Mesh, Fault> {
+impl Volume<'_> {
+    /// The surface of the voxels with this label, or of all that are not 0, if it takes no more bytes than the limit.
+    pub fn surface(&self, label: Option<u32>, limit: u64) -> Result<Mesh, Fault> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
-        let [width, height, _] = self.sizes;
         let mut low = [usize::MAX; 3];
         let mut high = [0; 3];
-        for index in (0..self.labels.len()).filter(|&index| is_inside(self.labels[index])) {
-            let voxel = [index % width, index / width % height, index / width / height];
+        self.each_inside(is_inside, &mut |voxel| {
             low = [0, 1, 2].map(|axis| low[axis].min(voxel[axis]));
             high = [0, 1, 2].map(|axis| high[axis].max(voxel[axis]));
-        }
+        })?;
         if low[0] == usize::MAX {
-            return Err(Fault::NoneOf(self.labels.iter().copied().collect()));
+            let present = if label.is_some() { self.present()? } else { BTreeSet::new() };
+            return Err(Fault::NoneOf(present));
         }
         // One voxel of outside all around closes the surface at the border; a second one at the far sides, because the
         // faces there belong to a neighbouring block that does not exist.
         let room = [0, 1, 2].map(|axis| high[axis] - low[axis] + 4);
-        count(room)?;
+        // A byte each here, and the number of a vertex in the net.
+        let grid = 5 * count(room)? as u64;
+        let allowed = |bytes: u64| if bytes <= limit { Ok(()) } else { Err(Fault::TooLarge(bytes)) };
+        allowed(grid)?;
         let mut voxels = vec![Voxel(false); room.iter().product()];
-        for z in low[2]..=high[2] {
-            for y in low[1]..=high[1] {
-                let from = (z * height + y) * width;
-                let to = ((z - low[2] + 1) * room[1] + y - low[1] + 1) * room[0] + 1;
-                let row = &self.labels[from + low[0]..=from + high[0]];
-                voxels[to..].iter_mut().zip(row).for_each(|(voxel, &found)| *voxel = Voxel(is_inside(found)));
-            }
-        }
-        let room = room.map(|size| size as u32);
+        self.each_inside(is_inside, &mut |voxel| {
+            let [x, y, z] = [0, 1, 2].map(|axis| voxel[axis] - low[axis] + 1);
+            voxels[(z * room[1] + y) * room[0] + x] = Voxel(true);
+        })?;
+        // Each face between two unlike voxels is a quadrilateral of the net: two triangles, there and in the mesh, of 48
+        // bytes. A vertex, of 64 bytes in both, is in a cube of eight voxels that are not all alike; such a cube has three
+        // of the faces or more, and a face is in four cubes, so that there are at most 4 / 3 vertices for a face.
+        let faces = faces(&voxels, room);
+        let vertices = faces.div_ceil(3) * 4;
+        allowed(grid + 48 * faces as u64 + 64 * vertices as u64)?;
         let mut net = SurfaceNetsBuffer::default();
+        net.indices.reserve_exact(6 * faces);
+        net.positions.reserve_exact(vertices);
+        net.normals.reserve_exact(vertices);
+        net.surface_points.reserve_exact(vertices);
+        net.surface_strides.reserve_exact(vertices);
+        let room = room.map(|size| size as u32);
         let shape = RuntimeShape::<u32, 3>::new(room);
         surface_nets(&voxels, &shape, [0; 3], room.map(|size| size - 1), &mut net);
 
@@ -137,6 +149,52 @@ impl Volume {
             vertices: net.positions.iter().map(place).collect(),
             triangles: net.indices.as_chunks().0.iter().map(turn).collect(),
             frame: self.frame,
+            skipped_faces: 0,
         })
     }
+
+    /// Shows the voxels that are inside, in their order.
+    fn each_inside(
+        &self,
+        is_inside: impl Fn(u32) -> bool,
+        see: &mut dyn FnMut([usize; 3]),
+    ) -> Result<(), Fault> {
+        let [width, height, _] = self.sizes;
+        let mut first = 0;
+        self.voxels.each(&mut |labels| {
+            for (index, _) in (first..).zip(labels).filter(|&(_, &found)| is_inside(found)) {
+                see([index % width, index / width % height, index / width / height]);
+            }
+            first += labels.len();
+        })
+    }
+
+    /// The labels of the voxels, the lowest if there are many.
+    fn present(&self) -> Result<BTreeSet<u32>, Fault> {
+        const MOST: usize = 1000;
+        let mut present = BTreeSet::new();
+        let mut before = None;
+        self.voxels.each(&mut |labels| {
+            for &label in labels {
+                // Neighbours are mostly alike.
+                if before.replace(label) == Some(label) {
+                    continue;
+                }
+                if present.len() < MOST || present.last().is_some_and(|&last| label < last) {
+                    present.insert(label);
+                }
+                if present.len() > MOST {
+                    present.pop_last();
+                }
+            }
+        })?;
+        Ok(present)
+    }
+}
+
+/// How many faces there are between a voxel inside and one outside.
+fn faces(voxels: &[Voxel], [width, height, _]: [usize; 3]) -> usize {
+    // The outermost voxels are outside, so that a neighbour in the next row is as much outside as none.
+    let along = |step: usize| voxels.iter().zip(&voxels[step..]).filter(|(a, b)| a.0 != b.0).count();
+    along(1) + along(width) + along(width * height)
 }

@@ -1,6 +1,6 @@
 //! NIfTI-1 label maps, packed by gzip or not. Their frame is RAS, in millimetres.
 
-use super::voxels::{Kind, labels, unpack};
+use super::voxels::{Encoding, Kind, Voxels, unpack};
 use super::{Fault, Place, Volume, count};
 use crate::mesh::Frame;
 use nifti::{Endianness, NiftiHeader, NiftiType};
@@ -9,12 +9,10 @@ use std::borrow::Cow;
 /// The header, and the four bytes that tell whether more follows.
 const HEAD: usize = 352;
 
-pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
+pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     let is_packed = bytes.starts_with(b"\x1f\x8b");
-    let up_to = |count: usize| -> Result<Cow<'_, [u8]>, String> {
-        Ok(if is_packed { unpack(bytes, count)?.into() } else { bytes[..bytes.len().min(count)].into() })
-    };
-    let head = up_to(HEAD)?;
+    let head: Cow<'_, [u8]> =
+        if is_packed { unpack(bytes, HEAD)?.into() } else { bytes[..bytes.len().min(HEAD)].into() };
     if head.get(4..8) == Some(b"n+2\0") {
         return Err("it is NIfTI-2; save it as NIfTI-1".into());
     }
@@ -29,23 +27,36 @@ pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
         return Err("it is not one volume of three dimensions; save a single label map".into());
     }
     let sizes = [width, height, depth];
-    let kind = kind(&header)?;
-    let size = count(sizes)? * kind.size();
     let offset = header.vox_offset;
-    // The whole file is in memory, so that what does not fit in 32 bits is not there.
+    // What does not fit in 32 bits is no header's length.
     if !(offset >= 348.0 && f64::from(offset) < f64::from(u32::MAX)) {
         return Err(
             format!("its voxels begin at byte {offset}, which is in the header or past the end").into()
         );
     }
-    let start = offset as usize;
-    let voxels = up_to(start + size)?;
-    let voxels = voxels.get(start..start + size).ok_or("it is shorter than its header says")?;
-    let is_big_endian = header.endianness == Endianness::Big;
-    let (slope, intercept) = (f64::from(header.scl_slope), f64::from(header.scl_inter));
-    let scaled = |x: f64| if slope == 0.0 { x } else { slope * x + intercept };
-    let labels = labels(voxels, kind, is_big_endian, scaled)?;
-    Ok(Volume { sizes, labels, place: place(&header)?, frame: Some(Frame::Ras) })
+    let voxels = Voxels {
+        data: bytes,
+        encoding: if is_packed { Encoding::Gzip } else { Encoding::Raw },
+        skip: offset as usize,
+        count: count(sizes)?,
+        kind: kind(&header)?,
+        is_big_endian: header.endianness == Endianness::Big,
+        scaling: scaling(&header)?,
+    };
+    Ok(Volume { sizes, voxels, place: place(&header)?, frame: Some(Frame::Ras) })
+}
+
+/// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or not a number, whatever
+/// the intercept is; otherwise an intercept that is not finite is an error.
+fn scaling(header: &NiftiHeader) -> Result<Option<[f64; 2]>, String> {
+    let [slope, intercept] = [header.scl_slope, header.scl_inter].map(f64::from);
+    if slope == 0.0 || !slope.is_finite() {
+        Ok(None)
+    } else if intercept.is_finite() {
+        Ok(Some([slope, intercept]))
+    } else {
+        Err(format!("its numbers are multiplied by {slope}, but {intercept} is added to them"))
+    }
 }
 
 fn kind(header: &NiftiHeader) -> Result<Kind, String> {

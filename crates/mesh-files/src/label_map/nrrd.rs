@@ -1,6 +1,6 @@
 //! NRRD label maps in one file: raw, gzip or ASCII. Their frame is what `space` says, RAS or LPS.
 
-use super::voxels::{Kind, label, labels, unpack};
+use super::voxels::{Encoding, Kind, Voxels};
 use super::{Fault, Place, Volume, count};
 use crate::mesh::Frame;
 use crate::text::shown;
@@ -48,7 +48,7 @@ impl<'a> File<'a> {
     }
 }
 
-pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
+pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     let file = File::new(bytes)?;
     for name in ["data file", "datafile"] {
         if file.get(name).is_some() {
@@ -73,29 +73,15 @@ pub fn read(bytes: &[u8]) -> Result<Volume, Fault> {
     if kind.size() > 1 && file.get("endian").is_none() && !is_text(file.need("encoding")?) {
         file.need("endian")?;
     }
-    let size = count * kind.size();
-    let short = "it is shorter than its header says";
-    let labels = match file.need("encoding")?.to_ascii_lowercase().as_str() {
-        "raw" => labels(file.data.get(..size).ok_or(short)?, kind, is_big_endian, |x| x)?,
-        "gzip" | "gz" => {
-            let voxels = unpack(file.data, size)?;
-            labels(voxels.get(..size).ok_or(short)?, kind, is_big_endian, |x| x)?
-        }
-        encoding if is_text(encoding) => {
-            let text = String::from_utf8_lossy(file.data);
-            let numbers = text.split_whitespace().map(|word| {
-                label(
-                    word.parse()
-                        .map_err(|_| format!("a voxel holds '{}', which is no number", shown(word)))?,
-                )
-            });
-            let labels: Vec<_> = numbers.take(count).collect::<Result<_, Fault>>()?;
-            if labels.len() == count { labels } else { return Err(short.into()) }
-        }
+    let encoding = match file.need("encoding")?.to_ascii_lowercase().as_str() {
+        "raw" => Encoding::Raw,
+        "gzip" | "gz" => Encoding::Gzip,
+        encoding if is_text(encoding) => Encoding::Text,
         encoding => return Err(File::unknown("encoding", encoding).into()),
     };
     let (place, frame) = place(&file)?;
-    Ok(Volume { sizes, labels, place, frame })
+    let voxels = Voxels { data: file.data, encoding, skip: 0, count, kind, is_big_endian, scaling: None };
+    Ok(Volume { sizes, voxels, place, frame })
 }
 
 fn is_text(encoding: &str) -> bool {

@@ -1,8 +1,9 @@
 //! The numbers of the voxels, of any type, as labels.
 
 use super::Fault;
+use crate::text::shown;
 use flate2::read::MultiGzDecoder;
-use std::io::Read;
+use std::io::{self, Read};
 
 /// The type of a voxel's number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,51 +44,139 @@ pub fn label(number: f64) -> Result<u32, Fault> {
     }
 }
 
-/// The labels in the bytes. `scaled` is what the file asks to do with each number.
-pub fn labels(
-    bytes: &[u8],
-    kind: Kind,
-    is_big_endian: bool,
-    scaled: impl Fn(f64) -> f64,
-) -> Result<Vec<u32>, Fault> {
-    let is_big = is_big_endian;
-    match kind {
-        Kind::I8 => each(bytes, is_big, |b| i8::from_le_bytes(b).into(), scaled),
-        Kind::U8 => each(bytes, is_big, |b| u8::from_le_bytes(b).into(), scaled),
-        Kind::I16 => each(bytes, is_big, |b| i16::from_le_bytes(b).into(), scaled),
-        Kind::U16 => each(bytes, is_big, |b| u16::from_le_bytes(b).into(), scaled),
-        Kind::I32 => each(bytes, is_big, |b| i32::from_le_bytes(b).into(), scaled),
-        Kind::U32 => each(bytes, is_big, |b| u32::from_le_bytes(b).into(), scaled),
-        Kind::I64 => each(bytes, is_big, |b| i64::from_le_bytes(b) as f64, scaled),
-        Kind::U64 => each(bytes, is_big, |b| u64::from_le_bytes(b) as f64, scaled),
-        Kind::F32 => each(bytes, is_big, |b| f32::from_le_bytes(b).into(), scaled),
-        Kind::F64 => each(bytes, is_big, f64::from_le_bytes, scaled),
-    }
+/// How the voxels are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Encoding {
+    Raw,
+    Gzip,
+    Text,
 }
 
-fn each<const SIZE: usize>(
-    bytes: &[u8],
-    is_big_endian: bool,
-    number: impl Fn([u8; SIZE]) -> f64,
-    scaled: impl Fn(f64) -> f64,
-) -> Result<Vec<u32>, Fault> {
-    let voxels = bytes.as_chunks().0.iter().copied().map(|mut voxel: [u8; SIZE]| {
-        if is_big_endian {
-            voxel.reverse();
+/// The voxels of a file. They are read again whenever they are asked for and never kept, so that a small archive of a
+/// large volume takes no memory.
+pub struct Voxels<'a> {
+    pub data: &'a [u8],
+    pub encoding: Encoding,
+    /// Of the unpacked bytes, those before the first voxel.
+    pub skip: usize,
+    pub count: usize,
+    pub kind: Kind,
+    pub is_big_endian: bool,
+    /// What a number is multiplied by, and what is added then.
+    pub scaling: Option<[f64; 2]>,
+}
+
+impl Voxels<'_> {
+    /// Shows the labels of all voxels in their order, some at a time.
+    ///
+    /// # Errors
+    /// There are fewer than the header says, or what is there cannot be read as labels.
+    pub fn each(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+        let size = self.count.checked_mul(self.kind.size()).and_then(|size| size.checked_add(self.skip));
+        match (self.encoding, size) {
+            (Encoding::Text, _) => self.from_text(see),
+            (Encoding::Raw, Some(size)) => {
+                let data = self.data.get(self.skip..size).ok_or(SHORT)?;
+                self.from_bytes(data, see)
+            }
+            (Encoding::Gzip, Some(size)) if could_hold(self.data, size) => {
+                let mut unpacked = MultiGzDecoder::new(self.data);
+                let skip = io::copy(&mut unpacked.by_ref().take(self.skip as u64), &mut io::sink());
+                if skip.map_err(|_| DAMAGED)? < self.skip as u64 {
+                    return Err(SHORT.into());
+                }
+                self.from_bytes(unpacked, see)
+            }
+            _ => Err(SHORT.into()),
         }
-        label(scaled(number(voxel)))
-    });
-    voxels.collect()
+    }
+
+    /// Numbers of [`Kind`] from a stream that may hold more.
+    fn from_bytes(&self, mut stream: impl Read, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+        let mut bytes = vec![0; AT_ONCE * self.kind.size()];
+        let mut labels = Vec::with_capacity(AT_ONCE);
+        for first in (0..self.count).step_by(AT_ONCE) {
+            let bytes = &mut bytes[..AT_ONCE.min(self.count - first) * self.kind.size()];
+            let mut there = 0;
+            while there < bytes.len() {
+                match stream.read(&mut bytes[there..]) {
+                    Ok(0) => return Err(SHORT.into()),
+                    Ok(more) => there += more,
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                    Err(_) => return Err(DAMAGED.into()),
+                }
+            }
+            labels.clear();
+            self.decode(bytes, &mut labels)?;
+            see(&labels);
+        }
+        Ok(())
+    }
+
+    fn decode(&self, bytes: &[u8], labels: &mut Vec<u32>) -> Result<(), Fault> {
+        match self.kind {
+            Kind::I8 => self.numbers(bytes, |b| i8::from_le_bytes(b).into(), labels),
+            Kind::U8 => self.numbers(bytes, |b| u8::from_le_bytes(b).into(), labels),
+            Kind::I16 => self.numbers(bytes, |b| i16::from_le_bytes(b).into(), labels),
+            Kind::U16 => self.numbers(bytes, |b| u16::from_le_bytes(b).into(), labels),
+            Kind::I32 => self.numbers(bytes, |b| i32::from_le_bytes(b).into(), labels),
+            Kind::U32 => self.numbers(bytes, |b| u32::from_le_bytes(b).into(), labels),
+            Kind::I64 => self.numbers(bytes, |b| i64::from_le_bytes(b) as f64, labels),
+            Kind::U64 => self.numbers(bytes, |b| u64::from_le_bytes(b) as f64, labels),
+            Kind::F32 => self.numbers(bytes, |b| f32::from_le_bytes(b).into(), labels),
+            Kind::F64 => self.numbers(bytes, f64::from_le_bytes, labels),
+        }
+    }
+
+    fn numbers<const SIZE: usize>(
+        &self,
+        bytes: &[u8],
+        number: impl Fn([u8; SIZE]) -> f64,
+        labels: &mut Vec<u32>,
+    ) -> Result<(), Fault> {
+        for &voxel in bytes.as_chunks().0 {
+            let mut voxel: [u8; SIZE] = voxel;
+            if self.is_big_endian {
+                voxel.reverse();
+            }
+            labels.push(label(self.scaled(number(voxel)))?);
+        }
+        Ok(())
+    }
+
+    fn scaled(&self, number: f64) -> f64 {
+        self.scaling.map_or(number, |[slope, intercept]| slope * number + intercept)
+    }
+
+    /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the file has bytes.
+    fn from_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+        let text = String::from_utf8_lossy(self.data);
+        let mut seen = 0;
+        for word in text.split_whitespace().take(self.count) {
+            let number = word.parse();
+            let number =
+                number.map_err(|_| format!("a voxel holds '{}', which is no number", shown(word)))?;
+            see(&[label(self.scaled(number))?]);
+            seen += 1;
+        }
+        if seen == self.count { Ok(()) } else { Err(SHORT.into()) }
+    }
 }
 
-/// What the archive holds, up to `count` bytes.
+/// How many voxels are read at once.
+const AT_ONCE: usize = 1 << 14;
+const SHORT: &str = "it is shorter than its header says";
+const DAMAGED: &str = "its gzip archive is damaged or cut short";
+
+/// Deflate packs 1032 bytes into one at most: a header that promises more is not believed.
+fn could_hold(archive: &[u8], count: usize) -> bool {
+    count / 1032 <= archive.len()
+}
+
+/// The first bytes of what the archive holds, fewer if it holds fewer.
 pub fn unpack(archive: &[u8], count: usize) -> Result<Vec<u8>, String> {
-    // Deflate packs 1032 bytes into one at most: a header that promises more is not believed.
-    if count / 1032 > archive.len() {
-        return Err("it is shorter than its header says".into());
-    }
     let mut bytes = Vec::new();
     let unpacked = MultiGzDecoder::new(archive).take(count as u64).read_to_end(&mut bytes);
-    unpacked.map_err(|_| "its gzip archive is damaged or cut short")?;
+    unpacked.map_err(|_| DAMAGED)?;
     Ok(bytes)
 }

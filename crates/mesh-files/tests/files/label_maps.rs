@@ -209,6 +209,29 @@ fn every_type_of_number_gives_the_same_surface() {
     assert_eq!(label("a.nii", &scaled, 7).unwrap().triangles, expected.triangles);
 }
 
+/// What nibabel 5.4 makes of slopes and intercepts: `get_slope_inter`, and 1 and 0 where that says None.
+#[test]
+fn numbers_are_scaled_as_nibabel_scales_them() {
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let plain = label("a.nii", &Nifti::new(voxels.clone()).sform(&matrix).bytes(), 3).unwrap();
+    let (nan, infinite) = (f32::NAN, f32::INFINITY);
+    let scaled = |slope: f32, intercept: f32| {
+        Nifti::new(voxels.clone()).sform(&matrix).floats(112, &[slope, intercept]).bytes()
+    };
+    for slope in [nan, -nan, infinite, -infinite, 0.0, -0.0] {
+        for intercept in [0.0, 5.0, nan, infinite, -infinite] {
+            let read = label("a.nii", &scaled(slope, intercept), 3);
+            assert_eq!(read.as_ref().ok(), Some(&plain), "{slope} {intercept} {:?}", read.as_ref().err());
+        }
+    }
+    for intercept in [nan, infinite, -infinite] {
+        refused("intercept", label("a.nii", &scaled(2.0, intercept), 3), "multiplied by 2, but");
+    }
+    assert_eq!(label("a.nii", &scaled(1.0, 4.0), 7).unwrap().triangles, plain.triangles);
+    assert_eq!(label("a.nii", &scaled(-1.0, 10.0), 7).unwrap().triangles, plain.triangles);
+}
+
 #[test]
 fn units_and_frames_are_those_of_the_file() {
     let matrix = oblique(1.0);

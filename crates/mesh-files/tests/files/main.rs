@@ -3,6 +3,7 @@
 mod broken;
 #[cfg(feature = "label-maps")]
 mod label_maps;
+mod limits;
 mod triangles;
 
 use mesh_files::Mesh;

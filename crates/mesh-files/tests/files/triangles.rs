@@ -86,6 +86,87 @@ fn polygons_are_cut_and_objects_joined() {
 }
 
 #[test]
+fn faces_without_area_are_left_out_and_counted() {
+    let (points, triangles) = ring();
+    let vertices: String = points.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    let face = |corners: &[u32]| {
+        let words: Vec<_> = corners.iter().map(|corner| (corner + 1).to_string()).collect();
+        format!("f {}\n", words.join(" "))
+    };
+    // A face, and the triangles that it is cut into by hand.
+    let faces: [(&[u32], &[[u32; 3]]); 11] = [
+        (&[], &[]),
+        (&[7], &[]),
+        (&[7, 8], &[]),
+        (&[7, 7, 7], &[]),
+        (&[7, 8, 7], &[]),
+        (&[7, 8, 7, 8, 7, 8], &[]),
+        (&[1, 2, 3], &[[1, 2, 3]]),
+        // Twice in a row, at the end, again as the first one, and two triangles that share their first corner.
+        (&[1, 1, 2, 3], &[[1, 2, 3]]),
+        (&[1, 2, 3, 3], &[[1, 2, 3]]),
+        (&[1, 2, 3, 1], &[[1, 2, 3]]),
+        (&[1, 2, 3, 1, 4, 5], &[[1, 2, 3], [1, 4, 5]]),
+    ];
+    let skipped = faces.iter().filter(|(_, cut)| cut.is_empty()).count();
+    let cut = |faces: &[(&[u32], &[[u32; 3]])]| faces.iter().flat_map(|(_, cut)| cut.to_vec()).collect();
+    let expected: [Vec<[u32; 3]>; 3] = [cut(&faces[..3]), triangles.clone(), cut(&faces)];
+    let expected = expected.concat();
+
+    let good: String = triangles.iter().map(|triangle| face(triangle)).collect();
+    let bad =
+        |faces: &[(&[u32], &[[u32; 3]])]| faces.iter().map(|(corners, _)| face(corners)).collect::<String>();
+    let obj = read("a.obj", vertices + &bad(&faces[..3]) + &good + &bad(&faces)).unwrap();
+    assert_eq!((obj.skipped_faces, &obj.triangles), (skipped + 3, &expected));
+    assert_eq!(obj.vertices, points);
+
+    let all: Vec<_> = faces[..3]
+        .iter()
+        .map(|(corners, _)| corners.to_vec())
+        .chain(triangles.iter().map(|triangle| triangle.to_vec()))
+        .chain(faces.iter().map(|(corners, _)| corners.to_vec()))
+        .collect();
+    let line = |corners: &Vec<u32>| {
+        let words: Vec<_> = corners.iter().map(u32::to_string).collect();
+        format!("{} {}\n", corners.len(), words.join(" "))
+    };
+    let ascii = ply_header(points.len(), all.len(), "ascii", "double")
+        + &points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect::<String>()
+        + &all.iter().map(line).collect::<String>();
+    let mut binary = ply_header(points.len(), all.len(), "binary_big_endian", "double").into_bytes();
+    points.iter().flatten().for_each(|x| binary.extend(x.to_be_bytes()));
+    for corners in &all {
+        binary.push(corners.len() as u8);
+        corners.iter().for_each(|corner| binary.extend(corner.to_be_bytes()));
+    }
+    for bytes in [ascii.into_bytes(), binary] {
+        let ply = read("a.ply", bytes).unwrap();
+        assert_eq!((ply.skipped_faces, &ply.triangles), (skipped + 3, &expected));
+        assert_eq!(ply.vertices, points);
+    }
+
+    // STL names no vertices: those at one place are one.
+    let mut twice = triangles.clone();
+    twice.splice(5..5, [[9, 9, 9], [9, 10, 9]]);
+    for bytes in
+        [binary_stl(&(points.clone(), twice.clone())), ascii_stl(&(points.clone(), twice)).into_bytes()]
+    {
+        let stl = read("a.stl", bytes).unwrap();
+        assert_eq!((stl.skipped_faces, stl.triangles.len()), (2, triangles.len()));
+    }
+    // In one line, but of three different vertices: nothing is left out.
+    let thin = read("thin.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 0 0\nf 1 2 3\nf 2 3 4\n").unwrap();
+    assert_eq!((thin.skipped_faces, thin.triangles.len()), (0, 2));
+}
+
+#[test]
+fn coordinates_that_are_whole_numbers_keep_all_their_digits() {
+    let text = ply_header(3, 1, "ascii", "int") + "16777217 0 0\n0 -2147483647 0\n0 0 1\n3 0 1 2\n";
+    let vertices = read("a.ply", text).unwrap().vertices;
+    assert_eq!(vertices, [[16_777_217.0, 0.0, 0.0], [0.0, -2_147_483_647.0, 0.0], [0.0, 0.0, 1.0]]);
+}
+
+#[test]
 fn the_frame_that_a_file_notes_is_kept() {
     let mut noted = binary_stl(&ring());
     assert_eq!(read("plain.stl", &noted).unwrap().frame, None);
