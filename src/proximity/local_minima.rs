@@ -54,20 +54,21 @@
 use super::LinkProximity;
 use super::contact::Contact;
 use super::contact_lanes::{Place, add_contacts};
+use super::long_rings::{FEW, LongRings};
 use super::mesh::Mesh;
-use super::near_triangle::{End, Index, NearLink, NearTriangles};
-use super::placed::{Nearest, PlacedLink, PlacedRobot};
-use super::ranked::{Ranked, rank_each, rounding};
-use super::shared_parts::{PARTS, ends_of};
+use super::near_triangle::{End, Index, NearTriangles};
+use super::placed::{PlacedLink, PlacedRobot};
+use super::ranked::{Ranked, rank_each};
+use super::wall_pieces::{Around, Pieces};
 use fearless_simd::Level;
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::Real;
 use std::ops::Range;
 
 /// The place of all that are left out.
-const LEFT_OUT: u32 = 0;
+pub(super) const LEFT_OUT: u32 = 0;
 
 /// The place of no triangle.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Links are put off while no more triangles than these are to be measured, so that packs are full and memory is small.
 const PUT_OFF: usize = 1 << 12;
@@ -88,6 +89,9 @@ pub(super) struct LocalMinima {
     measured: Vec<u32>,
     /// What was measured of them.
     ranked: Vec<Ranked>,
+    /// What long rings of triangles are to those that they may leave out, and to those that may join them.
+    lowest: LongRings<Lowest>,
+    around: LongRings<Around>,
     /// For each place an earlier one of the same piece, or itself.
     piece: Vec<u32>,
     /// The minima that were found.
@@ -102,6 +106,21 @@ struct LinkAtWall {
     /// Where its triangles begin and end.
     triangles: [End; 2],
     measured: Range<usize>,
+}
+
+/// What the triangles around a corner or an edge are to one whose nearest point lies there.
+#[derive(Clone)]
+struct Lowest {
+    /// The most that one of those in question may keep.
+    upper: Real,
+    /// Whether one is left out.
+    is_left_out: bool,
+}
+
+impl Default for Lowest {
+    fn default() -> Self {
+        Self { upper: Real::INFINITY, is_left_out: false }
+    }
 }
 
 /// What the robot is near to.
@@ -208,16 +227,32 @@ impl LocalMinima {
         let first = self.places.len();
         self.places.resize(first + near.in_question.len(), NONE);
         let places = &mut self.places[first..];
+        self.lowest.clear();
         // What one leaves out may leave out another: most of these are met the second time.
         for _ in 0..2 {
             for (place, known) in near.in_question.iter().enumerate() {
                 let Some(foot) = known.foot().filter(|_| places[place] != LEFT_OUT) else { continue };
+                let mut others = shared.others(known.triangle, foot);
                 let leaves_out = |other: u32| match near.index(&self.index, other) {
                     Some(index) => near.in_question[index].upper < known.lower || places[index] == LEFT_OUT,
                     None => near.is_on_slope(&self.index, wall.place_of, other),
                 };
-                if shared.others(known.triangle, foot).any(leaves_out) {
+                let mut is_left_out = others.by_ref().take(FEW).any(leaves_out);
+                if !is_left_out && others.next().is_some() {
+                    let add = |lowest: &mut Lowest, other: u32, index: Option<usize>| match index {
+                        Some(index) => {
+                            lowest.upper = lowest.upper.min(near.in_question[index].upper);
+                            lowest.is_left_out |= places[index] == LEFT_OUT;
+                        }
+                        None => lowest.is_left_out |= near.is_on_slope(&self.index, wall.place_of, other),
+                    };
+                    let lowest = self.lowest.around(shared, near, &self.index, [place, foot], add);
+                    // It is not below itself.
+                    is_left_out = lowest.is_left_out || lowest.upper < known.lower;
+                }
+                if is_left_out {
                     places[place] = LEFT_OUT;
+                    self.lowest.all_around(place, |lowest| lowest.is_left_out = true);
                 }
             }
         }
@@ -245,8 +280,9 @@ impl LocalMinima {
                     places[index] = place;
                 }
             }
-            let (index, piece) = (&self.index, &mut self.piece);
-            let mut pieces = Pieces { link, wall, near, places, index, ranked, piece };
+            self.around.clear();
+            let (index, piece, around) = (&self.index, &mut self.piece, &mut self.around);
+            let mut pieces = Pieces { link, wall, near, places, index, ranked, piece, around };
             self.found.extend(pieces.first_triangles().map(|nearest| nearest.report(*link_number)));
         }
     }
@@ -259,100 +295,6 @@ fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
         .sort_unstable_by(|a, b| a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle)));
     let count = ranked.partition_point(|ranked| ranked.nearest.distance <= margin);
     &ranked[..count]
-}
-
-/// The pieces of wall within the margin of one link, as they grow and join.
-struct Pieces<'a> {
-    link: &'a PlacedLink,
-    wall: Wall<'a>,
-    near: NearLink<'a>,
-    places: &'a [u32],
-    index: &'a Index,
-    /// The triangles within the margin, nearest first.
-    ranked: &'a [Ranked],
-    piece: &'a mut Vec<u32>,
-}
-
-impl Pieces<'_> {
-    /// The triangles at which the pieces appeared that are left, nearest first.
-    fn first_triangles(&mut self) -> impl Iterator<Item = &Nearest> {
-        self.piece.clear();
-        self.piece.push(LEFT_OUT);
-        for place in 1..=self.ranked.len() {
-            self.join(place as u32);
-        }
-        let places = self.ranked.iter().zip(&self.piece[1..]).zip(1..);
-        places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
-    }
-
-    /// Joins a triangle with the pieces that nearer ones have made.
-    fn join(&mut self, place: u32) {
-        self.piece.push(place);
-        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[place as usize - 1];
-        let Some(index) = self.near.index(self.index, nearest.triangle) else { return };
-        let (known, shared) = (self.near.in_question[index], self.wall.mesh.parts());
-        let corners = self.wall.mesh.corners(nearest.triangle);
-        // Whom it meets at its corners and edges, and whether at its least point.
-        let (mut met, mut count) = ([(0, LEFT_OUT, false); 2 * PARTS], 0);
-        for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
-            let (mut meets_left_out, mut first) = (false, NONE);
-            for other in shared.others(nearest.triangle, part) {
-                match self.near.index(self.index, other) {
-                    Some(other) => match self.places[other] {
-                        // An edge or a corner of what is certainly farther is itself farther.
-                        LEFT_OUT => meets_left_out |= self.near.in_question[other].lower < known.upper,
-                        other if other < place => first = first.min(other),
-                        _ => {}
-                    },
-                    None => meets_left_out |= self.near.is_on_slope(self.index, self.wall.place_of, other),
-                }
-            }
-            let others = [meets_left_out.then_some(LEFT_OUT), (first != NONE).then_some(first)];
-            if others == [None; 2] {
-                continue;
-            }
-            let holds_least_point = is_on(nearest.on_mesh, ends_of(corners, part), own_rounding);
-            for with in others.into_iter().flatten() {
-                met[count] = (part, with, holds_least_point);
-                count += 1;
-            }
-        }
-        // Those that hold its least point come first: they are met at its own distance.
-        for met_there in [true, false] {
-            for &(part, with, holds_least_point) in &met[..count] {
-                if holds_least_point != met_there {
-                    continue;
-                }
-                let (mine, other) = (self.first_of(place), self.first_of(with));
-                if mine == other {
-                    continue;
-                }
-                let [from, to] = ends_of(corners, part);
-                let farther =
-                    self.grown(mine).max(self.grown(other)) + rounding(self.link.extent_with([from, to, to]));
-                if nearest.distance <= farther && (met_there || self.link.comes_within(farther, from, to)) {
-                    // The piece appeared where the nearer one did.
-                    self.piece[mine.max(other) as usize] = mine.min(other);
-                }
-            }
-        }
-    }
-
-    /// How far the wall can rise from where a piece appeared before it has grown.
-    fn grown(&self, place: u32) -> Real {
-        let ranked = (place as usize).checked_sub(1).map(|place| &self.ranked[place]);
-        ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
-    }
-
-    /// The triangle at which a piece appeared.
-    fn first_of(&mut self, mut place: u32) -> u32 {
-        while self.piece[place as usize] != place {
-            let next = self.piece[place as usize];
-            self.piece[place as usize] = self.piece[next as usize];
-            place = next;
-        }
-        place
-    }
 }
 
 /// The contacts of a robot, for an engine without a search of its own for them.
@@ -372,13 +314,4 @@ pub(crate) fn contacts_by_all_triangles(
         });
     }
     contacts.finish();
-}
-
-/// Whether a point lies on the segment between two, as far as rounding can tell.
-fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
-    let (edge, relative) = (to - from, point - from);
-    let share = relative.dot(edge) / edge.length_squared();
-    // 0 / 0 where the segment is a point: the comparison turns it into 0.
-    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    (relative - edge * share).abs().max_element() <= 0.5 * rounding
 }

@@ -20,7 +20,8 @@
 //! | `certificate` | proofs of an answer |
 //! | `contact` | an answer with its normal and its place on the robot, and how it changes with the joints |
 //! | `contact_lanes` | contacts of many answers, a pack of pairs at a time |
-//! | `local_minima`, `ranked` | the local minima of a link's distance: one contact for each |
+//! | `local_minima`, `wall_pieces`, `ranked` | the local minima of a link's distance: one contact for each |
+//! | `long_rings` | what is known of the triangles around a corner or an edge that very many have |
 //! | `near_triangle`, `shared_parts` | what the search tells of a triangle within the margin, and which corners and edges triangles share |
 //! | `derivative` | how it changes with the points that link and triangle are made of |
 //! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
@@ -40,6 +41,7 @@ mod feet;
 mod lazy;
 mod link_lanes;
 mod local_minima;
+mod long_rings;
 mod measure_lanes;
 mod mesh;
 mod motion;
@@ -59,6 +61,7 @@ mod shared_parts;
 mod slopes;
 mod triangle_block;
 mod tube;
+mod wall_pieces;
 mod wide_bvh;
 mod winding;
 

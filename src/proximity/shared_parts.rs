@@ -94,9 +94,14 @@ impl SharedParts {
     /// The other triangles that have a part of a triangle.
     #[inline(always)]
     pub(super) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
+        self.rings.others(Part { triangle, number: part as u8 }).map(|part| part.triangle)
+    }
+
+    /// All triangles that have a part of a triangle, itself first, and which of their parts that is.
+    pub(super) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
         let own = Part { triangle, number: part as u8 };
-        let others = successors(Some(self.rings.next(own)), |part| Some(self.rings.next(*part)));
-        others.take_while(move |part| *part != own).map(|part| part.triangle)
+        let all = std::iter::once(own).chain(self.rings.others(own));
+        all.map(|part| (part.triangle, usize::from(part.number)))
     }
 
     /// Another triangle that has an edge of a triangle, and the corner that it has beyond the edge.
@@ -117,6 +122,13 @@ impl Rings {
     fn next(&self, Part { triangle, number }: Part) -> Part {
         let next = &self.0[triangle as usize];
         Part { triangle: next.triangles[usize::from(number)], number: next.numbers[usize::from(number)] }
+    }
+
+    /// The other parts of a ring.
+    #[inline(always)]
+    fn others(&self, own: Part) -> impl Iterator<Item = Part> {
+        let others = successors(Some(self.next(own)), |part| Some(self.next(*part)));
+        others.take_while(move |part| *part != own)
     }
 
     /// Makes one ring of the two that hold these parts.

