@@ -60,12 +60,20 @@ fn direction(text: &str) -> Result<Vector, String> {
 }
 
 impl Anatomy {
-    /// The wall.
+    /// The wall. How many faces of its file were left out, because they have no area, goes to the standard error.
     pub fn load(&self) -> Result<TriMesh, String> {
         let (points, triangles) = match &self.mesh {
             Some(path) => {
                 let options = Options::scaled(self.scale).with_label(self.label);
-                mesh_files::load_with(path, &options).map_err(|error| error.to_string())?.into_parts()
+                let mesh = mesh_files::load_with(path, &options).map_err(|error| error.to_string())?;
+                if mesh.skipped_faces > 0 {
+                    eprintln!(
+                        "note: left out of {}: {} faces without area",
+                        path.display(),
+                        mesh.skipped_faces
+                    );
+                }
+                mesh.into_parts()
             }
             None => ventricle::mesh(self.triangles as usize),
         };

@@ -74,10 +74,10 @@ impl Voxels<'_> {
     pub fn each(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let size = self.count.checked_mul(self.kind.size()).and_then(|size| size.checked_add(self.skip));
         match (self.encoding, size) {
-            (Encoding::Text, _) => self.from_text(see),
+            (Encoding::Text, _) => self.each_of_text(see),
             (Encoding::Raw, Some(size)) => {
                 let data = self.data.get(self.skip..size).ok_or(SHORT)?;
-                self.from_bytes(data, see)
+                self.each_of_bytes(data, see)
             }
             (Encoding::Gzip, Some(size)) if could_hold(self.data, size) => {
                 let mut unpacked = MultiGzDecoder::new(self.data);
@@ -85,14 +85,14 @@ impl Voxels<'_> {
                 if skip.map_err(|_| DAMAGED)? < self.skip as u64 {
                     return Err(SHORT.into());
                 }
-                self.from_bytes(unpacked, see)
+                self.each_of_bytes(unpacked, see)
             }
             _ => Err(SHORT.into()),
         }
     }
 
     /// Numbers of [`Kind`] from a stream that may hold more.
-    fn from_bytes(&self, mut stream: impl Read, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+    fn each_of_bytes(&self, mut stream: impl Read, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let mut bytes = vec![0; AT_ONCE * self.kind.size()];
         let mut labels = Vec::with_capacity(AT_ONCE);
         for first in (0..self.count).step_by(AT_ONCE) {
@@ -149,7 +149,7 @@ impl Voxels<'_> {
     }
 
     /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the file has bytes.
-    fn from_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+    fn each_of_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let text = String::from_utf8_lossy(self.data);
         let mut seen = 0;
         for word in text.split_whitespace().take(self.count) {

@@ -139,15 +139,16 @@ mod label_maps {
     #[test]
     fn the_memory_that_is_asked_for_is_enough_and_no_more_is_taken() {
         let hash = |[x, y, z]: [usize; 3]| (x * 7919 + y * 104_729 + z * 1_299_709) ^ (x * y + z * 31);
-        let volumes: [(&str, Box<dyn Fn([usize; 3]) -> u8>); 5] = [
-            ("full", Box::new(|_| 1)),
-            ("checkerboard", Box::new(|[x, y, z]| ((x + y + z) % 2) as u8)),
-            ("dots", Box::new(|voxel| u8::from(voxel.iter().all(|x| x % 3 == 1)))),
-            ("rods", Box::new(|[x, y, _]| u8::from(x % 2 == 0 && y % 2 == 0))),
-            ("noise", Box::new(move |voxel| (hash(voxel) % 2) as u8)),
+        type Inside<'a> = &'a dyn Fn([usize; 3]) -> bool;
+        let volumes: [(&str, Inside<'_>); 5] = [
+            ("full", &|_| true),
+            ("checkerboard", &|[x, y, z]| (x + y + z) % 2 == 0),
+            ("dots", &|voxel| voxel.iter().all(|x| x % 3 == 1)),
+            ("rods", &|[x, y, _]| x % 2 == 0 && y % 2 == 0),
+            ("noise", &|voxel| hash(voxel) % 2 == 0),
         ];
-        for (name, voxel) in &volumes {
-            let bytes = packed([70, 60, 50], voxel);
+        for (name, is_inside) in volumes {
+            let bytes = packed([70, 60, 50], |voxel| u8::from(is_inside(voxel)));
             let mut limit = 0;
             let mut refusals = 0;
             let mut read = None;
