@@ -10,7 +10,7 @@ use super::wgsl::CONVEX;
 use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
-    Contact, DeviceFailure, LinkProximity, Mesh, MeshError, PlacedLink, PlacedRobot, Proximity,
+    Contact, DeviceFailure, HasMesh, LinkProximity, Mesh, MeshError, PlacedLink, PlacedRobot, Proximity,
     ProximityError, SearchFrame, check_margin, contacts_by_all_triangles, pairs,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -88,11 +88,18 @@ impl GpuExhaustive {
     /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit into the GPU's
     /// memory; or the GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
-        Self::tuned(gpu, mesh, Tuning::default())
+        Self::tuned(gpu, Mesh::new(mesh)?, Tuning::default())
     }
 
-    pub(super) fn tuned(gpu: &Gpu, mesh: &TriMesh, tuning: Tuning) -> Result<Self, GpuError> {
-        let mesh = Mesh::new(mesh)?;
+    /// The same for triangles, each given by the positions of its corners among the vertices.
+    ///
+    /// # Errors
+    /// As [`GpuExhaustive::on`]; or a triangle names a vertex that is not there.
+    pub fn from_triangles(gpu: &Gpu, vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, GpuError> {
+        Self::tuned(gpu, Mesh::from_triangles(vertices, triangles)?, Tuning::default())
+    }
+
+    pub(super) fn tuned(gpu: &Gpu, mesh: Mesh, tuning: Tuning) -> Result<Self, GpuError> {
         let mut watch = gpu.0.device.failures.watch();
         let on_device = DeviceMesh::new(&gpu.0, &mesh, tuning.part);
         match watch.check() {
@@ -164,6 +171,12 @@ impl GpuExhaustive {
     #[cfg(test)]
     pub(super) fn on_device(&self) -> Option<&DeviceMesh> {
         self.on_device.as_ref()
+    }
+}
+
+impl HasMesh for GpuExhaustive {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
     }
 }
 

@@ -54,11 +54,15 @@ impl LinkProximity {
     /// Bounds on the distance between this answer's link and triangle, which hold rigorously, rounding included.
     ///
     /// They lie within a few units in the last place of each other, or of the problem's extent where link and triangle
-    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query.
+    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query: a mesh of
+    /// your own, which need not be the engine's. Where
+    /// [`set_vertices`](super::Proximity::set_vertices) moved that one, make it of
+    /// [`vertices`](super::Proximity::vertices) and [`triangles`](super::Proximity::triangles).
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, or a vertex
-    /// of the triangle is not finite or out of range.
+    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, a vertex of
+    /// the triangle is not finite or out of range, or the answer does not fit the two: it is about another robot, another
+    /// pose, or a mesh that has moved since.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -75,8 +79,10 @@ impl LinkProximity {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn certify(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Certificate, ProximityError> {
-        let link = self.certified(robot, pose)?;
-        Ok(link.bounds(self.corners(mesh)?))
+        let link = self.placed_link(robot, pose)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), self.triangle as usize)?;
+        self.check_fit(&link, corners)?;
+        Ok(self.certified(robot, pose)?.bounds(corners))
     }
 
     /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously: a proof that no
@@ -95,8 +101,8 @@ impl LinkProximity {
         let own = self.certify(robot, pose, mesh)?;
         let link = self.certified(robot, pose)?;
         let mut all = own;
-        for indices in mesh.indices() {
-            let triangle = corners(mesh, indices)?;
+        for triangle in 0..mesh.indices().len() {
+            let triangle = corners(mesh.vertices(), mesh.indices(), triangle)?;
             if link.at_least(triangle) < own.lower {
                 let other = link.bounds(triangle);
                 all.lower = all.lower.min(other.lower);

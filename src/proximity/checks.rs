@@ -40,6 +40,26 @@ pub(super) fn check_ends(link: usize, ends: [Vector; 2]) -> Result<(), Proximity
     }
 }
 
+/// Triangles whose corners are all among so many vertices.
+pub(super) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    triangles
+        .iter()
+        .enumerate()
+        .try_for_each(|(triangle, corners)| check_triangle(triangle, corners, vertices))
+}
+
+/// A triangle with the number `triangle` whose corners are among so many vertices.
+pub(super) fn check_triangle(
+    triangle: usize,
+    corners: &[u32; 3],
+    vertices: usize,
+) -> Result<(), MeshError> {
+    match corners.iter().find(|&&vertex| vertex as usize >= vertices) {
+        Some(&vertex) => Err(MeshError::NoSuchVertex { triangle, vertex, vertices }),
+        None => Ok(()),
+    }
+}
+
 /// Vertices that are all within range.
 pub(super) fn check_vertices(vertices: &[Vector]) -> Result<(), MeshError> {
     match vertices.iter().position(|&point| !in_range(point)) {

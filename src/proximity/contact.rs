@@ -3,12 +3,14 @@
 use super::contact_lanes::{Place, try_add_contacts};
 use super::feature::ContactFeature;
 use super::nearest_features::NearestFeatures;
+use super::mesh::Mesh;
+use super::placed::{Nearest, PlacedLink};
+use super::report::corners;
 use super::{LinkProximity, ProximityError};
 use crate::Chain;
 use crate::robot::length;
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::shape::TriMesh;
 
 /// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
 ///
@@ -49,71 +51,60 @@ pub struct Contact {
     pub kink: bool,
 }
 
-impl LinkProximity {
-    /// This answer with its normal, its place on the robot and the features that are nearest. Give the same robot, pose
-    /// and mesh as to the query.
-    ///
-    /// # Errors
-    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link out of range.
-    ///
-    /// ```
-    /// use parry_continuum::Chain;
-    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
-    /// use parry_continuum::proximity::{BvhSearch, LinkFeature, Proximity, TriangleFeature};
-    ///
-    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
-    /// let mesh = TriMesh::new(floor.to_vec(), vec![[0, 1, 2]])?;
-    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
-    /// let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
-    /// let contact = closest.contact(&robot, &Pose::IDENTITY, &mesh)?;
-    /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
-    /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
-    /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
-    /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn contact(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Contact, ProximityError> {
-        let (link, corners) = (self.placed_link(robot, pose)?, self.corners(mesh)?);
-        let (length, before) = (length(link.along()), robot.length_before(self.link as usize));
-        Ok(Contact::of(self, length, before, &NearestFeatures::of(&link, corners)))
-    }
+/// An answer about this mesh as a contact.
+///
+/// # Errors
+/// Those of [`Proximity::contact`](super::Proximity::contact).
+pub(super) fn contact(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<Contact, ProximityError> {
+    let (link, corners) = near(mesh, robot, pose, answer)?;
+    let (length, before) = (length(link.along()), robot.length_before(answer.link as usize));
+    Ok(Contact::of(answer, length, before, &NearestFeatures::of(&link, corners)))
+}
 
-    /// [`contact`](Self::contact) of every answer, in order: in a fraction of the time, because they are computed a pack
-    /// at a time. `out` is cleared first.
-    ///
-    /// # Errors
-    /// Those of the first answer that has one; `out` is then empty.
-    ///
-    /// ```
-    /// use parry_continuum::Chain;
-    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
-    /// use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
-    ///
-    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
-    /// let mesh = TriMesh::new(floor.to_vec(), vec![[0, 1, 2]])?;
-    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
-    /// let (mut answers, mut contacts) = (Vec::new(), Vec::new());
-    /// BvhSearch::new(&mesh)?.per_link(&robot, &Pose::IDENTITY, &mut answers)?;
-    /// LinkProximity::contacts(&answers, &robot, &Pose::IDENTITY, &mesh, &mut contacts)?;
-    /// assert_eq!(contacts[1], answers[1].contact(&robot, &Pose::IDENTITY, &mesh)?);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn contacts(
-        answers: &[Self],
-        robot: &Chain,
-        pose: &Pose,
-        mesh: &TriMesh,
-        out: &mut Vec<Contact>,
-    ) -> Result<(), ProximityError> {
-        out.clear();
-        let place = |answer: &Self| {
-            let (link, corners) = (answer.transformed_link(robot, pose)?, answer.corners(mesh)?);
-            let before = robot.length_before(answer.link as usize);
-            let ends = [link.start(), link.end()];
-            Ok(Place { ends, radius: link.radius(), flat: link.flat(), corners, before })
-        };
-        try_add_contacts(Level::new(), answers, place, out).inspect_err(|_| out.clear())
-    }
+/// Answers about this mesh as contacts.
+///
+/// # Errors
+/// Those of [`Proximity::contacts`](super::Proximity::contacts).
+pub(super) fn contacts(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answers: &[LinkProximity],
+    out: &mut Vec<Contact>,
+) -> Result<(), ProximityError> {
+    out.clear();
+    let place = |answer: &LinkProximity| {
+        let link = answer.transformed_link(robot, pose)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+        let before = robot.length_before(answer.link as usize);
+        let ends = [link.start(), link.end()];
+        Ok(Place { ends, radius: link.radius(), flat: link.flat(), corners, before })
+    };
+    let check = |answer: &LinkProximity, place: &Place, measured: &Nearest| {
+        answer.check_fit_of(measured, &place.link(), place.corners)
+    };
+    try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
+}
+
+/// The link and the corners of the triangle that an answer is about, which it fits.
+///
+/// # Errors
+/// They do not exist, the pose is not finite or moves the link out of range, or the answer does not fit.
+pub(super) fn near(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<(PlacedLink, [Vector; 3]), ProximityError> {
+    let link = answer.placed_link(robot, pose)?;
+    let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+    answer.check_fit(&link, corners)?;
+    Ok((link, corners))
 }
 
 impl Contact {
@@ -163,7 +154,7 @@ impl Contact {
     /// let robot = |q: f64| Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5]);
     /// let q = 0.2;
     /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
-    /// let contact = closest.contact(&robot(q)?, &Pose::IDENTITY, &mesh)?;
+    /// let contact = search.contact(&robot(q)?, &Pose::IDENTITY, &closest)?;
     /// let tangent = Vector::new(0.0, -q.sin(), q.cos());
     /// let rate = contact.rate(Vector::X.cross(contact.arc_length * tangent), Vector::X).ok_or("no normal")?;
     /// let mut distance = |q: f64| -> Result<f64, Box<dyn std::error::Error>> {
@@ -189,8 +180,9 @@ impl Contact {
     /// # let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
     /// # let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
     /// # let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5])?;
-    /// # let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
-    /// # let contact = closest.contact(&robot, &Pose::IDENTITY, &mesh)?;
+    /// # let mut search = BvhSearch::new(&mesh)?;
+    /// # let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// # let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
     /// // A straight robot that moves along z by joint 0 and turns about x by joint 1.
     /// let mut rates = Vec::new();
     /// contact.gradient(2, |arc_length, joint| match joint {

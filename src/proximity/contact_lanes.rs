@@ -4,7 +4,7 @@ use super::LinkProximity;
 use super::contact::Contact;
 use super::nearest_features::{NearestFeatures, NearestParts, link_feature, triangle_feature};
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
-use super::placed::PlacedLink;
+use super::placed::{Nearest, PlacedLink};
 use crate::distance::lanes::Pack;
 use crate::distance::{Unfused, dispatch};
 use crate::robot::length;
@@ -34,6 +34,16 @@ struct Parts {
     has_normal: u64,
     at_flat_cap: u64,
     needs_closer_look: u64,
+    /// The triangle's and the link's closest points in the mesh's frame, and the distance.
+    nearest: Rows<7>,
+}
+
+impl Place {
+    /// The link, ready to be measured.
+    pub(super) fn link(&self) -> PlacedLink {
+        let [start, end] = self.ends;
+        PlacedLink::between(start, end, self.radius, self.flat)
+    }
 }
 
 /// Adds the contacts of `answers`, each at the place that `place` tells.
@@ -43,18 +53,20 @@ pub(super) fn add_contacts(
     mut place: impl FnMut(&LinkProximity) -> Place,
     out: &mut Vec<Contact>,
 ) {
-    let add = try_add_contacts(level, answers, |answer| Ok::<_, Infallible>(place(answer)), out);
+    let place = |answer: &LinkProximity| Ok::<_, Infallible>(place(answer));
+    let add = try_add_contacts(level, answers, place, |_, _, _| Ok(()), out);
     add.unwrap_or_else(|never| match never {});
 }
 
-/// The same where `place` may have none.
+/// The same where `place` may have none, and `check` may refuse an answer beside what is measured there.
 ///
 /// # Errors
-/// The first that `place` gives. Contacts of some answers before it stand in `out`.
+/// The first that either gives. Contacts of some answers before it stand in `out`.
 pub(super) fn try_add_contacts<E>(
     level: Level,
     answers: &[LinkProximity],
     mut place: impl FnMut(&LinkProximity) -> Result<Place, E>,
+    check: impl Fn(&LinkProximity, &Place, &Nearest) -> Result<(), E>,
     out: &mut Vec<Contact>,
 ) -> Result<(), E> {
     let mut rows = [[0.0; TOGETHER]; 18];
@@ -66,11 +78,13 @@ pub(super) fn try_add_contacts<E>(
         }
         let parts = parts_at(level, &rows, answers.len());
         let with_places = answers.iter().zip(places.iter().flatten());
+        for (lane, (answer, place)) in with_places.clone().enumerate() {
+            check(answer, place, &parts.nearest(lane, answer.triangle))?;
+        }
         out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
             let [start, end] = place.ends;
             let found = if parts.needs_closer_look >> lane & 1 == 1 {
-                let link = PlacedLink::between(start, end, place.radius, place.flat);
-                NearestFeatures::of(&link, place.corners)
+                NearestFeatures::of(&place.link(), place.corners)
             } else {
                 parts.of(lane)
             };
@@ -81,6 +95,16 @@ pub(super) fn try_add_contacts<E>(
 }
 
 impl Parts {
+    /// What is measured of a pair.
+    fn nearest(&self, lane: usize, triangle: u32) -> Nearest {
+        let number = |row: usize| self.nearest[row][lane];
+        let point = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
+        let (distance, on_mesh) = (number(6), point(0));
+        // One common point where they touch, as in every answer.
+        let on_robot = if distance > 0.0 { point(3) } else { on_mesh };
+        Nearest { triangle, distance, on_robot, on_mesh }
+    }
+
     fn of(&self, lane: usize) -> NearestFeatures {
         let number = |row: usize| self.numbers[row][lane];
         let vector = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
@@ -108,6 +132,7 @@ fn parts_at(level: Level, pairs: &PairRows, count: usize) -> Parts {
         has_normal: 0,
         at_flat_cap: 0,
         needs_closer_look: 0,
+        nearest: [[0.0; TOGETHER]; 7],
     };
     dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut parts));
     parts
@@ -116,7 +141,11 @@ fn parts_at(level: Level, pairs: &PairRows, count: usize) -> Parts {
 #[inline(always)]
 fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, parts: &mut Parts) {
     for lane in (0..count).step_by(L::LANES) {
-        let PairLanes { triangle, link, axial, closest, unit, .. } = PairLanes::<L>::new(token, pairs, lane);
+        let pack = PairLanes::<L>::new(token, pairs, lane);
+        store(&mut parts.nearest, 0, lane, pack.placed(pack.closest.point1));
+        store(&mut parts.nearest, 3, lane, pack.placed(pack.closest.point2));
+        (pack.closest.distance * pack.unit).store(&mut parts.nearest[6][lane..]);
+        let PairLanes { triangle, link, axial, closest, unit, .. } = pack;
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
         parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &link)) << lane;
         for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {

@@ -1,11 +1,12 @@
 //! How a distance changes with the points that link and triangle are made of.
 
+use super::contact::near;
+use super::mesh::Mesh;
 use super::nearest_features::NearPair;
 use super::{LinkProximity, ProximityError};
 use crate::Chain;
 use crate::distance::{DoubleDouble, Scalar, Vec3};
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::shape::TriMesh;
 
 /// The derivative of a link's distance from a triangle with respect to each number that the two are made of, in the
 /// mesh's frame; of the axis distance less the radius where the two overlap ([`depth`](super::Contact::depth)).
@@ -49,37 +50,18 @@ impl Derivative {
     }
 }
 
-impl LinkProximity {
-    /// How this answer's distance changes with the ends of the link, its radius and the triangle's corners; nothing where
-    /// it has no derivative, because the axis meets the triangle, or a flat cap touches it. Give the same robot, pose and
-    /// mesh as to the query.
-    ///
-    /// # Errors
-    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link out of range.
-    ///
-    /// ```
-    /// use parry_continuum::Chain;
-    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
-    /// use parry_continuum::proximity::{BvhSearch, Proximity};
-    ///
-    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
-    /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
-    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::new(1.0, 0.0, 1.0)], &[0.5])?;
-    /// let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
-    /// let derivative = closest.derivative(&robot, &Pose::IDENTITY, &mesh)?.ok_or("no derivative")?;
-    /// assert_eq!((derivative.start, derivative.end, derivative.radius), (Vector::ZERO, -Vector::Z, -1.0));
-    /// assert_eq!(derivative.rate(Vector::X, 0.1 * Vector::Z), -0.1);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn derivative(
-        &self,
-        robot: &Chain,
-        pose: &Pose,
-        mesh: &TriMesh,
-    ) -> Result<Option<Derivative>, ProximityError> {
-        let (link, corners) = (self.placed_link(robot, pose)?, self.corners(mesh)?);
-        Ok(NearPair::exactly(&link, corners).derivative())
-    }
+/// How the distance of an answer about this mesh changes.
+///
+/// # Errors
+/// Those of [`Proximity::derivative`](super::Proximity::derivative).
+pub(super) fn derivative(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<Option<Derivative>, ProximityError> {
+    let (link, corners) = near(mesh, robot, pose, answer)?;
+    Ok(NearPair::exactly(&link, corners).derivative())
 }
 
 impl NearPair<DoubleDouble> {

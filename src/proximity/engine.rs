@@ -1,4 +1,7 @@
-use super::{Contact, LinkProximity, MeshError, ProximityError};
+use super::contact::{contact, contacts};
+use super::derivative::derivative;
+use super::mesh::Mesh;
+use super::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -12,7 +15,10 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// The batches take many robots, such as a planner's samples, and answer in their order on all cores.
 ///
 /// A query that returns an error leaves `out` empty.
-pub trait Proximity {
+///
+/// Only the engines of this crate are engines: the trait is sealed.
+#[allow(private_bounds)]
+pub trait Proximity: HasMesh {
     /// The closest triangle of every link, in link order. `out` is cleared first.
     ///
     /// # Errors
@@ -147,11 +153,123 @@ pub trait Proximity {
         out: &mut Vec<bool>,
     ) -> Result<(), ProximityError>;
 
-    /// Moves the mesh's vertices; the triangles stay as they are.
+    /// An answer with its normal, its place on the robot and the features that are nearest, of the mesh that the engine
+    /// has now. Give the same robot and pose as to the query.
+    ///
+    /// # Errors
+    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, or the answer
+    /// does not fit the two: it is about another robot, another pose, or the mesh has moved since. Rounding is allowed
+    /// for, 16 units in the last place of the largest coordinate and the extent of link and triangle.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, LinkFeature, Proximity, TriangleFeature};
+    ///
+    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
+    /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
+    /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
+    /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
+    /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
+    /// // Once the floor has moved the answer is about one that is no more.
+    /// search.set_vertices(&floor.map(|corner| corner - Vector::Z))?;
+    /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn contact(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answer: &LinkProximity,
+    ) -> Result<Contact, ProximityError> {
+        contact(self.mesh(), robot, pose, answer)
+    }
+
+    /// [`contact`](Self::contact) of every answer, in order: in a fraction of the time, because they are computed a pack
+    /// at a time. `out` is cleared first.
+    ///
+    /// # Errors
+    /// Those of the first answer that has one; `out` is then empty.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let (mut answers, mut contacts) = (Vec::new(), Vec::new());
+    /// search.per_link(&robot, &Pose::IDENTITY, &mut answers)?;
+    /// search.contacts(&robot, &Pose::IDENTITY, &answers, &mut contacts)?;
+    /// assert_eq!(contacts[1], search.contact(&robot, &Pose::IDENTITY, &answers[1])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn contacts(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answers: &[LinkProximity],
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        contacts(self.mesh(), robot, pose, answers, out)
+    }
+
+    /// How an answer's distance changes with the ends of the link, its radius and the triangle's corners, of the mesh that
+    /// the engine has now; nothing where it has no derivative, because the axis meets the triangle, or a flat cap touches
+    /// it. Give the same robot and pose as to the query.
+    ///
+    /// # Errors
+    /// As [`contact`](Self::contact).
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::new(1.0, 0.0, 1.0)], &[0.5])?;
+    /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// let derivative = search.derivative(&robot, &Pose::IDENTITY, &closest)?.ok_or("no derivative")?;
+    /// assert_eq!((derivative.start, derivative.end, derivative.radius), (Vector::ZERO, -Vector::Z, -1.0));
+    /// assert_eq!(derivative.rate(Vector::X, 0.1 * Vector::Z), -0.1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn derivative(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answer: &LinkProximity,
+    ) -> Result<Option<Derivative>, ProximityError> {
+        derivative(self.mesh(), robot, pose, answer)
+    }
+
+    /// The mesh's vertices as the engine has them now.
+    fn vertices(&self) -> &[Vector] {
+        self.mesh().vertices()
+    }
+
+    /// The mesh's triangles, each as the positions of its corners among the [`vertices`](Self::vertices).
+    fn triangles(&self) -> &[[u32; 3]] {
+        self.mesh().indices()
+    }
+
+    /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about the mesh as it was, and
+    /// [`contact`](Self::contact) refuses those that no longer fit.
     ///
     /// # Errors
     /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
+}
+
+/// An engine's mesh as it is now.
+pub(crate) trait HasMesh {
+    fn mesh(&self) -> &Mesh;
 }
 
 /// The robots of a batch, one by one.

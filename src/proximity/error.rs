@@ -36,6 +36,16 @@ pub enum MeshError {
         /// How many were given.
         got: usize,
     },
+    /// A triangle names a vertex that the mesh does not have.
+    #[error("triangle {triangle} names vertex {vertex}, but there are {vertices} vertices; repair the mesh's triangles")]
+    NoSuchVertex {
+        /// The triangle's position in the mesh.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
     /// The mesh has no triangle, so nothing is closest.
     #[error("the mesh has no triangles")]
     Empty,
@@ -129,6 +139,23 @@ pub enum ProximityError {
         triangle: usize,
         /// How many triangles the mesh has.
         triangles: usize,
+    },
+    /// An answer is not that of the link and the triangle that it names, as they are now.
+    #[error(
+        "the answer about link {link} and triangle {triangle} does not fit them: its `{field}` is off by {off:e}, of which \
+         rounding explains {limit:e}; ask again where robot, pose or mesh have changed"
+    )]
+    AnswerDoesNotFit {
+        /// The answer's link.
+        link: usize,
+        /// The answer's triangle.
+        triangle: usize,
+        /// The field of the answer that is off: a point that is not in its shape, or the distance.
+        field: &'static str,
+        /// How far it is off.
+        off: Real,
+        /// How far rounding may put it off.
+        limit: Real,
     },
     /// A vertex of the mesh cannot be used.
     #[error(transparent)]

@@ -1,7 +1,7 @@
 //! A mesh as every engine keeps it.
 
 use super::MeshError;
-use super::checks::check_vertices;
+use super::checks::{check_triangles, check_vertices};
 use super::lazy::Lazy;
 use super::parallel::each;
 use super::shared_parts::SharedParts;
@@ -29,13 +29,22 @@ impl Mesh {
     /// A copy of `mesh`.
     ///
     /// # Errors
-    /// The mesh has no triangles, or a vertex is not finite or out of range.
+    /// As [`from_triangles`](Self::from_triangles).
     pub(crate) fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
-        if mesh.indices().is_empty() {
+        Self::from_triangles(mesh.vertices(), mesh.indices())
+    }
+
+    /// A copy of vertices and triangles.
+    ///
+    /// # Errors
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    pub(crate) fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        check_all(mesh.vertices())?;
-        Ok(Self::of(mesh.vertices().to_vec(), mesh.indices().to_vec()))
+        check_all(vertices)?;
+        check_triangles(triangles, vertices.len())?;
+        Ok(Self::of(vertices.to_vec(), triangles.to_vec()))
     }
 
     pub(super) fn of(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Self {
@@ -66,12 +75,10 @@ impl Mesh {
         self.parts_before = self.parts.take().or(self.parts_before.take());
     }
 
-    #[cfg(feature = "gpu")]
     pub(crate) fn vertices(&self) -> &[Vector] {
         &self.vertices
     }
 
-    #[cfg(feature = "gpu")]
     pub(crate) fn indices(&self) -> &[[u32; 3]] {
         &self.indices
     }

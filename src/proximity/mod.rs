@@ -26,6 +26,7 @@
 //! | `derivative` | how it changes with the points that link and triangle are made of |
 //! | `nearest_features`, `feature` | which parts of link and triangle are nearest, and the normal between them |
 //! | `motion` | what an answer about a motion is |
+//! | `fit` | whether an answer is about the link and the triangle as they are now |
 //! | `checks`, `error`, `report` | what is refused, how, and what an answer is |
 
 mod certificate;
@@ -38,6 +39,7 @@ mod error;
 mod exhaustive;
 mod feature;
 mod feet;
+mod fit;
 mod lazy;
 mod link_lanes;
 mod local_minima;
@@ -68,7 +70,7 @@ mod winding;
 #[cfg(feature = "gpu")]
 pub(crate) use checks::check_margin;
 #[cfg(feature = "gpu")]
-pub(crate) use engine::pairs;
+pub(crate) use engine::{HasMesh, pairs};
 #[cfg(feature = "gpu")]
 pub(crate) use local_minima::contacts_by_all_triangles;
 #[cfg(feature = "gpu")]

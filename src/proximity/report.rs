@@ -1,9 +1,8 @@
-use super::checks::{check_ends, check_vertex};
+use super::checks::{check_ends, check_triangle, check_vertex};
 use super::placed::PlacedLink;
-use super::{MeshError, ProximityError};
+use super::ProximityError;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::shape::TriMesh;
 
 /// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,29 +66,25 @@ impl LinkProximity {
     pub(super) fn placed_link(&self, robot: &Chain, pose: &Pose) -> Result<PlacedLink, ProximityError> {
         Ok(PlacedLink::of(&self.transformed_link(robot, pose)?))
     }
-
-    /// The corners of the triangle that this answer is about.
-    ///
-    /// # Errors
-    /// The mesh does not have it, or one of them is not finite or out of range.
-    pub(super) fn corners(&self, mesh: &TriMesh) -> Result<[Vector; 3], ProximityError> {
-        let triangle = self.triangle as usize;
-        let indices = mesh.indices().get(triangle);
-        let missing = ProximityError::NoSuchTriangle { triangle, triangles: mesh.indices().len() };
-        Ok(corners(mesh, indices.ok_or(missing)?)?)
-    }
 }
 
-/// The corners of a triangle.
+/// The corners of a triangle of a mesh that an answer is about.
 ///
 /// # Errors
-/// One of them is not finite or out of range.
-pub(super) fn corners(mesh: &TriMesh, indices: &[u32; 3]) -> Result<[Vector; 3], MeshError> {
-    let triangle = indices.map(|index| mesh.vertices()[index as usize]);
-    for (index, point) in indices.iter().zip(triangle) {
+/// The mesh does not have it or one of its vertices, or one of them is not finite or out of range.
+pub(super) fn corners(
+    vertices: &[Vector],
+    triangles: &[[u32; 3]],
+    triangle: usize,
+) -> Result<[Vector; 3], ProximityError> {
+    let missing = ProximityError::NoSuchTriangle { triangle, triangles: triangles.len() };
+    let indices = triangles.get(triangle).ok_or(missing)?;
+    check_triangle(triangle, indices, vertices.len())?;
+    let corners = indices.map(|index| vertices[index as usize]);
+    for (index, point) in indices.iter().zip(corners) {
         check_vertex(*index as usize, point)?;
     }
-    Ok(triangle)
+    Ok(corners)
 }
 
 /// How much an engine has computed since it was built, batches left out.

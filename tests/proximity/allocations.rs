@@ -43,7 +43,7 @@ fn a_control_loop_allocates_nothing() {
         search.clears(&chain, &pose, 0.5).unwrap();
         search.clears_inside(&chain, &pose, 0.5).unwrap();
         search.within(&chain, &pose, 3.0, &mut contacts).unwrap();
-        assert!(contacts.len() > 1 && least.contact(&chain, &pose, &mesh).is_ok());
+        assert!(contacts.len() > 1 && search.contact(&chain, &pose, &least).is_ok());
         if tick < 50 {
             seen.push(least.distance);
         }

@@ -141,7 +141,14 @@ fn wrong_answers_are_found_out() {
             assert!(lower - slack <= answer.distance && answer.distance <= upper + slack);
             assert!(upper - lower <= slack);
             right += u32::from(lower > 0.0);
-            answer.triangle = (answer.triangle + 1) % mesh.num_triangles() as u32;
+            // The answer that there is about another triangle.
+            let other = (answer.triangle + 1) % mesh.num_triangles() as u32;
+            let corners = mesh.triangle(other).vertices().to_owned();
+            let mut of_other = Vec::new();
+            let alone = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]);
+            alone.unwrap().per_link(&robot, &pose, &mut of_other).unwrap();
+            answer = of_other[answer.link as usize];
+            answer.triangle = other;
             let pair = answer.certify(&robot, &pose, &mesh).unwrap();
             if pair.lower > upper {
                 let all = answer.certify_among_all(&robot, &pose, &mesh).unwrap();

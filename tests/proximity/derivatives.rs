@@ -89,8 +89,9 @@ fn every_case_within_64_units() {
     let mut worst = 0.0_f64;
     for case in distance_cases().iter().filter(|case| case.is_link()) {
         let Some((found, robot, mesh)) = answer(case) else { continue };
-        let contact = found.contact(&robot, &Pose::IDENTITY, &mesh).unwrap();
-        let Some(derivative) = found.derivative(&robot, &Pose::IDENTITY, &mesh).unwrap() else {
+        let engine = Exhaustive::<f64>::new(&mesh).unwrap();
+        let contact = engine.contact(&robot, &Pose::IDENTITY, &found).unwrap();
+        let Some(derivative) = engine.derivative(&robot, &Pose::IDENTITY, &found).unwrap() else {
             assert!(found.distance < 1e-12 * case.scale, "{}: no derivative at {found:?}", case.id);
             continue;
         };
@@ -197,11 +198,11 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
     let mut out = Vec::new();
     search.per_link(&robot, &pose, &mut out).unwrap();
     for answer in out {
-        let contact = answer.contact(&robot, &pose, mesh).unwrap();
+        let contact = search.contact(&robot, &pose, &answer).unwrap();
         if answer.distance > 2.0 {
             continue;
         }
-        let Some(derivative) = answer.derivative(&robot, &pose, mesh).unwrap() else { continue };
+        let Some(derivative) = search.derivative(&robot, &pose, &answer).unwrap() else { continue };
         let radius = robot.links()[answer.link as usize].radius();
         if contact.depth.map_or(answer.distance < 1e-3, |depth| depth + radius < 0.15) {
             continue; // a step away the cap touches, or the normal has turned
@@ -268,9 +269,10 @@ impl Only {
     /// The depth where the contact has one, else the distance; and the features.
     fn value(&self, robot: &Chain, pose: &Pose, of: &Contact) -> (f64, ContactFeature) {
         let mut out = Vec::new();
-        BvhSearch::new(&self.0).unwrap().per_link(robot, pose, &mut out).unwrap();
+        let mut search = BvhSearch::new(&self.0).unwrap();
+        search.per_link(robot, pose, &mut out).unwrap();
         let answer = out[of.link as usize];
-        let contact = answer.contact(robot, pose, &self.0).unwrap();
+        let contact = search.contact(robot, pose, &answer).unwrap();
         let value =
             if of.depth.is_some() { contact.depth.unwrap_or(answer.distance) } else { answer.distance };
         (value, contact.feature)

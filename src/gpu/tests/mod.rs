@@ -13,7 +13,7 @@ use super::record::Record;
 use super::wgsl::{CONVEX, Shader};
 use super::{GpuExhaustive, Precision};
 use crate::Chain;
-use crate::proximity::{Exhaustive, LinkProximity, Proximity};
+use crate::proximity::{Exhaustive, LinkProximity, Mesh, Proximity};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::{Ball, TriMesh};
 use std::sync::OnceLock;
@@ -71,7 +71,7 @@ fn a_mesh_in_many_parts_is_the_same_mesh() {
             mesh.clone()
         };
         let mut expected = if most == 1 { Exhaustive::<f64>::new(&mesh).unwrap() } else { exhaustive };
-        let mut engine = GpuExhaustive::tuned(gpu, &mesh, in_parts(most)).unwrap();
+        let mut engine = GpuExhaustive::tuned(gpu, Mesh::new(&mesh).unwrap(), in_parts(most)).unwrap();
         let (mut one, mut other) = (Vec::new(), Vec::new());
         for vertices in [mesh.vertices(), &moved] {
             engine.set_vertices(vertices).unwrap();
@@ -88,7 +88,7 @@ fn a_mesh_in_many_parts_is_the_same_mesh() {
 fn a_batch_takes_many_rounds_and_submissions() {
     let Some(gpu) = gpu() else { return };
     let mesh = ball();
-    let mut engine = GpuExhaustive::tuned(gpu, &mesh, in_parts(900)).unwrap();
+    let mut engine = GpuExhaustive::tuned(gpu, Mesh::new(&mesh).unwrap(), in_parts(900)).unwrap();
     let robots: Vec<_> = (0..40).map(robot).collect();
     let plan = Plan::new(&gpu.0, engine.on_device().unwrap(), 7 * robots.len(), &in_parts(900));
     assert!(plan.links_per_submission < 7 * robots.len(), "{plan:?}");

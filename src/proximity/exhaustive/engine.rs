@@ -4,7 +4,7 @@ use super::kernels::Kernels;
 use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
 use crate::proximity::checks::check_margin;
-use crate::proximity::engine::pairs;
+use crate::proximity::engine::{HasMesh, pairs};
 use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::mesh::Mesh;
 use crate::proximity::placed::{PlacedLink, PlacedRobot};
@@ -68,16 +68,28 @@ impl<T: SearchPrecision> Exhaustive<T> {
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
     pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::new(mesh)?))
+    }
+
+    /// An engine for triangles, each given by the positions of its corners among the vertices; both are copied. It spares
+    /// the hierarchy that a [`TriMesh`] builds for itself.
+    ///
+    /// # Errors
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
+    }
+
+    fn of(mesh: Mesh) -> Self {
         let level = Level::new();
-        let triangles = Arc::new(Triangles::new(level, Mesh::new(mesh)?));
-        Ok(Self {
+        Self {
             level,
-            triangles,
+            triangles: Arc::new(Triangles::new(level, mesh)),
             culling: true,
             work: Work::default(),
             pass: Pass::default(),
             minima: LocalMinima::default(),
-        })
+        }
     }
 
     /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless told otherwise.
@@ -122,6 +134,12 @@ impl<T: SearchPrecision> Exhaustive<T> {
             let link = PlacedLink::new(&robot.links()[0], pose);
             link.measure(0, self.triangles.mesh.corners(0)).report(0)
         })
+    }
+}
+
+impl<T: SearchPrecision> HasMesh for Exhaustive<T> {
+    fn mesh(&self) -> &Mesh {
+        &self.triangles.mesh
     }
 }
 

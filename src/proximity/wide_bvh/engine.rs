@@ -9,6 +9,7 @@ use super::queries::RobotSearch;
 use super::tube_queries::TubeMemory;
 use crate::Chain;
 use crate::proximity::checks::check_margin;
+use crate::proximity::engine::HasMesh;
 use crate::proximity::local_minima::LocalMinima;
 use crate::proximity::mesh::Mesh;
 use crate::proximity::parallel::in_shares;
@@ -116,9 +117,39 @@ impl BvhSearch {
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
     pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::new(mesh)?))
+    }
+
+    /// An engine for triangles, each given by the positions of its corners among the vertices; both are copied. It spares
+    /// the hierarchy that a [`TriMesh`] builds for itself.
+    ///
+    /// # Errors
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]])?;
+    /// search.set_vertices(&wall.map(|corner| corner + Vector::Z))?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.5])?;
+    /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// // A proof against what the engine has now.
+    /// let mesh = TriMesh::new(search.vertices().to_vec(), search.triangles().to_vec())?;
+    /// let proof = closest.certify(&robot, &Pose::IDENTITY, &mesh)?;
+    /// assert!(proof.lower <= 3.5 && 3.5 <= proof.upper);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
+    }
+
+    fn of(mesh: Mesh) -> Self {
         let level = Level::new();
-        let hierarchy = Arc::new(Hierarchy::new(level, Mesh::new(mesh)?));
-        Ok(Self { level, hierarchy, memory: Memory::default(), batch: Vec::new() })
+        let hierarchy = Arc::new(Hierarchy::new(level, mesh));
+        Self { level, hierarchy, memory: Memory::default(), batch: Vec::new() }
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
@@ -248,6 +279,12 @@ impl<'a> Query<'a> {
             search: MeshSearch { level, hierarchy, scratch: &mut memory.scratch },
             robot: self.robot,
         }
+    }
+}
+
+impl HasMesh for BvhSearch {
+    fn mesh(&self) -> &Mesh {
+        &self.hierarchy.mesh
     }
 }
 
