@@ -2,8 +2,8 @@
 
 use super::contact_lanes::{Place, try_add_contacts};
 use super::feature::ContactFeature;
-use super::nearest_features::NearestFeatures;
 use super::mesh::Mesh;
+use super::nearest_features::NearestFeatures;
 use super::placed::{Nearest, PlacedLink};
 use super::report::corners;
 use super::{LinkProximity, ProximityError};

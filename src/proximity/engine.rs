@@ -180,12 +180,7 @@ pub trait Proximity: HasMesh {
     /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn contact(
-        &self,
-        robot: &Chain,
-        pose: &Pose,
-        answer: &LinkProximity,
-    ) -> Result<Contact, ProximityError> {
+    fn contact(&self, robot: &Chain, pose: &Pose, answer: &LinkProximity) -> Result<Contact, ProximityError> {
         contact(self.mesh(), robot, pose, answer)
     }
 

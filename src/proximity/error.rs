@@ -37,7 +37,9 @@ pub enum MeshError {
         got: usize,
     },
     /// A triangle names a vertex that the mesh does not have.
-    #[error("triangle {triangle} names vertex {vertex}, but there are {vertices} vertices; repair the mesh's triangles")]
+    #[error(
+        "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices; repair the mesh's triangles"
+    )]
     NoSuchVertex {
         /// The triangle's position in the mesh.
         triangle: usize,

@@ -1,6 +1,6 @@
+use super::ProximityError;
 use super::checks::{check_ends, check_triangle, check_vertex};
 use super::placed::PlacedLink;
-use super::ProximityError;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 

@@ -2,7 +2,7 @@
 
 use continuum_scene::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
@@ -177,4 +177,66 @@ fn motions_are_judged_in_memory_that_is_used_again() {
     };
     let [allocated, shapes] = planner(&mut search, shifts.iter().map(edge).collect());
     assert!(allocated <= 12 * shapes && shapes > 40, "{allocated} {shapes}");
+}
+
+/// A robot of so many links that wind through the ball of radius 1.
+fn long_robot(links: u32, turn: f64) -> Chain {
+    let point = |k: u32| {
+        let (sin, cos) = (turn + 0.3 * f64::from(k)).sin_cos();
+        Vector::new(0.3 * cos, 0.3 * sin, f64::from(k) / f64::from(links) - 0.5)
+    };
+    Chain::capsules(&(0..=links).map(point).collect::<Vec<_>>(), &vec![0.01; links as usize]).unwrap()
+}
+
+/// What an exhaustive engine keeps grows neither with the robots of a batch for each thread, nor with all pairs of links
+/// and triangles that are near.
+#[test]
+fn an_exhaustive_engine_keeps_little_at_once() {
+    let ball = |rows: u32, columns: u32| {
+        let (vertices, indices) = Ball::new(1.0).to_trimesh(rows, columns);
+        TriMesh::new(vertices, indices).unwrap()
+    };
+    let mesh = ball(16, 8);
+    let robots: Vec<_> = (0..100).map(|turn| long_robot(20, f64::from(turn))).collect();
+    let batch: Vec<_> = (0..4000).map(|k| (&robots[k % 100], Pose::IDENTITY)).collect();
+    let (mut each, mut least, mut clears) = (Vec::new(), Vec::new(), Vec::new());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();
+    let kept = pool.install(|| {
+        let mut engine = Exhaustive::<f32>::new(&mesh).unwrap();
+        engine.clears_batch(&batch[..1], 0.1, &mut clears).unwrap();
+        allocation_counter::measure(|| {
+            engine.clears_batch(&batch, 0.1, &mut clears).unwrap();
+            engine.minimum_batch(&batch, &mut least).unwrap();
+        })
+    });
+    assert!(kept.bytes_max < 16 << 20, "{} bytes for {} robots", kept.bytes_max, batch.len());
+    // Robots that are answered together with others than their neighbours are answered alike.
+    let mut engine = Exhaustive::<f32>::new(&mesh).unwrap();
+    engine.per_link_batch(&batch, &mut each).unwrap();
+    assert!(each.len() == batch.len() && least.len() == batch.len() && clears.len() == batch.len());
+    for (place, answers) in each.iter().enumerate() {
+        assert!(least[place] == least[place % 100] && *answers == each[place % 100]);
+        assert!(answers.len() == 20 && answers.contains(&least[place]));
+        assert!(clears[place] == (least[place].distance > 0.1));
+    }
+    // One that has no answer takes those of the others with it, late as it comes.
+    let mut refused = batch.clone();
+    refused[3999].1.translation.x = f64::NAN;
+    assert!(engine.clears_batch(&refused, 0.1, &mut clears).is_err() && clears.is_empty());
+    assert!(engine.minimum_batch(&refused, &mut least).is_err() && least.is_empty());
+    assert!(engine.per_link_batch(&refused, &mut each).is_err() && each.is_empty());
+
+    let (mesh, robot, mut contacts) = (ball(100, 60), long_robot(120, 0.0), Vec::new());
+    assert!(mesh.indices().len() * robot.links().len() > 1_300_000);
+    let mut engine = Exhaustive::<f32>::new(&mesh).unwrap();
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let kept = one.install(|| {
+        allocation_counter::measure(|| {
+            engine.within(&robot, &Pose::IDENTITY, f64::INFINITY, &mut contacts).unwrap();
+        })
+    });
+    assert!(kept.bytes_max < 20 << 20, "{} bytes for all pairs", kept.bytes_max);
+    let (mut expected, mut search) = (Vec::new(), BvhSearch::new(&mesh).unwrap());
+    search.within(&robot, &Pose::IDENTITY, f64::INFINITY, &mut expected).unwrap();
+    assert!(contacts.len() >= 120 && contacts == expected);
 }

@@ -16,6 +16,7 @@ mod parity;
 mod patches;
 mod pieces;
 mod planner;
+mod rings;
 mod scenes;
 mod side;
 mod thin_links;

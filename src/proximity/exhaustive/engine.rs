@@ -116,7 +116,25 @@ impl<T: SearchPrecision> Exhaustive<T> {
         robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
         aim: Aim,
     ) -> Result<(), ProximityError> {
-        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, aim)?;
+        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim)?;
+        Ok(())
+    }
+
+    /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in the cache. `answer` gets
+    /// each with its place among all and among those of the last pass.
+    fn run_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        aim: Aim,
+        mut answer: impl FnMut(&Self, [usize; 2]),
+    ) -> Result<(), ProximityError> {
+        let mut first = 0;
+        while first < robots.len() {
+            let count = count_at_once(&robots[first..]);
+            self.run(pairs(&robots[first..first + count]), aim)?;
+            (0..count).for_each(|number| answer(self, [first + number, number]));
+            first += count;
+        }
         Ok(())
     }
 
@@ -141,6 +159,19 @@ impl<T: SearchPrecision> HasMesh for Exhaustive<T> {
     fn mesh(&self) -> &Mesh {
         &self.triangles.mesh
     }
+}
+
+/// So many links of a batch meet the mesh at once, or those of one robot: each thread keeps what it found for each.
+const LINKS_AT_ONCE: usize = 1 << 12;
+
+/// How many of the first robots, one at least, meet the mesh at once.
+fn count_at_once(robots: &[(&Chain, Pose)]) -> usize {
+    let mut links = 0;
+    let fits = |robot: &Chain| {
+        links += robot.links().len();
+        links <= LINKS_AT_ONCE
+    };
+    robots.iter().map(|(robot, _)| *robot).map(fits).take_while(|fits| *fits).count().max(1)
 }
 
 impl<T: SearchPrecision> Proximity for Exhaustive<T> {
@@ -181,13 +212,22 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        self.run(std::iter::once((robot, pose)), Aim::Every(margin))?;
-        let Self { level, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
-        let robot = PlacedRobot::new(robot, pose)?;
-        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, margin, minima, out);
-        for pairs in pass.within().chunk_by(|one, other| one.0 == other.0) {
-            let triangles = pairs.iter().map(|pair| pair.1);
-            contacts.add(pairs[0].0, |_, near| near.add_unknown(triangles));
+        let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
+        let placed = PlacedRobot::new(robot, pose)?;
+        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), placed, margin, minima, out);
+        let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
+        while first < links {
+            let (robots, end) = (std::iter::once((robot, pose)), first + count);
+            *work += pass.run(level, culling, triangles, robots, first..end, Aim::Every(margin))?;
+            let Some(within) = pass.within() else {
+                count = count.div_ceil(2);
+                continue;
+            };
+            for pairs in within.chunk_by(|one, other| one.0 == other.0) {
+                let triangles = pairs.iter().map(|pair| pair.1);
+                contacts.add(first + pairs[0].0 as usize, |_, near| near.add_unknown(triangles));
+            }
+            first = end;
         }
         work.measured += contacts.finish();
         Ok(())
@@ -204,14 +244,12 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
     ) -> Result<(), ProximityError> {
-        // All links of all robots meet a chunk of the mesh while it is in the cache.
-        self.run(pairs(robots), Aim::EachLink).inspect_err(|_| out.clear())?;
         out.resize_with(robots.len(), Vec::new);
-        for (robot, answers) in out.iter_mut().enumerate() {
-            answers.clear();
-            answers.extend(self.pass.answers(robot));
-        }
-        Ok(())
+        let answered = self.run_batch(robots, Aim::EachLink, |engine, [place, number]| {
+            out[place].clear();
+            out[place].extend(engine.pass.answers(number));
+        });
+        answered.inspect_err(|_| out.clear())
     }
 
     fn minimum_batch(
@@ -220,9 +258,11 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        self.run(pairs(robots), Aim::Least(Real::INFINITY))?;
-        out.extend(pairs(robots).enumerate().map(|(number, (robot, pose))| self.least(robot, pose, number)));
-        Ok(())
+        let answered = self.run_batch(robots, Aim::Least(Real::INFINITY), |engine, [place, number]| {
+            let (robot, pose) = &robots[place];
+            out.push(engine.least(robot, pose, number));
+        });
+        answered.inspect_err(|_| out.clear())
     }
 
     fn clears_batch(
@@ -233,9 +273,10 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        self.run(pairs(robots), Aim::Within(margin))?;
-        out.extend((0..robots.len()).map(|robot| self.pass.is_clear(robot)));
-        Ok(())
+        let answered = self.run_batch(robots, Aim::Within(margin), |engine, [_, number]| {
+            out.push(engine.pass.is_clear(number));
+        });
+        answered.inspect_err(|_| out.clear())
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {

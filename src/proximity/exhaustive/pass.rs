@@ -77,6 +77,8 @@ pub(super) struct Pass<T> {
     bounds: Vec<SharedBound>,
     /// One for each thread; the first has what all have found.
     findings: Vec<Findings>,
+    /// Whether there may be more than was kept of what is within the bound.
+    is_full: bool,
 }
 
 impl<T> Default for Pass<T> {
@@ -87,12 +89,13 @@ impl<T> Default for Pass<T> {
             robots: Vec::new(),
             bounds: Vec::new(),
             findings: Vec::new(),
+            is_full: false,
         }
     }
 }
 
 impl<T: Kernels> Pass<T> {
-    /// Looks at all triangles.
+    /// Looks at all triangles, for some links of each robot.
     ///
     /// # Errors
     /// Those of the first robot that has one.
@@ -102,10 +105,11 @@ impl<T: Kernels> Pass<T> {
         culling: bool,
         triangles: &Triangles<T>,
         robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        links: Range<usize>,
         aim: Aim,
     ) -> Result<Work, ProximityError> {
-        let links = self.place(level, triangles, robots, aim)?;
-        let Self { links: resolved, double, bounds, findings, robots } = self;
+        let links = self.place(level, triangles, robots, links, aim)?;
+        let Self { links: resolved, double, bounds, findings, robots, is_full } = self;
         bounds.clear();
         bounds.resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || {
             SharedBound::new(aim.bound())
@@ -118,7 +122,10 @@ impl<T: Kernels> Pass<T> {
             findings.nearest.resize(links, None);
         }
         let mesh = &triangles.mesh;
-        let (stop_at_first, every) = (matches!(aim, Aim::Within(_)), matches!(aim, Aim::Every(_)));
+        let stop_at_first = matches!(aim, Aim::Within(_));
+        // A single link has all that it is near to, or nothing could be told of it.
+        let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
+        let every = matches!(aim, Aim::Every(_)).then_some(most);
         let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
         scan(level, culling, &job, findings);
         if !double.is_empty() {
@@ -126,6 +133,7 @@ impl<T: Kernels> Pass<T> {
             let job = Job { mesh, blocks, links: double, bounds, stop_at_first, every };
             scan(level, culling, &job, findings);
         }
+        *is_full = findings.iter().any(|findings| findings.within.len() >= most);
         let (first, others) = findings.split_at_mut(1);
         for other in others {
             first[0].merge(other);
@@ -139,6 +147,7 @@ impl<T: Kernels> Pass<T> {
         level: Level,
         triangles: &Triangles<T>,
         robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        of_each: Range<usize>,
         aim: Aim,
     ) -> Result<usize, ProximityError> {
         let Self { links, double, robots: ranges, .. } = self;
@@ -150,7 +159,8 @@ impl<T: Kernels> Pass<T> {
         let mut place = 0;
         for (number, (robot, pose)) in robots.enumerate() {
             let first = place;
-            for link in PlacedRobot::new(robot, pose)?.placed_links() {
+            let robot = PlacedRobot::new(robot, pose)?;
+            for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
                 let bound = if aim == Aim::EachLink { place } else { number };
                 let searched = SearchLink::new(&link, frame);
                 if is_double || searched.as_ref().is_some_and(|searched| frame.resolves(searched)) {
@@ -178,11 +188,12 @@ impl<T: Kernels> Pass<T> {
         places.enumerate().filter_map(|(link, place)| Some(self.found(place)?.report(link)))
     }
 
-    /// The triangles that may be within the bound of the last pass, link by link and each once.
-    pub(super) fn within(&mut self) -> &[(usize, u32)] {
+    /// The triangles that may be within the bound of the last pass, link by link and each once. None if there may be too
+    /// many to be kept at once: fewer links will have fewer, and a single one always gets its own.
+    pub(super) fn within(&mut self) -> Option<&[(u32, u32)]> {
         let within = &mut self.findings[0].within;
         within.sort_unstable();
-        within
+        Some(&**within).filter(|_| !self.is_full)
     }
 
     /// Whether nothing was found for a robot.
@@ -190,6 +201,9 @@ impl<T: Kernels> Pass<T> {
         self.robots[robot].clone().all(|place| self.found(place).is_none())
     }
 }
+
+/// So many pairs of a link and a triangle within its bound are kept at once, unless they are all of one link.
+const PAIRS_AT_ONCE: usize = 1 << 20;
 
 /// Fewer pairs than this are not worth a second thread.
 const PAIRS_PER_THREAD: usize = 1 << 17;
@@ -201,7 +215,7 @@ fn threads_for(pairs: usize) -> usize {
 
 /// Has every thread take the next chunk until there is none.
 fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [Findings]) {
-    if culling && !job.stop_at_first && !job.every {
+    if culling && !job.stop_at_first && job.every.is_none() {
         E::first_bounds(level, job);
     }
     let next = AtomicUsize::new(0);

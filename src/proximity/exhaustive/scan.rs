@@ -27,8 +27,8 @@ pub(super) struct Job<'a, E> {
     pub bounds: &'a [SharedBound],
     /// Any triangle within the bound will do.
     pub stop_at_first: bool,
-    /// Every triangle that may be within the bound is wanted.
-    pub every: bool,
+    /// Every triangle that may be within the bound is wanted; of each thread so many at the most.
+    pub every: Option<usize>,
 }
 
 /// A link that a job is about.
@@ -88,7 +88,7 @@ pub(super) struct Findings {
     /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
     pub nearest: Vec<Option<Nearest>>,
     /// Where every triangle is wanted, each link's place and each triangle that may be within its bound.
-    pub within: Vec<(usize, u32)>,
+    pub within: Vec<(u32, u32)>,
     pub work: Work,
 }
 
@@ -177,7 +177,7 @@ struct Turn<'a, E> {
     link: &'a PlacedLink,
     place: usize,
     best: Best,
-    within: &'a mut Vec<(usize, u32)>,
+    within: &'a mut Vec<(u32, u32)>,
     work: &'a mut Work,
 }
 
@@ -234,8 +234,10 @@ impl<E: Lane> Turn<'_, E> {
         if triangle >= self.job.mesh.len().min(self.best.wanted_below() as usize) {
             return false;
         }
-        if self.job.every {
-            self.within.push((self.place, triangle as u32));
+        if let Some(most) = self.job.every {
+            if self.within.len() < most {
+                self.within.push((self.place as u32, triangle as u32));
+            }
             return false;
         }
         self.work.measured += 1;
