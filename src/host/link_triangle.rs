@@ -9,7 +9,7 @@
 //!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
 //!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal. Where none of
 //!    them keeps the two apart, as with a rim that all but touches an edge aslant, those of case 3 are tried too.
-//! 2. **The triangle enters, the axis is outside, and no flat cap is near.** A capsule is its axis swollen by a ball, so
+//! 2. **The triangle enters, the axis is outside by more than rounding, and no flat cap is near.** A capsule is its axis swollen by a ball, so
 //!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
 //!    distance `F`. What a flat cap cuts away makes no shorter way out as long as it is at least as far along the axis
 //!    as the overlap is deep: see `distance/depth/foot.rs`.
@@ -121,11 +121,6 @@ impl Local {
         triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
     }
 
-    fn pair(&self) -> depth::LinkTriangle {
-        let Self { link, triangle, .. } = self;
-        depth::LinkTriangle::new(Link::new(link.end().into(), link.radius(), link.flat()), *triangle)
-    }
-
     /// The contact, in local units, if the two are at most `margin` apart.
     pub fn contact_within(&self, margin: Real) -> Option<LinkContact> {
         let (link, radius) = (&self.link, self.link.radius());
@@ -138,16 +133,17 @@ impl Local {
         let on_axis = Vector::from(to_axis.point1);
         let from_axis = Vector::from(to_axis.point2) - on_axis;
         let outward = unit(from_axis);
-        let foot = Foot::new(link, on_axis);
+        let to_flat = Foot::new(link, on_axis).to_flat;
+        let pair = depth::LinkTriangle::new(Link::new(link.end().into(), radius, link.flat()), self.triangle);
 
-        if let (Some(outward), true) = (outward, foot.to_flat > ROUNDING) {
+        if let (Some(outward), true) = (outward, to_flat > ROUNDING) {
             let distance = to_axis.distance - radius;
             if distance > margin {
                 return None;
             }
             // Cases 1 and 2.
-            if distance > 0.0 || foot.to_flat > ROUNDING - distance {
-                let (_, normal) = self.pair().widest_gap([Some(outward), None], distance);
+            if distance > 0.0 || (to_axis.distance > ROUNDING && to_flat > ROUNDING - distance) {
+                let normal = pair.widest_gap([Some(outward), None], distance).normal;
                 let (on_link, on_triangle) = (on_axis + normal * radius, on_axis + from_axis);
                 return Some(LinkContact { distance, on_link, on_triangle, normal });
             }
@@ -158,15 +154,14 @@ impl Local {
         }
         // Case 1.
         if distance > 0.0 {
-            let mut best = self.pair().widest_gap([unit(on_triangle - on_link), outward], distance);
-            if best.0 <= 0.0 {
-                best = self.pair().widest_of_all(best);
+            let mut best = pair.widest_gap([unit(on_triangle - on_link), outward], distance);
+            if best.gap <= 0.0 {
+                best = pair.widest_of_all(best);
             }
-            return Some(LinkContact { distance, on_link, on_triangle, normal: best.1 });
+            return Some(LinkContact { distance, on_link, on_triangle, normal: best.normal });
         }
         // Case 3.
-        let (gap, normal) =
-            self.pair().widest_of_all(self.pair().widest_gap([outward, None], Real::INFINITY));
+        let depth::Way { gap, normal } = pair.least_translation(outward);
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
         Some(LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal })

@@ -118,7 +118,7 @@ impl Contact {
             triangle,
             feature: ContactFeature { link: found.link, triangle: found.triangle },
             distance,
-            depth: found.depth.map(|depth| if distance > 0.0 { distance } else { depth.min(0.0) }),
+            depth: Some(if distance > 0.0 { distance } else { found.depth.min(0.0) }),
             normal: found.normal,
             on_robot,
             on_mesh,
@@ -164,9 +164,6 @@ impl Contact {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn rate(&self, velocity: Vector, angular_velocity: Vector) -> Option<Real> {
-        if self.distance <= 0.0 && self.depth.is_none() {
-            return None;
-        }
         Some(self.normal?.dot(velocity + angular_velocity.cross(self.lever)))
     }
 

@@ -32,7 +32,6 @@ struct Parts {
     corners: [u64; 3],
     edges: [u64; 3],
     has_normal: u64,
-    at_flat_cap: u64,
     needs_closer_look: u64,
     /// The triangle's and the link's closest points in the mesh's frame, and the distance.
     nearest: Rows<7>,
@@ -115,7 +114,7 @@ impl Parts {
             triangle: triangle_feature(self.corners.map(is), self.edges.map(is)),
             fraction: number(0),
             normal: has_normal.then(|| vector(1)),
-            depth: (has_normal && !is(self.at_flat_cap)).then(|| number(4)),
+            depth: number(4),
             lever: vector(5),
             kink: false,
         }
@@ -130,7 +129,6 @@ fn parts_at(level: Level, pairs: &PairRows, count: usize) -> Parts {
         corners: [0; 3],
         edges: [0; 3],
         has_normal: 0,
-        at_flat_cap: 0,
         needs_closer_look: 0,
         nearest: [[0.0; TOGETHER]; 7],
     };
@@ -145,9 +143,9 @@ fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize,
         store(&mut parts.nearest, 0, lane, pack.placed(pack.closest.point1));
         store(&mut parts.nearest, 3, lane, pack.placed(pack.closest.point2));
         (pack.closest.distance * pack.unit).store(&mut parts.nearest[6][lane..]);
-        let PairLanes { triangle, link, axial, closest, unit, .. } = pack;
+        let PairLanes { triangle, link, face, axial, closest, unit, .. } = pack;
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
-        parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &link)) << lane;
+        parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
         for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {
             *bits |= L::bits(masks) << lane;
         }
@@ -158,7 +156,6 @@ fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize,
             *bits |= L::bits(masks) << lane;
         }
         parts.has_normal |= L::bits(found.has_normal) << lane;
-        parts.at_flat_cap |= L::bits(found.at_flat_cap) << lane;
         found.fraction.store(&mut parts.numbers[0][lane..]);
         store(&mut parts.numbers, 1, lane, found.normal);
         (found.depth * unit).store(&mut parts.numbers[4][lane..]);

@@ -2,7 +2,7 @@
 
 use super::contact::near;
 use super::mesh::Mesh;
-use super::nearest_features::NearPair;
+use super::nearest_features::{NearPair, NearestFeatures};
 use super::{LinkProximity, ProximityError};
 use crate::Chain;
 use crate::distance::{DoubleDouble, Scalar, Vec3};
@@ -61,16 +61,23 @@ pub(super) fn derivative(
     answer: &LinkProximity,
 ) -> Result<Option<Derivative>, ProximityError> {
     let (link, corners) = near(mesh, robot, pose, answer)?;
-    Ok(NearPair::exactly(&link, corners).derivative())
+    let found = match NearPair::parted(&link, corners) {
+        Some(parted) => parted.derivative(|number| number),
+        None => NearPair::exactly(&link, corners).derivative(DoubleDouble::rounded),
+    };
+    // One place decides what is a kink.
+    let kink = NearestFeatures::of(&link, corners).kink;
+    Ok(found.map(|found| Derivative { kink, ..found }))
 }
 
-impl NearPair<DoubleDouble> {
-    fn derivative(&self) -> Option<Derivative> {
-        let (link, parts, one) = (&self.link, &self.parts, DoubleDouble::from(1.0));
-        if !parts.has_normal || parts.cap_touches {
+impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
+    fn derivative(&self, round: impl Fn(T) -> Real) -> Option<Derivative> {
+        let (link, parts) = (&self.link, &self.parts);
+        let one = link.radius.one();
+        if !parts.has_normal {
             return None;
         }
-        let rounded = |v: Vec3<DoubleDouble>| Vector::new(v.x.rounded(), v.y.rounded(), v.z.rounded());
+        let rounded = |v: Vec3<T>| Vector::new(round(v.x), round(v.y), round(v.z));
         let normal = parts.normal;
         let (mut start, mut end) = (normal * (one - parts.fraction), normal * parts.fraction);
         let mut radius = -one;
@@ -82,9 +89,9 @@ impl NearPair<DoubleDouble> {
         Some(Derivative {
             start: rounded(start),
             end: rounded(end),
-            radius: radius.rounded(),
+            radius: round(radius),
             vertices: self.weights().map(|weight| rounded(-normal * weight)),
-            kink: self.kink || !self.has_area(),
+            kink: self.kink,
         })
     }
 }

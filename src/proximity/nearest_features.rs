@@ -2,28 +2,40 @@
 //!
 //! Let q be the axis point nearest to the triangle, p the triangle's point there and F their distance. Beside the link
 //! and beyond a round cap the link's closest point lies on the way from q to p, one radius from q: the normal from wall
-//! to robot is (q - p) / F, and it has a meaning as long as F > 0, even where the two overlap. Beyond a flat cap the
-//! closest points x of the link and y of the triangle are those of the cap's disc, and the normal is (x - y) / |x - y|.
+//! to robot is (q - p) / F. It has a meaning where the two overlap as well: no way out is shorter, as long as a flat cap is
+//! no nearer along the axis than the overlap is deep (see `distance/depth/foot.rs`). Beyond a flat cap the closest points x
+//! of the link and y of the triangle are those of the cap's disc, and the normal is (x - y) / |x - y|.
 //!
 //! One text for `f64`, packs of it and numbers of twice its digits. The difference of two points that are g apart turns by about
 //! 4 u / g, for numbers near one; below a gap of 2^-8 that is too much, and the pair is done again with 32 digits.
 //!
+//! # Where there is no such gap
+//! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and once more when it is seen
+//! from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther apart or nearer than they should be, and what is
+//! computed of them errs by less than 9 u more. A gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however
+//! many digits, is that of the rounding. There, and where the two overlap and a flat cap is near, the features tell:
+//! see `distance/depth/way_out.rs`.
+//!
 //! # Kinks
 //! With the normal n fixed, let the triangle's foremost part be where <n, .> is greatest, and the link's where it is
-//! least. The distance of two convex sets has a derivative along every motion if only one pair of points realises it
-//! (Danskin's theorem), and more than one pair do only if both foremost parts are more than a point and share a
-//! direction:
+//! least. The distance of two convex sets, and where they overlap the way out along n, has a derivative along every motion
+//! if only one pair of points realises it (Danskin's theorem), and more than one pair do only if both foremost parts are
+//! more than a point and lie, seen along n, over each other by more than a point:
 //!
 //! - the link's is a line of its side, n being perpendicular to the axis; the triangle's its face, or an edge parallel
 //!   to the axis;
 //! - the link's is a flat cap, n being parallel to the axis; the triangle's an edge or its face.
 //!
 //! Rounding cannot tell a point that is farther by less than 64 u. Over a line of length l that is tilted by an angle a
-//! against a plane the distance rises by l sin a; between two lines at an angle a, F apart, by (l sin a)^2 / (2 F).
+//! against a plane the distance rises by l sin a; between two lines at an angle a, F apart, by (l sin a)^2 / (2 F). What is
+//! no longer than that is a point: a cap without a radius has nothing that could be nearer than its centre.
+//!
+//! The corners of a triangle without area can move against one another: it counts as a kink too.
 
 use super::feature::{LinkFeature, TriangleFeature};
 use super::placed::{PlacedLink, place_exactly};
-use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3};
+use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
+use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle};
 use parry3d_f64::math::{Real, Vector};
 
 /// What rounding cannot tell, of numbers near one.
@@ -31,6 +43,12 @@ const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// A normal from a shorter gap is computed again with more digits.
 const SHORT: Real = 1.0 / 256.0;
+
+/// Farther than any point where numbers are near one.
+const FAR: Real = 16.0;
+
+/// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each of their ends.
+const OVER_EACH_OTHER: Real = 16.0 * TIE;
 
 /// What there is to tell of a link and a triangle, directions in the mesh's frame and lengths in its unit.
 pub(super) struct NearestFeatures {
@@ -40,8 +58,8 @@ pub(super) struct NearestFeatures {
     pub fraction: Real,
     /// The unit vector from triangle to link.
     pub normal: Option<Vector>,
-    /// F - r, except beyond a flat cap or where F is 0.
-    pub depth: Option<Real>,
+    /// Minus the length of the least translation that separates the two, where they overlap.
+    pub depth: Real,
     /// From the axis point to the link's closest point.
     pub lever: Vector,
     pub kink: bool,
@@ -51,9 +69,16 @@ impl NearestFeatures {
     /// Of a link and a triangle in the mesh's frame.
     pub(super) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         let pair = link.pair(corners);
-        let near = NearPair::new(pair.triangle, pair.link);
-        if near.parts.gap < SHORT {
-            return NearPair::exactly(link, corners).features(pair.unit, DoubleDouble::rounded);
+        let (near, _) = NearPair::new(pair.triangle, pair.link);
+        if near.parts.asks_way_out {
+            return near.parting().features(pair.unit, |number| number);
+        }
+        if near.parts.needs_digits(&near.triangle, &near.face, &near.link) {
+            let depth = near.parts.depth * pair.unit;
+            return Self {
+                depth,
+                ..NearPair::exactly(link, corners).features(pair.unit, DoubleDouble::rounded)
+            };
         }
         near.features(pair.unit, |number| number)
     }
@@ -74,15 +99,16 @@ pub(super) struct NearestParts<T: Scalar> {
     /// The unit vector from triangle to link, where there is one.
     pub normal: Vec3<T>,
     pub has_normal: T::Mask,
-    /// F - r, where there is a normal and no flat cap decides.
+    /// F - r; where there is a way out, minus its length.
     pub depth: T,
     /// From the axis point to the link's closest point.
     pub lever: Vec3<T>,
     /// What the normal spans.
     pub gap: T,
+    /// Whether the closest point is one of a flat cap.
     pub at_flat_cap: T::Mask,
-    /// Whether a flat cap decides and touches.
-    pub cap_touches: T::Mask,
+    /// Whether the features tell more than these points (see the head of this file).
+    pub asks_way_out: T::Mask,
 }
 
 impl<T: Scalar> NearestParts<T> {
@@ -97,15 +123,18 @@ impl<T: Scalar> NearestParts<T> {
         let (zero, one) = (axial.s.zero(), axial.s.one());
         let (at_flat_cap, [_, at_end]) = (axial.beyond_flat_cap(), axial.at_flat);
         let (centre, _) = axial.cap(link);
-        let cap_touches = at_flat_cap & closest.distance.le(zero);
         let from_cap = closest.point2 - closest.point1;
         let from_axis = link.end * axial.s - axial.on_triangle;
-        let gap = Vec3::select(at_flat_cap, from_cap, from_axis).norm();
-        // Where a flat cap touches, the way to the axis is all that is left.
-        let from_cap = Vec3::select(cap_touches, centre - axial.on_triangle, from_cap);
         let apart = Vec3::select(at_flat_cap, from_cap, from_axis);
-        let meets = !at_flat_cap & axial.axis_squared.le(zero);
-        let has_normal = zero.lt(apart.largest()) & !meets;
+        let (gap, depth) = (apart.norm(), axial.axis_squared.sqrt() - link.radius);
+        let rounding = gap.lit(ROUNDING);
+        // How far a flat end is along the axis; farther than everything where there is none.
+        let (length, far) = (link.end.dot(link.axis), gap.lit(FAR));
+        let to_start = link.flat[0].select(axial.s * length, far);
+        let to_end = link.flat[1].select((one - axial.s) * length, far);
+        let is_capsule = !at_flat_cap & (rounding - depth.min(zero)).lt(to_start.min(to_end));
+        let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
+        let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
         let normal = apart.normalised();
         let from_side = Vec3::select(has_normal, normal * -gap.min(link.radius), Vec3::zero(zero));
         let on_triangle = Vec3::select(at_flat_cap, closest.point1, axial.on_triangle);
@@ -121,30 +150,45 @@ impl<T: Scalar> NearestParts<T> {
             on_triangle,
             normal,
             has_normal,
-            depth: gap - link.radius,
+            depth,
             lever: Vec3::select(at_flat_cap, closest.point2 - centre, from_side),
             gap,
             at_flat_cap,
-            cap_touches,
+            asks_way_out,
         }
     }
 
-    /// Where [`is_kink`] must be asked, or the gap is too short for these digits. A kink needs two corners that are
-    /// foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside a link also
-    /// the third corner or an edge along it.
+    /// Whether more than these numbers tell is needed: the features, or more digits.
     #[inline(always)]
-    pub(super) fn needs_closer_look(&self, triangle: &[Vec3<T>; 3], link: &Link<T>) -> T::Mask {
-        let tie = self.gap.lit(TIE);
+    pub(super) fn needs_closer_look(
+        &self,
+        triangle: &[Vec3<T>; 3],
+        face: &Face<T>,
+        link: &Link<T>,
+    ) -> T::Mask {
+        self.asks_way_out | self.needs_digits(triangle, face, link)
+    }
+
+    /// Where the gap is too short for these digits, or [`NearPair::is_kink`] must be asked with more. A kink needs two
+    /// corners that are foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside
+    /// a link also the third corner or an edge along it. Or a triangle without area.
+    ///
+    /// The normal turns by 4 u / gap, so that a point at most 2 sqrt(3) away rises by less than 14 u / gap, and of two
+    /// points one by 28 u / gap more than the other: half of what is granted here.
+    #[inline(always)]
+    fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
+        let one = self.gap.one();
+        let tie = self.gap.lit(TIE) * (one + one + one.over(self.gap));
         let [a, b, c] = *triangle;
         let [a_is_foremost, b_is_foremost, c_is_foremost] = are_foremost(triangle, self.normal, tie);
         let [ab, bc] = [a_is_foremost & b_is_foremost, b_is_foremost & c_is_foremost];
         let ca = c_is_foremost & a_is_foremost;
         let is_level = self.normal.dot(link.end).abs().le(tie);
         let edge = Vec3::select(ab, b - a, Vec3::select(bc, c - b, a - c));
-        let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap));
+        let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap, tie));
         let faces_cap = (across(self.normal, link) * link.radius).le(tie);
         let may_be_kink = (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
-        self.gap.lt(self.gap.lit(SHORT)) | (may_be_kink & self.has_normal & !self.cap_touches)
+        self.gap.lt(self.gap.lit(SHORT)) | may_be_kink | !has_area(face)
     }
 }
 
@@ -194,35 +238,33 @@ impl NearPair<DoubleDouble> {
     /// With about 32 digits.
     pub(super) fn exactly(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         let (triangle, link) = place_exactly(link, corners);
-        Self::new(triangle, link)
+        let (pair, apart) = Self::new(triangle, link);
+        Self { kink: pair.is_kink(pair.parts.normal, apart, pair.parts.at_flat_cap), ..pair }
     }
 }
 
 impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
-    fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> Self {
+    /// Of which no kink is known, and how far the axis is from the triangle.
+    fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, T) {
         let face = Face::new(triangle);
         let axial = Axial::new(&link, &face);
         let closest =
             if axial.beyond_flat_cap() { axial.with_caps(&link, &face) } else { axial.without_caps(&link) };
         let parts = NearestParts::new(&triangle, &link, &axial, &closest);
         let apart = if parts.at_flat_cap { axial.axis_squared.sqrt() } else { parts.gap };
-        let kink = parts.has_normal
-            && !parts.cap_touches
-            && is_kink(&triangle, &link, parts.normal, apart, parts.at_flat_cap);
-        Self { link, parts, kink, face, triangle }
+        (Self { link, parts, kink: false, face, triangle }, apart)
     }
 
     /// The same with `f64`, in the mesh's frame, where 1 is `unit`.
     fn features(&self, unit: Real, rounded: impl Fn(T) -> Real) -> NearestFeatures {
         let Self { parts, kink, .. } = self;
         let vector = |v: Vec3<T>| Vec3::new(rounded(v.x), rounded(v.y), rounded(v.z));
-        let has_depth = parts.has_normal && !parts.at_flat_cap;
         NearestFeatures {
             link: link_feature(parts.caps),
             triangle: triangle_feature(parts.corners, parts.edges),
             fraction: rounded(parts.fraction),
             normal: parts.has_normal.then(|| vector(parts.normal).into()),
-            depth: has_depth.then(|| rounded(parts.depth) * unit),
+            depth: rounded(parts.depth) * unit,
             lever: (vector(parts.lever) * unit).into(),
             kink: *kink,
         }
@@ -254,11 +296,102 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         weights
     }
 
-    /// Whether the triangle has an area, so that only one mean of its corners is the closest point.
-    pub(super) fn has_area(&self) -> bool {
-        let longest = (self.face.vertices[2] - self.face.vertices[1]).norm();
-        (longest.lit(TIE) * longest).lt(self.face.across.norm())
+    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle to link and the axis
+    /// `apart` from the triangle.
+    fn is_kink(&self, normal: Vec3<T>, apart: T, at_flat_cap: bool) -> bool {
+        if !has_area(&self.face) {
+            return true;
+        }
+        let (link, [a, b, c]) = (&self.link, self.triangle);
+        let tie = apart.lit(TIE);
+        let foremost = match are_foremost(&self.triangle, normal, tie) {
+            [true, true, true] => [a, b, c],
+            [true, true, _] => [a, b, b],
+            [_, true, true] => [b, c, c],
+            [true, _, true] => [c, a, a],
+            _ => return false,
+        };
+        if at_flat_cap && tie.lt(link.radius) && (across(normal, link) * link.radius).le(tie) {
+            let centre = if self.parts.caps[1] { link.end } else { Vec3::zero(tie) };
+            let offset = point_triangle(centre, foremost).point2 - centre;
+            let radial = offset.along(link.axis, -offset.dot(link.axis)).norm();
+            return (radial + apart.lit(OVER_EACH_OTHER)).lt(link.radius);
+        }
+        let length = link.end.dot(link.axis);
+        if length.le(tie) || tie.lt(normal.dot(link.end).abs()) {
+            return false;
+        }
+        let [from, to, last] = foremost;
+        let shared = if last == to {
+            if !is_along(to - from, link, apart, tie) {
+                return false;
+            }
+            let (from, to) = (from.dot(link.axis), to.dot(link.axis));
+            length.min(from.max(to)) - apart.zero().max(from.min(to))
+        } else {
+            self.above_face() * length
+        };
+        apart.lit(OVER_EACH_OTHER).lt(shared)
     }
+
+    /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges counts.
+    fn above_face(&self) -> T {
+        let (end, across) = (self.link.end, self.face.across);
+        let [a, b, c] = self.face.vertices;
+        let (mut from, mut to) = (end.x.zero(), end.x.one());
+        for [start, other] in [[a, b], [b, c], [c, a]] {
+            let inwards = across.cross(other - start);
+            let (height, rise) = (-inwards.dot(start) + inwards.norm() * end.x.lit(TIE), inwards.dot(end));
+            if end.x.zero().lt(rise) {
+                from = from.max(-height.over(rise));
+            } else if rise.lt(end.x.zero()) {
+                to = to.min(height.over(-rise));
+            } else if height.lt(end.x.zero()) {
+                return end.x.zero();
+            }
+        }
+        (to - from).max(end.x.zero())
+    }
+}
+
+impl NearPair<Real> {
+    /// Where the features tell more than the nearest points.
+    pub(super) fn parted(link: &PlacedLink, corners: [Vector; 3]) -> Option<Self> {
+        let pair = link.pair(corners);
+        let (near, _) = Self::new(pair.triangle, pair.link);
+        near.parts.asks_way_out.then(|| near.parting())
+    }
+
+    /// The same on the way out of the triangle, or where a gap is none.
+    fn parting(mut self) -> Self {
+        let [a, b, c] = self.triangle;
+        let way = WayOut::new(&LinkTriangle::new(self.link, [a, b, c].map(Vector::from)));
+        let (normal, on_triangle) = (Vec3::from(-way.normal), Vec3::from(way.on_triangle));
+        self.parts = NearestParts {
+            caps: [way.fraction <= 0.0, way.fraction >= 1.0],
+            corners: self.triangle.map(|corner| is_at(on_triangle, corner)),
+            edges: [[a, b], [b, c], [c, a]].map(|[from, to]| is_on(on_triangle, from, to)),
+            fraction: way.fraction,
+            on_triangle,
+            normal,
+            has_normal: way.has_side,
+            depth: way.gap,
+            lever: way.lever.into(),
+            gap: way.gap.abs(),
+            at_flat_cap: way.at_flat_cap,
+            asks_way_out: true,
+        };
+        let apart = way.gap.abs().max((way.gap + self.link.radius).abs());
+        self.kink = !way.is_alone || self.is_kink(normal, apart, way.at_flat_cap);
+        self
+    }
+}
+
+/// Whether the triangle has an area, so that only one mean of its corners is the closest point.
+#[inline(always)]
+fn has_area<T: Scalar>(face: &Face<T>) -> T::Mask {
+    let longest = face.vertices[2] - face.vertices[1];
+    (longest.norm_squared() * longest.x.lit(TIE)).lt(face.across.norm())
 }
 
 /// The part of a link by what [`NearestParts`] tells of its caps.
@@ -277,43 +410,11 @@ pub(super) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> Triangle
     corner.or(first(edges).map(TriangleFeature::Edge)).unwrap_or(TriangleFeature::Face)
 }
 
-/// Whether more than one pair of points is as near, with the unit vector `normal` from triangle to link and the axis
-/// `apart` from the triangle.
-fn is_kink<T: Scalar<Mask = bool>>(
-    triangle: &[Vec3<T>; 3],
-    link: &Link<T>,
-    normal: Vec3<T>,
-    apart: T,
-    at_flat_cap: bool,
-) -> bool {
-    let tie = apart.lit(TIE);
-    let is_foremost = are_foremost(triangle, normal, tie);
-    let foremost = is_foremost.iter().filter(|foremost| **foremost).count();
-    if foremost < 2 {
-        return false;
-    }
-    if at_flat_cap && (across(normal, link) * link.radius).le(tie) {
-        return apart.zero().lt(link.radius);
-    }
-    let has_axis = apart.zero().lt(link.end.norm_squared());
-    if !has_axis || !normal.dot(link.end).abs().le(tie) {
-        return false;
-    }
-    if foremost == 3 {
-        return true;
-    }
-    let [from, to] = match is_foremost {
-        [true, true, _] => [triangle[0], triangle[1]],
-        [_, true, true] => [triangle[1], triangle[2]],
-        _ => [triangle[2], triangle[0]],
-    };
-    is_along(to - from, link, apart)
-}
-
 /// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can tell.
 #[inline(always)]
-fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T) -> T::Mask {
+fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T, tie: T) -> T::Mask {
     let sine = edge.cross(link.axis).norm().over(edge.norm());
     let rise = edge.norm().min(link.end.norm()) * sine;
-    (rise * rise).le(apart.lit(TIE) * apart * apart.lit(2.0))
+    // Where nothing is between them, what the edge leads away by is what it is away.
+    rise.le(tie) | (rise * rise).le(tie * apart * apart.lit(2.0))
 }

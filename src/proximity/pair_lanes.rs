@@ -88,6 +88,7 @@ pub(super) fn store<L: Pack<Element = f64>, const N: usize>(
 pub(super) struct PairLanes<L: Scalar> {
     pub triangle: [Vec3<L>; 3],
     pub link: Link<L>,
+    pub face: Face<L>,
     pub axial: Axial<L>,
     /// The closest points.
     pub closest: Closest<L>,
@@ -151,6 +152,6 @@ impl<L: Pack<Element = f64>> PlacedLanes<L> {
         } else {
             axial.with_caps(&link, &face)
         };
-        PairLanes { triangle, link, axial, closest, unit: scale.one() / scale, extent, start }
+        PairLanes { triangle, link, face, axial, closest, unit: scale.one() / scale, extent, start }
     }
 }

@@ -21,6 +21,14 @@ pub(crate) struct LinkTriangle {
     pub triangle: [Vector; 3],
 }
 
+/// A direction, and how far the triangle begins beyond the end of the link along it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub gap: Real,
+    /// The unit vector from link to triangle.
+    pub normal: Vector,
+}
+
 impl LinkTriangle {
     pub(crate) fn new(link: Link<Real>, triangle: [Vector; 3]) -> Self {
         // Without an axis there is no cap.
@@ -30,26 +38,26 @@ impl LinkTriangle {
 
     /// The largest gap and its direction, among the features' normals and `more`, as they are and made
     /// perpendicular to the edges and the axis; or the first gap that is as large as `enough`, but for rounding.
-    pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> (Real, Vector) {
+    pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> Way {
         let enough = enough - ROUNDING;
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = Vector::from(self.link.axis);
         // Some direction across whatever direction there is, should nothing else be left.
         let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
-        let mut best = (Real::NEG_INFINITY, across);
+        let mut best = Way { gap: Real::NEG_INFINITY, normal: across };
         // The first of equals stays, so `more` goes first.
         for n in more.into_iter().flatten() {
             best = self.wider(best, n);
         }
-        if best.0 >= enough {
+        if best.gap >= enough {
             return best;
         }
         let face = face_normal(self.triangle);
         for n in face.into_iter().flat_map(|n| [n, -n]) {
             best = self.wider(best, n);
         }
-        if best.0 >= enough {
+        if best.gap >= enough {
             return best;
         }
         let edges = edges.map(unit);
@@ -65,17 +73,28 @@ impl LinkTriangle {
     }
 
     /// The best direction so far or one of those in which a least translation can be.
-    pub(crate) fn widest_of_all(&self, mut best: (Real, Vector)) -> (Real, Vector) {
+    pub(crate) fn widest_of_all(&self, mut best: Way) -> Way {
         separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
         best
     }
 
+    /// The least translation that separates the two, or the plane that keeps them apart. `outward` leads from the axis to
+    /// the triangle, if it is known.
+    pub(crate) fn least_translation(&self, outward: Option<Vector>) -> Way {
+        self.widest_of_all(self.widest_gap([outward, None], Real::INFINITY))
+    }
+
     /// The best direction so far or `n`, whichever has the larger gap.
-    fn wider(&self, best: (Real, Vector), n: Vector) -> (Real, Vector) {
+    fn wider(&self, best: Way, normal: Vector) -> Way {
+        let gap = self.gap(normal);
+        if gap > best.gap { Way { gap, normal } } else { best }
+    }
+
+    /// How far the triangle begins beyond the end of the link along a unit vector.
+    pub(super) fn gap(&self, n: Vector) -> Real {
         let (centre, reach) = self.reach(n);
         let beyond = self.triangle.map(|vertex| (vertex - centre).dot(n));
-        let gap = beyond[0].min(beyond[1]).min(beyond[2]) - reach;
-        if gap > best.0 { (gap, n) } else { best }
+        beyond[0].min(beyond[1]).min(beyond[2]) - reach
     }
 
     /// The end of the axis that the link's point furthest along a unit vector belongs to, and how far that point is

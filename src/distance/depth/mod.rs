@@ -7,7 +7,9 @@ mod ellipse;
 mod foot;
 mod link_triangle;
 mod separation;
+mod way_out;
 
 pub(crate) use direction::{perpendicular, unit, unit_across};
 pub(crate) use foot::to_flat;
-pub(crate) use link_triangle::{LinkTriangle, ROUNDING, face_normal};
+pub(crate) use link_triangle::{LinkTriangle, ROUNDING, Way, face_normal};
+pub(crate) use way_out::WayOut;

@@ -1,0 +1,139 @@
+//! Where a link leaves a triangle by the least translation: the points of the two that part last.
+//!
+//! Let m be the unit vector of the least translation, from the link to the triangle. Moved apart by it the two touch where
+//! the part of the link that is furthest along m meets the part of the triangle that is least far along m. As numbers are
+//! near one, a point of either that is behind by less than [`TIE`] cannot be told from one that is not.
+//!
+//! | the link's part | where | its point that parts last |
+//! |---|---|---|
+//! | a line of the barrel | m is perpendicular to the axis | the one at the triangle's part |
+//! | a flat cap | m is along the axis | the one at the triangle's part |
+//! | a point of a rim | m leans towards a flat cap | it |
+//! | a point of a half ball | m leans towards a round cap | it |
+//!
+//! A cap or a barrel that is no larger than rounding is a point.
+//!
+//! # Where it is not the only way
+//! The depth is the least of many: along the normals of `separation` and the face's. Where another of them, in another
+//! direction, is as short as far as rounding can tell, how the depth changes with a motion depends on the motion. And where
+//! the opposite way is as short, the link is on neither side of the triangle: its axis lies in the plane of the wall, or
+//! the wall cuts it in equal halves.
+
+use super::{LinkTriangle, Way, separation, unit_across};
+use crate::distance::{Link, Scalar, Vec3, point_triangle, segment_triangle};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding cannot tell, of numbers near one.
+const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// Directions that are nearer to each other than this are one: what changes with either changes with the other alike, but
+/// for a millionth.
+const ONE_DIRECTION: Real = 1.0 / 1_048_576.0;
+
+/// The least translation that separates a link from a triangle, in coordinates from the link's start and near one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WayOut {
+    /// Minus the length of the translation. More than 0 where the two are apart.
+    pub gap: Real,
+    /// The unit vector from link to triangle.
+    pub normal: Vector,
+    /// Whether the opposite way is longer.
+    pub has_side: bool,
+    /// Whether no other way is as short.
+    pub is_alone: bool,
+    /// Where on the axis the link's point that parts last is, from 0 to 1.
+    pub fraction: Real,
+    /// From there to that point.
+    pub lever: Vector,
+    /// The triangle's point that parts last.
+    pub on_triangle: Vector,
+    /// Whether the link's point is one of a flat cap or its rim.
+    pub at_flat_cap: bool,
+}
+
+impl WayOut {
+    pub(crate) fn new(pair: &LinkTriangle) -> Self {
+        let axis = [Vec3::zero(0.0), pair.link.end];
+        let to_axis = segment_triangle(axis, pair.triangle.map(Vec3::from));
+        let outward = super::unit(Vector::from(to_axis.point2) - Vector::from(to_axis.point1));
+        let way = pair.least_translation(outward);
+        let Parting { fraction, lever, on_triangle, at_flat_cap } = pair.parting(way);
+        Self {
+            gap: way.gap,
+            normal: way.normal,
+            has_side: pair.gap(-way.normal) < way.gap - TIE,
+            is_alone: pair.is_alone(way),
+            fraction,
+            lever,
+            on_triangle,
+            at_flat_cap,
+        }
+    }
+}
+
+/// The points that part last.
+struct Parting {
+    fraction: Real,
+    lever: Vector,
+    on_triangle: Vector,
+    at_flat_cap: bool,
+}
+
+impl LinkTriangle {
+    /// Whether no way in another direction is as short.
+    fn is_alone(&self, way: Way) -> bool {
+        let mut is_alone = true;
+        let mut consider = |n: Vector| {
+            let is_other = (n - way.normal).abs().max_element() > ONE_DIRECTION;
+            is_alone &= !is_other || self.gap(n) < way.gap - TIE;
+        };
+        for n in super::face_normal(self.triangle).into_iter().flat_map(|n| [n, -n]) {
+            consider(n);
+        }
+        separation::directions(&self.link, self.triangle, consider);
+        is_alone
+    }
+
+    fn parting(&self, Way { normal, .. }: Way) -> Parting {
+        let Link { end, axis, radius, flat } = self.link;
+        let (end, axis) = (Vector::from(end), Vector::from(axis));
+        let part = self.foremost(normal);
+        let (length, lean) = (end.dot(axis), axis.dot(normal));
+        if length > TIE && (lean * length).abs() <= TIE {
+            let found = segment_triangle([Vec3::zero(0.0), end.into()], part.map(Vec3::from));
+            let along = Vector::from(found.point1).dot(axis);
+            return Parting {
+                fraction: (along / length).max(0.0).min(1.0),
+                lever: normal * radius,
+                on_triangle: found.point2.into(),
+                at_flat_cap: false,
+            };
+        }
+        let at_end = lean > 0.0;
+        let (centre, fraction) = if at_end { (end, 1.0) } else { (Vector::ZERO, 0.0) };
+        let nearest_to =
+            |point: Vector| Vector::from(point_triangle(point.into(), part.map(Vec3::from)).point2);
+        let at_flat_cap = flat[usize::from(at_end)];
+        let lateral = unit_across(normal, axis).filter(|_| at_flat_cap);
+        let across = (normal - axis * lean).length();
+        if at_flat_cap && (lateral.is_none() || across * radius <= TIE) {
+            let on_triangle = nearest_to(centre);
+            let offset = on_triangle - centre;
+            let radial = offset - axis * offset.dot(axis);
+            let reach = radial.length();
+            let lever = if reach > radius { radial * (radius / reach) } else { radial };
+            return Parting { fraction, lever, on_triangle, at_flat_cap };
+        }
+        let lever = lateral.unwrap_or(normal) * radius;
+        Parting { fraction, lever, on_triangle: nearest_to(centre + lever), at_flat_cap }
+    }
+
+    /// The triangle's part that is least far along a unit vector: a corner, an edge or all of it, with corners that count
+    /// more than once.
+    fn foremost(&self, normal: Vector) -> [Vector; 3] {
+        let heights = self.triangle.map(|vertex| vertex.dot(normal));
+        let least = heights[0].min(heights[1]).min(heights[2]) + TIE;
+        let first = (0..3).find(|&corner| heights[corner] <= least).unwrap_or(0);
+        std::array::from_fn(|corner| self.triangle[if heights[corner] <= least { corner } else { first }])
+    }
+}

@@ -1,0 +1,311 @@
+//! The depth of a link in a triangle: it separates, along the normal; no sampled direction takes less; the dispatcher's
+//! `contact` says the same; and it changes with a motion as `rate` tells, unless there is a kink.
+
+use super::scenes::mesh_of;
+use continuum_testing::Random;
+use continuum_testing::narrow_phase::segment_triangle;
+use parry_continuum::distance::Vec3;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::query::QueryDispatcher;
+use parry_continuum::parry::shape::{TriMesh, Triangle};
+use parry_continuum::proximity::{BvhSearch, Contact, LinkProximity, Proximity};
+use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// A link of a robot, and a triangle.
+#[derive(Clone, Debug)]
+struct Placed {
+    start: Vector,
+    end: Vector,
+    radius: f64,
+    caps: [Cap; 2],
+    triangle: [Vector; 3],
+}
+
+/// How link and triangle lie to each other.
+const KINDS: [&str; 10] = [
+    "anyhow",
+    "coplanar",
+    "parallel to the face",
+    "along an edge",
+    "upright on the face",
+    "an edge on the axis",
+    "a corner on the axis",
+    "a corner at a cap",
+    "edge-on",
+    "on a lattice",
+];
+
+const FLAT: Cap = Cap::Flat;
+const ROUND: Cap = Cap::Round;
+
+impl Placed {
+    fn new(random: &mut Random, kind: usize) -> Self {
+        let size = [1.0, 0.05, 5.0][random.below(3) as usize];
+        let mut triangle = [(); 3].map(|()| random.point() * size);
+        if random.below(2) == 0 {
+            triangle = triangle.map(|corner| Vector::new(corner.x, corner.y, 0.0));
+        }
+        let length = [1.0, 0.3, 3.0, 0.01][random.below(4) as usize];
+        let radius = [0.0, 0.25, 0.5, 1.0, 0.01, random.between(0.01, 1.0)][random.below(6) as usize];
+        let caps = [[FLAT; 2], [ROUND; 2], [FLAT, ROUND], [ROUND, FLAT]][random.below(4) as usize];
+        // A little above or below what is asked for, or exactly there.
+        let exponent = -random.between(2.0, 14.0);
+        let little = [0.0, 1.0, -1.0][random.below(3) as usize] * 10.0_f64.powf(exponent);
+        let [a, b, c] = triangle;
+        let [u, v] = [random.unit(), random.unit()];
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        let inside = a + (b - a) * u + (c - a) * v;
+        let normal = (b - a).cross(c - a).normalize();
+        let along_edge = (b - a).normalize();
+        let across_edge = normal.cross(along_edge);
+        let in_plane = along_edge * random.between(-1.0, 1.0) + across_edge * random.between(-1.0, 1.0);
+        let in_plane = in_plane.normalize();
+        let sideways = [0.0, radius, -radius][random.below(3) as usize] + little;
+        let share = [0.0, 0.5, 1.0, random.unit()][random.below(4) as usize];
+        let (point, way) = match kind {
+            1 => (inside, in_plane),
+            2 => (inside + normal * (radius + little), in_plane),
+            3 => (a + across_edge * sideways + normal * [0.0, radius][random.below(2) as usize], along_edge),
+            4 => {
+                let tip = if caps[0] == FLAT { 0.0 } else { radius };
+                return Self::at(inside + normal * (tip + little), normal, length, radius, caps, triangle);
+            }
+            5 => (a + along_edge * little, along_edge),
+            6 => (a, random.direction()),
+            7 => {
+                // At the start, on the rim or inside of it.
+                let way = random.direction();
+                let side = way.any_orthonormal_vector() * radius * [0.0, 0.5, 1.0][random.below(3) as usize];
+                let start = a + side + way * little;
+                return Self::at(start, way, length, radius, caps, triangle);
+            }
+            8 => (inside + across_edge * little, (normal + along_edge * [0.0, 1.0][random.below(2) as usize]).normalize()),
+            9 => {
+                let place = |point: Vector| (point * 4.0).round() / 4.0;
+                let way = Vector::AXES[random.below(3) as usize];
+                return Self::at(place(inside), way, length, radius, caps, triangle.map(place));
+            }
+            _ => (inside + random.direction() * random.between(0.0, 1.2 * radius), random.direction()),
+        };
+        Self::at(point - way * length * share, way, length, radius, caps, triangle)
+    }
+
+    fn at(start: Vector, way: Vector, length: f64, radius: f64, caps: [Cap; 2], triangle: [Vector; 3]) -> Self {
+        Self { start, end: start + way * length, radius, caps, triangle }
+    }
+
+    /// A robot that has the link, and which of its links it is; none if no robot has its caps.
+    fn robot(&self) -> Option<(Chain, u32)> {
+        let Self { start, end, radius, caps, .. } = *self;
+        let (ends, along) = ([start, end], end - start);
+        let made = match caps {
+            [Cap::Round, Cap::Round] => Chain::capsules(&ends, &[radius]),
+            [Cap::Flat, Cap::Flat] => Chain::cylinders(&ends, &[radius]),
+            [Cap::Flat, Cap::Round] => Chain::from_centreline(&[start, end, end + along * 2.0], &[radius; 2]),
+            _ => {
+                let aside = along.any_orthonormal_vector() * 2.0 * along.length();
+                Chain::from_centreline(&[start - along * 0.1 - aside, start, end], &[1.5 * radius, radius])
+            }
+        };
+        let robot = made.ok()?;
+        let is_it = |link: &ModifiedCylinder| {
+            link.caps() == caps && link.start() == start && link.end() == end && link.radius() == radius
+        };
+        let number = robot.links().iter().position(is_it)?;
+        Some((robot, number as u32))
+    }
+
+    fn mesh(&self) -> TriMesh {
+        mesh_of(&[self.triangle.map(|corner| corner.to_array())])
+    }
+
+    fn contact(&self) -> Option<(Contact, LinkProximity, Chain)> {
+        let (robot, number) = self.robot()?;
+        let (mesh, mut out) = (self.mesh(), Vec::new());
+        BvhSearch::new(&mesh).unwrap().per_link(&robot, &Pose::IDENTITY, &mut out).unwrap();
+        let answer = out[number as usize];
+        Some((answer.contact(&robot, &Pose::IDENTITY, &mesh).unwrap(), answer, robot))
+    }
+
+    fn extent(&self) -> f64 {
+        let points = [self.end, self.triangle[0], self.triangle[1], self.triangle[2]];
+        points.iter().map(|&point| (point - self.start).abs().max_element()).fold(self.radius, f64::max)
+    }
+
+    /// How far the triangle begins beyond the end of the link along a unit vector.
+    fn gap(&self, n: Vector) -> f64 {
+        let axis = (self.end - self.start).normalize_or_zero();
+        let reach = |end: usize| {
+            let (point, outward) = if end == 0 { (Vector::ZERO, -axis) } else { (self.end - self.start, axis) };
+            let is_ball = self.caps[end] == ROUND && n.dot(outward) >= 0.0;
+            point.dot(n) + self.radius * if is_ball { 1.0 } else { n.cross(axis).length() }
+        };
+        let begin = self.triangle.map(|corner| (corner - self.start).dot(n));
+        begin[0].min(begin[1]).min(begin[2]) - reach(0).max(reach(1))
+    }
+
+    /// Directions along what is special of the two.
+    fn special(&self) -> Vec<Vector> {
+        let axis = (self.end - self.start).normalize_or_zero();
+        let [a, b, c] = self.triangle;
+        let mut special = vec![axis, (b - a).cross(c - a)];
+        special.extend([b - a, c - b, a - c].iter().flat_map(|edge| [*edge, edge.cross(axis)]));
+        for corner in self.triangle {
+            special.extend([corner - self.start, corner - self.end]);
+            special.push((corner - self.start).reject_from_normalized(axis));
+        }
+        special
+    }
+
+    /// The same pair, its link moved.
+    fn moved(&self, [start, end]: [Vector; 2], by: f64) -> Self {
+        Self { start: self.start + start * by, end: self.end + end * by, ..self.clone() }
+    }
+
+    fn depth(&self) -> Option<f64> {
+        self.contact()?.0.depth
+    }
+}
+
+/// What the sample has seen.
+#[derive(Debug, Default)]
+struct Census {
+    overlaps: [usize; KINDS.len()],
+    without_side: usize,
+    same_bits: usize,
+    at_flat_caps: usize,
+    wires: usize,
+    smooth: usize,
+    kinks: usize,
+    silent_kinks: usize,
+    worst_rate: f64,
+}
+
+fn judge(seed: u64, census: &mut Census) {
+    let random = &mut Random::new(seed);
+    let kind = seed as usize % KINDS.len();
+    let placed = Placed::new(random, kind);
+    let Some((contact, answer, robot)) = placed.contact() else { return };
+    if answer.distance > 0.0 {
+        return;
+    }
+    census.overlaps[kind] += 1;
+    let at = || format!("seed {seed}, {}: {placed:?} {contact:?}", KINDS[kind]);
+    let rounding = 16.0 * U * placed.extent();
+    let depth = contact.depth.unwrap_or_else(|| panic!("no depth, {}", at()));
+    assert!(depth <= 0.0, "{}", at());
+
+    // No direction needs less: drawn anywhere, next to the way out, and along what is special of the two.
+    let special = placed.special();
+    let around = contact.normal.unwrap_or(Vector::Z);
+    let drawn = (0..400).map(|_| random.direction());
+    let mut near = Random::new(seed);
+    let near = (0..100).map(|_| -around + near.direction() * 0.3_f64.powi(1 + near.below(12) as i32));
+    for direction in special.iter().flat_map(|&n| [n, -n]).chain(drawn).chain(near) {
+        let Some(direction) = direction.try_normalize() else { continue };
+        let gap = placed.gap(direction);
+        assert!(gap <= depth + rounding, "{gap} along {direction}, {}", at());
+    }
+    // It separates, along the normal.
+    match contact.normal {
+        Some(normal) => {
+            // A plane through the normal as it is rounded is off by that rounding, where the triangle is large: any plane
+            // that keeps the two apart will do.
+            let out = placed.moved([normal; 2], -depth);
+            let ways = out.special().into_iter().flat_map(|n| [n, -n]).chain([-normal]);
+            let apart = ways.filter_map(Vector::try_normalize).map(|n| out.gap(n));
+            let apart = apart.fold(f64::NEG_INFINITY, f64::max);
+            assert!(apart >= -2.0 * rounding, "still {apart}, {}", at());
+        }
+        None => census.without_side += 1,
+    }
+    // The host's contact is the same.
+    let link = robot.links()[contact.link as usize];
+    let [a, b, c] = placed.triangle;
+    let triangle = Triangle::new(a, b, c);
+    let host = ContinuumDispatcher::default().contact(&Pose::IDENTITY, &link, &triangle, 1.0).unwrap();
+    let host = host.unwrap_or_else(|| panic!("no contact, {}", at()));
+    assert!((host.dist.min(0.0) - depth).abs() <= rounding, "{host:?}, {}", at());
+    census.same_bits += usize::from(host.dist.min(0.0) == depth);
+    census.wires += usize::from(placed.radius == 0.0);
+
+    let mesh = placed.mesh();
+    let derivative = answer.derivative(&robot, &Pose::IDENTITY, &mesh).unwrap();
+    assert_eq!(derivative.is_some(), contact.normal.is_some(), "{}", at());
+    // Closer to a corner, the depth is smooth over less than a step.
+    let axis_distance = segment_triangle([placed.start.into(), placed.end.into()], placed.triangle.map(Vec3::from)).distance;
+    let near_corner = (16.0 * U..1e-6).contains(&(axis_distance / placed.extent()));
+    if let Some(derivative) = derivative.filter(|_| !near_corner) {
+        assert_eq!(derivative.kink, contact.kink, "{}", at());
+        changes(&placed, &contact, &derivative, random, census, &at);
+    }
+}
+
+/// The depth changes with motions as the derivative says, and on both sides alike, unless there is a kink.
+fn changes(
+    placed: &Placed,
+    contact: &Contact,
+    derivative: &parry_continuum::proximity::Derivative,
+    random: &mut Random,
+    census: &mut Census,
+    at: &impl Fn() -> String,
+) {
+    let Some(value) = contact.depth else { return };
+    let along = placed.end - placed.start;
+    let mut largest_jump = 0.0_f64;
+    for motion in 0..8 {
+        let velocity = [random.direction(), random.direction()];
+        let ends = match motion % 4 {
+            0 => [velocity[0]; 2],
+            1 => [velocity[0], -velocity[0]],
+            _ => velocity,
+        };
+        let rate = derivative.rate(ends[0], ends[1]);
+        let turn = along.cross(ends[1] - ends[0]) / along.length_squared();
+        let by_turn = contact.rate(ends[0].lerp(ends[1], contact.fraction), turn).unwrap();
+        let fast = 1.0 + (ends[1] - ends[0]).length() * (placed.radius + placed.extent()) / along.length();
+        assert!((by_turn - rate).abs() < 1e-12 * fast, "{by_turn}, {rate}, {}", at());
+        let (mut least, mut jump) = (f64::INFINITY, f64::INFINITY);
+        for step in [1e-6, 1e-8, 1e-10] {
+            let step = step * along.length().min(1.0);
+            let side = |by: f64| placed.moved(ends, by).depth().map(|depth| (depth - value) / by);
+            let (Some(ahead), Some(behind)) = (side(step), side(-step)) else { return };
+            jump = jump.min((ahead - behind).abs() / fast);
+            least = least.min((0.5 * (ahead + behind) - rate).abs() / fast);
+        }
+        largest_jump = largest_jump.max(jump);
+        if !contact.kink {
+            assert!(jump < 1e-3 && least < 1e-3, "jump {jump}, error {least}, rate {rate}, {}", at());
+            census.worst_rate = census.worst_rate.max(least);
+        }
+    }
+    if contact.kink {
+        census.kinks += 1;
+        census.silent_kinks += usize::from(largest_jump < 1e-4);
+        if largest_jump < 1e-4 && std::env::var("SHOW").is_ok() {
+            println!("silent: {largest_jump} {}", at());
+        }
+    } else {
+        census.smooth += 1;
+    }
+    census.at_flat_caps += usize::from(contact.lever.cross(contact.normal.unwrap()).length() > 1e-6);
+}
+
+#[test]
+fn the_depth_is_the_least_translation_and_changes_as_its_rate_says() {
+    let mut census = Census::default();
+    (0..6000).for_each(|seed| judge(seed, &mut census));
+    println!("{census:?}");
+}
+
+pub fn survey(count: u64) {
+    let mut census = Census::default();
+    let mut failures = [0; KINDS.len()];
+    for seed in 0..count {
+        let run = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| judge(seed, &mut census)));
+        failures[seed as usize % KINDS.len()] += usize::from(run.is_err());
+    }
+    println!("{census:?} failures {failures:?}");
+}
