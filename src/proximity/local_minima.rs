@@ -47,6 +47,12 @@
 //!
 //! At an edge or a corner that is certainly farther than its nearest point a triangle joins nothing that is nearer.
 //!
+//! # How much work it is
+//! A triangle asks about all that have a corner or an edge with it. What it asks of them, whether any is nearer by far or
+//! left out, and which came first, can be asked of all in the ring at once: where there are very many, it is gathered
+//! once for all of them (`long_rings`). So the work grows with the triangles near a link and those around their corners, and
+//! not with the square of their number.
+//!
 //! # Where link and wall overlap
 //! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its triangles the one
 //! nearest to the axis comes first and stands for it, the lowest of equals.
