@@ -1,7 +1,8 @@
 //! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
 
+use super::composite::CompositePair;
+use super::convex::ConvexPair;
 use super::elements::{self, FieldPair};
-use super::link_cast;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
@@ -11,6 +12,7 @@ use super::straight_cast;
 use super::thin::Thin;
 use super::voxels;
 use super::watched::Watched;
+use super::{link_ball, link_cast};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
@@ -101,9 +103,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
         }
         match parts {
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                details::intersection_test_composite_shape_shape(watched, pos12, parts, g2)
-            }),
+            Parts::Composite(parts) => {
+                CompositePair { dispatcher: self, parts, pos12, other: g2 }.intersection_test()
+            }
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
@@ -111,7 +113,12 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
-            Parts::None => self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2),
+            Parts::None => {
+                if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
+                    return Ok(ShapeIntersection::new(contact.dist <= 0.0));
+                }
+                self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2)
+            }
         }
     }
 
@@ -137,7 +144,14 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Voxels(_) => Err(Unsupported),
             Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
             Parts::None => {
-                let answer = self.inner(pos12, g1, g2)?.distance(pos12, g1, g2)?;
+                if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
+                    return Ok(ShapeDistance::new(contact.dist.max(0.0)));
+                }
+                let inner = self.inner(pos12, g1, g2)?;
+                let answer = match ConvexPair::of(inner, pos12, g1, g2) {
+                    Some(pair) => ShapeDistance::new(pair.distance()?),
+                    None => inner.distance(pos12, g1, g2)?,
+                };
                 check_margin(answer.distance).map(|()| answer)
             }
         }
@@ -161,11 +175,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return pair.contact(prediction);
         }
         match Parts::of(g1, g2)? {
-            // A negative prediction asks for an overlap; parry's composites want it positive.
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                details::contact_composite_shape_shape(watched, pos12, parts, g2, prediction.max(0.0))
-            })
-            .map(|contact| contact.filter(|contact| contact.dist <= prediction)),
+            Parts::Composite(parts) => {
+                CompositePair { dispatcher: self, parts, pos12, other: g2 }.contact(prediction)
+            }
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
             }
@@ -175,8 +187,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 Ok(contact.map(Contact::flipped))
             }
             Parts::None => {
-                let contact = self.inner(pos12, g1, g2)?.contact(pos12, g1, g2, prediction)?;
-                check_margin(contact.map_or(0.0, |contact| contact.dist)).map(|()| contact)
+                let contact = self.contact_of_simple(pos12, g1, g2, prediction)?;
+                check_margin(contact.map_or(0.0, |contact| contact.dist))?;
+                Ok(contact.filter(|contact| contact.dist <= prediction))
             }
         }
     }
@@ -199,11 +212,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return pair.closest_points(max_dist);
         }
         match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => Watched::ask(self, |watched| {
-                // The search wants parts strictly nearer than its bound.
-                let bound = max_dist.max(0.0).next_up();
-                details::closest_points_composite_shape_shape(watched, pos12, parts, g2, bound)
-            }),
+            Parts::Composite(parts) => {
+                CompositePair { dispatcher: self, parts, pos12, other: g2 }.closest_points(max_dist)
+            }
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.closest_points(max_dist)
             }
@@ -211,7 +222,16 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => self.inner(pos12, g1, g2)?.closest_points(pos12, g1, g2, max_dist.max(0.0)),
+            Parts::None => {
+                if let Some(points) = link_ball::closest_points(pos12, g1, g2, max_dist)? {
+                    return Ok(points);
+                }
+                let inner = self.inner(pos12, g1, g2)?;
+                match ConvexPair::of(inner, pos12, g1, g2) {
+                    Some(pair) => pair.closest_points(max_dist),
+                    None => inner.closest_points(pos12, g1, g2, max_dist.max(0.0)),
+                }
+            }
         }
     }
 
@@ -234,22 +254,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         }
         match Parts::of(g1, g2)? {
             Parts::Composite(parts) => {
-                let latest = options.max_time_of_impact;
-                // The search wants hits strictly earlier than its bound, and goes through all that is never met for a
-                // bound above the largest number.
-                let max_time_of_impact = latest.next_up().min(Real::MAX);
-                let options = ShapeCastOptions { max_time_of_impact, ..options };
-                let hit = Watched::ask(self, |watched| {
-                    details::cast_shapes_composite_shape_shape(
-                        watched,
-                        pos12,
-                        local_vel12,
-                        parts,
-                        g2,
-                        options,
-                    )
-                })?;
-                Ok(hit.filter(|hit| hit.time_of_impact <= latest))
+                CompositePair { dispatcher: self, parts, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
             Parts::Field(field) => {
                 FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
@@ -353,6 +358,26 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 end_time,
                 stop_at_penetration,
             ),
+        }
+    }
+}
+
+impl<L: QueryDispatcher> ContinuumDispatcher<L> {
+    /// The contact of two shapes that cannot be taken apart; it may be beyond the prediction.
+    fn contact_of_simple(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
+            return Ok(Some(contact));
+        }
+        let inner = self.inner(pos12, g1, g2)?;
+        match ConvexPair::of(inner, pos12, g1, g2) {
+            Some(pair) => pair.contact(prediction),
+            None => inner.contact(pos12, g1, g2, prediction),
         }
     }
 }

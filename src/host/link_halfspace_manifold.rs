@@ -1,14 +1,16 @@
 //! The contact manifold of a link and a half-space: what the link stands on (see [`footing`](super::footing)), and how
-//! high each of these points is over the plane.
+//! high each of these points is over the plane; and the link's lowest point, if none of the others is as low: where a flat
+//! cap all but lies on the plane, no more than rounding tells at which of its rim's points.
 //!
 //! Where the nearest is within the prediction, all count, so that the host sees what a fast link is about to reach.
 
 use super::axial::unit;
-use super::footing;
+use super::meeting::ROUNDING;
+use super::{feature, footing};
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
-use parry3d_f64::shape::{PackedFeatureId, Shape};
+use parry3d_f64::shape::{PackedFeatureId, Shape, SupportMap};
 
 /// Brings the manifold up to date, if the shapes are a link and a half-space, in either order. Returns whether they
 /// are.
@@ -32,15 +34,22 @@ pub(super) fn update<M, C: Default + Copy>(
     let pose = if link_is_first { pos12.inverse() } else { *pos12 };
     let down = pose.rotation.inverse() * -plane;
     let before = std::mem::take(&mut manifold.points);
+    let mut nearest = Real::INFINITY;
     let mut add = |on_link: Vector, name: PackedFeatureId| {
         let over = pose * on_link;
         let height = over.dot(plane);
-        let below = over - plane * height;
-        let face = PackedFeatureId::face(0);
-        manifold.points.push(TrackedContact::flipped(on_link, below, name, face, height, !link_is_first));
+        // A number that is none is refused below.
+        let is_lowest_too =
+            name == feature::BARREL.into() && height >= nearest - ROUNDING * over.abs().max_element();
+        if !is_lowest_too {
+            nearest = nearest.min(height);
+            let below = over - plane * height;
+            let face = PackedFeatureId::face(0);
+            manifold.points.push(TrackedContact::flipped(on_link, below, name, face, height, !link_is_first));
+        }
     };
     footing::points(link, down, &mut add);
-    let nearest = manifold.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
+    add(link.local_support_point_toward(down), feature::BARREL.into());
     if !manifold.points.iter().all(|point| point.dist.is_finite()) {
         manifold.points.clear();
         return Err(Unsupported);

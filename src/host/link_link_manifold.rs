@@ -9,7 +9,7 @@
 use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
 use super::link_link::{self, Answer};
-use super::meeting::Meeting as OneSided;
+use super::meeting::{Meeting as OneSided, ROUNDING};
 use super::{footing, rim};
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -48,7 +48,7 @@ pub(super) fn update<M, C: Default + Copy>(
     let normal = touch.normal;
 
     let before = std::mem::take(&mut manifold.points);
-    let mut meeting = Meeting { points: Vec::new(), apart: SAME_POINT * extent };
+    let mut meeting = Meeting { points: Vec::new(), extent };
     if first.axis().dot(second.axis()).abs() >= ALONG {
         meeting.add_ends(&first, &second, normal, false);
         meeting.add_ends(&second, &first, -normal, true);
@@ -84,8 +84,8 @@ struct Point {
 /// The contact points of two links so far.
 struct Meeting {
     points: Vec<Point>,
-    /// Points that are closer together than this are one.
-    apart: Real,
+    /// The largest coordinate. Points that are closer together than [`SAME_POINT`] of it are one: the nearest.
+    extent: Real,
 }
 
 impl Meeting {
@@ -120,7 +120,7 @@ impl Meeting {
         let faces = (0..2).any(|end| footing::faces_flat(link, normal, end));
         let Some(lateral) = footing::lateral(other, -normal).filter(|_| faces) else { return };
         let [v, w] = [other.start(), other.end()].map(|centre| centre + lateral * other.radius());
-        let mut below = OneSided::new(link, [v, w, w], normal);
+        let mut below = OneSided::new(link, [v, w, w], normal, self.extent);
         rim::collect(&mut below);
         for point in below.points {
             let names = [point.of_link, feature::BARREL.into()];
@@ -132,17 +132,25 @@ impl Meeting {
         }
     }
 
-    /// Case 3.
+    /// Case 3. No other point is closer.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
-        if self.points.iter().all(|point| point.dist > dist + self.apart) {
+        if self.points.iter().all(|point| point.dist > dist + ROUNDING * self.extent) {
             self.add(on_first, dist, [feature::BARREL.into(); 2]);
+        }
+        for point in &mut self.points {
+            point.dist = point.dist.max(dist);
         }
     }
 
     fn add(&mut self, on_first: Vector, dist: Real, names: [PackedFeatureId; 2]) {
-        let is_new = |point: &Point| (point.on_first - on_first).length() > self.apart;
-        if dist.is_finite() && on_first.is_finite() && self.points.iter().all(is_new) {
-            self.points.push(Point { on_first, dist, names });
+        if !(dist.is_finite() && on_first.is_finite()) {
+            return;
+        }
+        let (apart, point) = (SAME_POINT * self.extent, Point { on_first, dist, names });
+        match self.points.iter_mut().find(|point| (point.on_first - on_first).length() <= apart) {
+            Some(same) if dist < same.dist - ROUNDING * self.extent => *same = point,
+            Some(_) => {}
+            None => self.points.push(point),
         }
     }
 }

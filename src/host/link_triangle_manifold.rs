@@ -10,8 +10,8 @@
 //! 3. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
 //!    edge across a cap.
 //!
-//! Points that coincide are one. Where the nearest is within the prediction, all count, so that the host sees
-//! what a fast link is about to reach. Tolerances are relative to the link, so the unit of length does not
+//! Points that coincide are one, the nearest of them, so that the least `dist` is the contact's own. Where it is within
+//! the prediction, all count, so that the host sees what a fast link is about to reach. Tolerances are relative to the link, so the unit of length does not
 //! matter. Nothing is kept from one call to the next but what the host stores with its points, which are
 //! matched by feature.
 
@@ -19,10 +19,9 @@ use super::axial::unit;
 use super::link_triangle::{LinkTriangle, Local};
 use super::meeting::Meeting;
 use super::{crest, feature, footing, rim};
-use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
-use parry3d_f64::shape::PackedFeatureId;
 
 /// How much deeper than the overlap a point may be where a constraint has turned the normal; as in parry.
 const DEEPER: Real = 5.0;
@@ -46,7 +45,10 @@ pub(super) fn update<M, C: Default + Copy>(
     let local = Local::new(pair.link, pair.triangle.vertices().map(to_link)).ok_or(Unsupported)?;
 
     let before = std::mem::take(&mut manifold.points);
-    let Some(found) = local.contact_within(prediction / local.unit) else { return Ok(()) };
+    let margin = prediction / local.unit;
+    // An overlap is found first, then measured.
+    let found = local.contact_within(margin.max(0.0)).filter(|found| found.distance <= margin);
+    let Some(found) = found else { return Ok(()) };
     let rotation = pos12.rotation;
     let (mut n1, mut n2) = if link_is_first {
         (found.normal, rotation.inverse() * -found.normal)
@@ -61,14 +63,15 @@ pub(super) fn update<M, C: Default + Copy>(
     let normal = unit(normal).unwrap_or(normal);
     let is_turned = (normal - found.normal).length() > TURNED;
 
+    // Coordinates of the local problem are at most 1.
     let mut meeting =
-        Meeting::new(&local.link, local.triangle, if is_turned { normal } else { found.normal });
+        Meeting::new(&local.link, local.triangle, if is_turned { normal } else { found.normal }, 1.0);
     rim::collect(&mut meeting);
     let normal = meeting.normal;
     footing::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));
     crest::collect(&mut meeting);
     if !is_turned {
-        add_closest(&mut meeting, found.distance, found.on_link);
+        meeting.add_closest(found.distance, found.on_link);
     }
     let deepest = if is_turned { DEEPER * found.distance.min(0.0) } else { Real::NEG_INFINITY };
     let deepest = deepest - feature::SAME_POINT * meeting.size;
@@ -87,12 +90,4 @@ pub(super) fn update<M, C: Default + Copy>(
     (manifold.local_n1, manifold.local_n2) = (n1, n2);
     manifold.match_contacts(&before);
     Ok(())
-}
-
-/// Case 3.
-fn add_closest(meeting: &mut Meeting, distance: Real, on_link: Vector) {
-    let least = meeting.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
-    if least > distance + feature::SAME_POINT * meeting.size {
-        meeting.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
-    }
 }

@@ -7,20 +7,23 @@
 //! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
 //! - two links of which at most one meets the other with a flat cap, answered [here](super::link_link_manifold), in
 //!   closed form;
-//! - a link against another convex shape, and two flat caps, answered by `L`: parry clips the polygons that stand for
-//!   the link's surface. parry keeps such a manifold while it has drifted by less than 1e-3, whatever the unit; so that a
-//!   small link does not rest on a stale one, it is told each time that the shapes have changed.
+//! - a link against another convex shape, and two flat caps, answered [here](super::link_convex_manifold), along the
+//!   contact's normal with the polygons that stand for the surfaces;
+//! - a link against a ball and against what has no polygons, answered by `L`. parry keeps a manifold while it has drifted
+//!   by less than 1e-3, whatever the unit; so that a small link does not rest on a stale one, it is told each time that the
+//!   shapes have changed.
 
 use super::dispatcher::ContinuumDispatcher;
 use super::joint::Side;
 use super::link_triangle::LinkTriangle;
-use super::parts::check_scale;
+use super::parts::{check_scale, has_parts};
 use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
 use super::thin::Thin;
 use super::watched::Watched;
 use super::{
-    joint, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, robot_mesh_manifold,
+    joint, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, range,
+    robot_mesh_manifold,
 };
 use crate::Chain;
 use parry3d_f64::math::{Pose, Real};
@@ -49,10 +52,18 @@ where
         check_margin(prediction)?;
         check_scale(g1)?;
         check_scale(g2)?;
-        // parry loosens boxes by the prediction, and wants it positive.
-        let prediction = prediction.max(0.0);
-        if !robot_mesh_manifold::update(pos12, (g1, g2), prediction, manifolds, workspace)? {
-            self.update_by_parts(pos12, (g1, g2), prediction, manifolds, workspace)?;
+        // Boxes are loosened by the prediction, which parry wants positive, and by what rounding can have taken from the
+        // meeting of two that touch.
+        let has_boxes = has_parts(g1) || has_parts(g2);
+        let rounding = if has_boxes { range::rounding_of_boxes(pos12, g1, g2) } else { 0.0 };
+        let loose = prediction.max(0.0) + rounding;
+        let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
+        if !robot_mesh_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
+            let within = if is_robot { loose } else { prediction.max(0.0) };
+            self.update_by_parts(pos12, (g1, g2), within, manifolds, workspace)?;
+            if is_robot || prediction < 0.0 {
+                leave_out_beyond(prediction, manifolds);
+            }
         }
         for (shape, side) in [(g1, Side::First), (g2, Side::Second)] {
             if let Some(chain) = shape.as_shape::<Chain>() {
@@ -77,6 +88,7 @@ where
         let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
+        let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
         if let Some(pair) = LinkTriangle::of(g1, g2)? {
             return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);
         }
@@ -84,22 +96,47 @@ where
             return Ok(());
         }
         let inner = self.inner(pos12, g1, g2)?;
-        let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
-        if is_free && link_link_manifold::update(pos12, (g1, g2), prediction, manifold) {
-            return Ok(());
+        // An overlap is found first, then measured.
+        let within = prediction.max(0.0);
+        let is_link = links_of(g1).or(links_of(g2)).is_some();
+        let is_answered = is_free
+            && (link_link_manifold::update(pos12, (g1, g2), within, manifold)
+                || is_link
+                    && !is_ball(g1)
+                    && !is_ball(g2)
+                    && link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?);
+        if !is_answered {
+            if is_link {
+                manifold.mark_shapes_deformed();
+            }
+            let (constraints1, constraints2) = constraints;
+            inner.contact_manifold_convex_convex(
+                pos12,
+                g1,
+                g2,
+                constraints1,
+                constraints2,
+                within,
+                manifold,
+            )?;
         }
-        if links_of(g1).or(links_of(g2)).is_some() {
-            manifold.mark_shapes_deformed();
+        if prediction < 0.0 {
+            leave_out_beyond(prediction, std::slice::from_mut(manifold));
         }
-        inner.contact_manifold_convex_convex(
-            pos12,
-            g1,
-            g2,
-            normal_constraints1,
-            normal_constraints2,
-            prediction,
-            manifold,
-        )
+        Ok(())
+    }
+}
+
+fn is_ball(shape: &dyn Shape) -> bool {
+    shape.as_ball().is_some()
+}
+
+/// Takes the points out of the manifolds whose nearest point is beyond the prediction.
+fn leave_out_beyond<M, C>(prediction: Real, manifolds: &mut [ContactManifold<M, C>]) {
+    for manifold in manifolds {
+        if manifold.points.iter().all(|point| point.dist > prediction) {
+            manifold.points.clear();
+        }
     }
 }
 

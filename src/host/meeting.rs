@@ -1,9 +1,10 @@
 //! A link and a triangle that meet, seen along a normal from the one to the other, and their contact points so far.
 //!
 //! Every point is a pair, one of the link and one of the triangle, `dist` apart along the normal. Points of the link
-//! that coincide are one: the first.
+//! that coincide are one: the nearest, and of equals the first. (Where the triangle is parallel to the normal its near
+//! and its far edge lie over the same point of the link.)
 
-use super::feature::SAME_POINT;
+use super::feature::{self, SAME_POINT};
 use super::link_triangle::face_normal;
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
@@ -12,6 +13,9 @@ use parry3d_f64::shape::PackedFeatureId;
 /// How far outside a triangle a point may be to count as above it, in barycentric coordinates: enough for
 /// rounding, so that no point is lost between two triangles.
 const ON_EDGE: Real = 1e-9;
+
+/// What rounding can do to the distance of a pair, as a share of the largest coordinate.
+pub(super) const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A point of the link, the distance of the triangle's point from it along the normal, and the features that
 /// they belong to.
@@ -31,13 +35,16 @@ pub(super) struct Meeting<'a> {
     face: Option<Vector>,
     /// Length and radius of the link.
     pub size: Real,
+    /// Distances that differ by no more are equal.
+    pub rounding: Real,
     pub points: Vec<Point>,
 }
 
 impl<'a> Meeting<'a> {
-    pub fn new(link: &'a ModifiedCylinder, triangle: [Vector; 3], normal: Vector) -> Self {
-        let size = link.length() + link.radius();
-        Self { link, triangle, normal, face: face_normal(triangle), size, points: Vec::new() }
+    /// For coordinates and a radius that are at most `extent`.
+    pub fn new(link: &'a ModifiedCylinder, triangle: [Vector; 3], normal: Vector, extent: Real) -> Self {
+        let (size, rounding) = (link.length() + link.radius(), ROUNDING * extent);
+        Self { link, triangle, normal, face: face_normal(triangle), size, rounding, points: Vec::new() }
     }
 
     /// Adds a point of the link if the triangle's inside lies along the normal from it.
@@ -61,10 +68,26 @@ impl<'a> Meeting<'a> {
         of_link: PackedFeatureId,
         of_triangle: PackedFeatureId,
     ) {
-        let apart = SAME_POINT * self.size;
-        let is_new = |point: &Point| (point.on_link - on_link).length() > apart;
-        if dist.is_finite() && on_link.is_finite() && self.points.iter().all(is_new) {
-            self.points.push(Point { on_link, dist, of_link, of_triangle });
+        if !(dist.is_finite() && on_link.is_finite()) {
+            return;
+        }
+        let (apart, point) = (SAME_POINT * self.size, Point { on_link, dist, of_link, of_triangle });
+        match self.points.iter_mut().find(|point| (point.on_link - on_link).length() <= apart) {
+            Some(same) if dist < same.dist - self.rounding => *same = point,
+            Some(_) => {}
+            None => self.points.push(point),
+        }
+    }
+
+    /// Adds the closest points, unless one of the others is as close. Then no point is closer than they are, which one may
+    /// seem to be that lies beside the triangle's edge.
+    pub fn add_closest(&mut self, distance: Real, on_link: Vector) {
+        let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
+        if least > distance + self.rounding {
+            self.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
+        }
+        for point in &mut self.points {
+            point.dist = point.dist.max(distance);
         }
     }
 

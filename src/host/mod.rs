@@ -4,6 +4,8 @@
 mod axial;
 mod chain;
 mod closing;
+mod composite;
+mod convex;
 mod crest;
 mod dispatcher;
 mod elements;
@@ -11,7 +13,9 @@ mod feature;
 mod foot;
 mod footing;
 mod joint;
+mod link_ball;
 mod link_cast;
+mod link_convex_manifold;
 mod link_halfspace_manifold;
 mod link_link;
 mod link_link_manifold;

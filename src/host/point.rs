@@ -23,16 +23,16 @@ use parry3d_f64::query::{PointProjection, PointQuery};
 use parry3d_f64::shape::FeatureId;
 
 /// The point of a link's surface that is closest to a query point.
-struct Nearest {
+pub(super) struct Nearest {
     /// Distance to the surface, negative inside.
-    signed_distance: Real,
-    is_inside: bool,
-    point: Vector,
-    feature: FeatureId,
+    pub signed_distance: Real,
+    pub is_inside: bool,
+    pub point: Vector,
+    pub feature: FeatureId,
 }
 
 /// The closest point of the surface; nothing when `point` is not finite.
-fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
+pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
     let (frame, from_start) = AxialFrame::around(link, point)?;
     let from_end = from_start - frame.span;
     let z = from_start.dot(frame.axis);

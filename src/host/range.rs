@@ -39,6 +39,14 @@ pub(super) fn largest(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
     corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element()
 }
 
+/// What rounding can have taken from the meeting of the boxes of two shapes and of their parts; 0 for shapes without
+/// bounds. A box's corner is a sum of four products, or a vertex that is moved: a few units in the last place of the
+/// largest coordinate each.
+pub(super) fn rounding_of_boxes(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
+    let largest = largest(pos12, g1, g2).max(pos12.translation.abs().max_element());
+    if largest <= COORDINATE_LIMIT { 16.0 * Real::EPSILON * largest } else { 0.0 }
+}
+
 /// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
 /// of lengths leave the range of f64, where the smaller shape is lost in the rounding of what is large, and where a
 /// number is not finite.

@@ -16,14 +16,14 @@ use parry3d_f64::shape::Shape;
 use std::collections::HashMap;
 
 /// Brings the manifolds up to date, if the shapes are a link or a chain and a mesh, in either order. Returns
-/// whether they are.
+/// whether they are. Boxes are loosened by `loose`: by the prediction, if it is positive, and by rounding.
 ///
 /// # Errors
 /// [`Unsupported`] for a triangle within reach that is not finite or out of range. There are no manifolds then.
 pub(super) fn update<M, C>(
     pos12: &Pose,
     (g1, g2): (&dyn Shape, &dyn Shape),
-    prediction: Real,
+    (prediction, loose): (Real, Real),
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
 ) -> Result<bool, Unsupported>
@@ -43,7 +43,7 @@ where
     let name = |manifold: &ContactManifold<M, C>| (manifold.subshape1, manifold.subshape2);
     let mut before: HashMap<_, _> = manifolds.drain(..).map(|manifold| (name(&manifold), manifold)).collect();
     for (index, link) in links.iter().enumerate() {
-        let bounds = link.aabb(&robot_pose).loosened(prediction);
+        let bounds = link.aabb(&robot_pose).loosened(loose);
         for id in mesh.bvh().intersect_aabb(&bounds) {
             let triangle = mesh.triangle(id);
             let normals = mesh.triangle_normal_constraints(id);

@@ -4,33 +4,56 @@
 //! build tetrahedra from the difference of two shapes. With these the tetrahedra have no volume, and parry may panic. To
 //! this crate they are triangles, most of them without an area, and triangles are answered exactly. A thickness of up to
 //! [`LEAST_SHARE`] of the shape's size is left out, and the answers are off by that much.
+//!
+//! A capsule of parry's is a link with two round caps, and answered as one.
 
 use super::range::LEAST_SHARE;
 use super::robot_pair::links_of;
+use crate::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};
 
-/// What stands for the thin shape of a pair whose other shape is a robot.
+/// What stands for the other shape of a pair with a robot.
 pub(super) struct Thin {
-    triangles: [Option<Triangle>; 2],
+    stand_ins: [Option<StandIn>; 2],
+}
+
+enum StandIn {
+    Triangle(Triangle),
+    Link(ModifiedCylinder),
+}
+
+impl StandIn {
+    fn of(shape: &dyn Shape) -> Option<Self> {
+        if let Some(triangle) = triangle_of(shape) {
+            return Some(Self::Triangle(triangle));
+        }
+        let capsule = shape.as_capsule()?;
+        ModifiedCylinder::capsule(capsule.segment.a, capsule.segment.b, capsule.radius).ok().map(Self::Link)
+    }
+
+    fn shape(&self) -> &dyn Shape {
+        match self {
+            Self::Triangle(triangle) => triangle,
+            Self::Link(link) => link,
+        }
+    }
 }
 
 impl Thin {
     pub fn of(g1: &dyn Shape, g2: &dyn Shape) -> Self {
-        let triangles = match [links_of(g1), links_of(g2)] {
-            [Some(_), None] => [None, triangle_of(g2)],
-            [None, Some(_)] => [triangle_of(g1), None],
-            _ => [None; 2],
+        let stand_ins = match [links_of(g1), links_of(g2)] {
+            [Some(_), None] => [None, StandIn::of(g2)],
+            [None, Some(_)] => [StandIn::of(g1), None],
+            _ => [None, None],
         };
-        Self { triangles }
+        Self { stand_ins }
     }
 
-    /// The pair, with a triangle in the place of the thin shape, if there is one.
+    /// The pair, with a triangle or a link in the place of the other shape, if it is one.
     pub fn pair<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> [&'a dyn Shape; 2] {
-        let [first, second] = &self.triangles;
-        let or = |triangle: &'a Option<Triangle>, shape| {
-            triangle.as_ref().map_or(shape, |thin| thin as &dyn Shape)
-        };
+        let [first, second] = &self.stand_ins;
+        let or = |stand_in: &'a Option<StandIn>, shape| stand_in.as_ref().map_or(shape, StandIn::shape);
         [or(first, g1), or(second, g2)]
     }
 }

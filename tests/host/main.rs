@@ -16,6 +16,7 @@ mod mass;
 mod nonlinear;
 mod overlap;
 mod pairs;
+mod placements;
 mod point_ray;
 mod points;
 mod rays;

@@ -1,0 +1,206 @@
+//! A link and another convex shape, by iterations of the inner dispatcher, and what is done where these fail.
+//!
+//! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of 1e-2 they may say that
+//! there is no contact however far one looks, or that GJK has not converged. For any unit vector `n` the gap between the
+//! two shapes' supports along `n` is at most their distance, and where it is below 0 a translation by it along `n` separates
+//! them. So all that is missing is a good `n`, and the link without its outermost layer gives one: the layer of depth
+//! `t` leaves a link again, shorter by `t` at each flat end and thinner by `t`, which the other shape does not touch. For
+//! all that it meets but a rim aslant, the nearest point of what is left has the very normal of the link's own surface, and
+//! at a rim one that is off by about `t`, which costs the gap about its square. The layers are tried from thin to thick; what
+//! still meets the innermost is parted along the best of a few directions that both shapes have.
+
+use super::axial::{perpendicular, unit};
+use super::range::largest;
+use crate::{Cap, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{ClosestPoints, Contact, QueryDispatcher, Unsupported};
+use parry3d_f64::shape::{Shape, SupportMap};
+
+/// The layers that are taken off, as shares of the largest that there is.
+const LAYERS: [Real; 5] = [1e-5, 1e-3, 0.03, 0.3, 1.0];
+/// What rounding leaves of the largest coordinate.
+const ROUNDING: Real = 64.0 * Real::EPSILON;
+
+/// A link and another convex shape, in either order.
+pub(super) struct ConvexPair<'a, L> {
+    inner: &'a L,
+    pos12: &'a Pose,
+    shapes: [&'a dyn Shape; 2],
+    supports: [&'a dyn SupportMap; 2],
+    link: &'a ModifiedCylinder,
+    link_is_first: bool,
+}
+
+impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
+    /// The pair, if the shapes are one. `inner` answers for it first.
+    pub fn of(inner: &'a L, pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
+        let (link, link_is_first) =
+            g1.as_shape().map(|link| (link, true)).or(g2.as_shape().map(|link| (link, false)))?;
+        let supports = [g1.as_support_map()?, g2.as_support_map()?];
+        Some(Self { inner, pos12, shapes: [g1, g2], supports, link, link_is_first })
+    }
+
+    /// # Errors
+    /// [`Unsupported`] for what the inner dispatcher refuses.
+    pub fn distance(&self) -> Result<Real, Unsupported> {
+        let [g1, g2] = self.shapes;
+        let distance = self.inner.distance(self.pos12, g1, g2)?.distance;
+        // parry's own says so too where it has not converged.
+        if distance > 0.0 {
+            return Ok(distance);
+        }
+        Ok(match self.closest_points(Real::MAX)? {
+            ClosestPoints::WithinMargin(point1, point2) => (point1 - self.pos12 * point2).length(),
+            _ => 0.0,
+        })
+    }
+
+    /// # Errors
+    /// [`Unsupported`] for what the inner dispatcher refuses.
+    pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
+        let [g1, g2] = self.shapes;
+        let within = max_dist.max(0.0);
+        let found = self.inner.closest_points(self.pos12, g1, g2, within)?;
+        match found {
+            ClosestPoints::WithinMargin(point1, point2) => {
+                let is_beyond = (point1 - self.pos12 * point2).length() > max_dist;
+                Ok(if is_beyond { ClosestPoints::Disjoint } else { found })
+            }
+            ClosestPoints::Disjoint if !self.are_apart_by(within) => {
+                let Some(contact) = self.contact_of_layers()? else { return Ok(found) };
+                Ok(if contact.dist <= 0.0 {
+                    ClosestPoints::Intersecting
+                } else if contact.dist <= max_dist {
+                    ClosestPoints::WithinMargin(contact.point1, contact.point2)
+                } else {
+                    ClosestPoints::Disjoint
+                })
+            }
+            _ => Ok(found),
+        }
+    }
+
+    /// # Errors
+    /// [`Unsupported`] for what the inner dispatcher refuses.
+    pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
+        let [g1, g2] = self.shapes;
+        // An overlap is found first, then measured.
+        let within = prediction.max(0.0);
+        let mut found = self.inner.contact(self.pos12, g1, g2, within)?;
+        if found.is_none() && !self.are_apart_by(within) {
+            found = self.contact_of_closest()?;
+        }
+        Ok(found.filter(|contact| contact.dist <= prediction))
+    }
+
+    /// The contact by the closest points, if these tell a direction, or by the layers.
+    fn contact_of_closest(&self) -> Result<Option<Contact>, Unsupported> {
+        let [g1, g2] = self.shapes;
+        if let ClosestPoints::WithinMargin(point1, point2) =
+            self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?
+            && let Some(normal) = unit(self.pos12 * point2 - point1)
+        {
+            let dist = (self.pos12 * point2 - point1).dot(normal);
+            // Rounding turns the way between points that are close to each other.
+            if self.gap(normal) > 0.5 * dist {
+                let normal2 = self.pos12.rotation.inverse() * -normal;
+                return Ok(Some(Contact::new(point1, point2, normal, normal2, dist)));
+            }
+        }
+        self.contact_of_layers()
+    }
+
+    /// The contact along the normal that the link without a layer tells.
+    fn contact_of_layers(&self) -> Result<Option<Contact>, Unsupported> {
+        let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes()) else {
+            return Ok(None);
+        };
+        // On the planes between which the gap is.
+        let [begin, end] = [self.support(0, normal), self.support(1, -normal)].map(|point| point.dot(normal));
+        let onto = |height: Real| near + normal * (height - near.dot(normal));
+        let [point1, point2] = [onto(begin), self.pos12.inverse_transform_point(onto(end))];
+        let normal2 = self.pos12.rotation.inverse() * -normal;
+        Ok(Some(Contact::new(point1, point2, normal, normal2, gap)))
+    }
+
+    /// The widest gap along a way from the link without a layer to the other shape, and the point of the link's core.
+    fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
+        let mut best: Option<(Real, Vector, Vector)> = None;
+        let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
+        for share in LAYERS {
+            let (core, depth) = self.without_layer(share);
+            let [first, second]: [&dyn Shape; 2] =
+                if self.link_is_first { [&core, self.shapes[1]] } else { [self.shapes[0], &core] };
+            let points = self.inner.closest_points(self.pos12, first, second, Real::MAX)?;
+            let ClosestPoints::WithinMargin(point1, point2) = points else { continue };
+            let ends = [point1, self.pos12 * point2];
+            let Some(normal) = unit(ends[1] - ends[0]) else { continue };
+            let gap = self.gap(normal);
+            if best.is_none_or(|(most, ..)| gap > most) {
+                best = Some((gap, normal, ends[usize::from(!self.link_is_first)]));
+            }
+            // Thicker layers tell no more.
+            if (ends[1] - ends[0]).dot(normal) > 0.5 * depth && depth > rounding {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The widest gap along the way between the shapes' boxes, the link's axis and across it, and the coordinate axes.
+    fn widest_of_axes(&self) -> Option<(Real, Vector, Vector)> {
+        let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
+        let axis = self.placed(self.link.axis());
+        let across = perpendicular(unit(axis).unwrap_or(Vector::X));
+        let between = boxes[1].center() - boxes[0].center();
+        let centre = 0.5 * self.link.start() + 0.5 * self.link.end();
+        let middle = if self.link_is_first { centre } else { self.pos12 * centre };
+        let ways = [between, axis, across, axis.cross(across), axis.cross(axis.cross(between))];
+        let ways = ways.into_iter().chain(Vector::AXES).filter_map(unit).flat_map(|normal| [normal, -normal]);
+        let widest = ways.map(|normal| (self.gap(normal), normal)).max_by(|a, b| a.0.total_cmp(&b.0));
+        widest.map(|(gap, normal)| (gap, normal, middle))
+    }
+
+    /// The link without its outermost layer, and how thick that is: such a share of what there is.
+    fn without_layer(&self, share: Real) -> (ModifiedCylinder, Real) {
+        let link = self.link;
+        let flats = link.caps().into_iter().filter(|&cap| cap == Cap::Flat).count() as Real;
+        let most = if flats > 0.0 { link.radius().min(0.5 * link.length()) } else { link.radius() };
+        let depth = share * most;
+        let [back, front] = link.caps().map(|cap| if cap == Cap::Flat { depth } else { 0.0 });
+        let (start, end) = (link.start() + link.axis() * back, link.end() - link.axis() * front);
+        // What is no link any more is its axis' middle.
+        let core = ModifiedCylinder::new(start, end, (link.radius() - depth).max(0.0), link.caps());
+        let middle = 0.5 * start + 0.5 * end;
+        let core = core.or_else(|_| ModifiedCylinder::capsule(middle, middle, 0.0));
+        (core.unwrap_or(*link), depth)
+    }
+
+    /// Whether some simple direction proves that the two are further apart.
+    fn are_apart_by(&self, margin: Real) -> bool {
+        let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
+        let between = boxes[1].center() - boxes[0].center();
+        let axis = unit(self.placed(self.link.axis()));
+        let radial = axis.and_then(|axis| unit(between - axis * axis.dot(between)));
+        [unit(between), radial].into_iter().flatten().any(|normal| self.gap(normal) > margin)
+    }
+
+    /// How far the second shape begins beyond the end of the first along a unit vector.
+    fn gap(&self, normal: Vector) -> Real {
+        (self.support(1, -normal) - self.support(0, normal)).dot(normal)
+    }
+
+    /// The point of one of the shapes that is furthest along a unit vector, in the first's frame.
+    fn support(&self, which: usize, normal: Vector) -> Vector {
+        if which == 0 {
+            self.supports[0].local_support_point_toward(normal)
+        } else {
+            self.supports[1].support_point_toward(self.pos12, normal)
+        }
+    }
+
+    /// A direction of the link's in the first's frame.
+    fn placed(&self, direction: Vector) -> Vector {
+        if self.link_is_first { direction } else { self.pos12.rotation * direction }
+    }
+}

@@ -1,0 +1,57 @@
+//! The contact manifold of a link and another convex shape that has no closed form: parry's clipping of the polygons that
+//! stand for the two surfaces, along the normal of the contact that the dispatcher names for the pair.
+//!
+//! The contact's own points are among the manifold's, and none is deeper: the polygons only stand for what is round. (parry's
+//! routine asks GJK and EPA anew, from where the last step left them, and need not come to the same contact.)
+
+use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::query::{ContactManifold, QueryDispatcher, TrackedContact, Unsupported};
+use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, Shape};
+
+/// Brings the manifold up to date, if both shapes have polygons to stand for them. Returns whether they have.
+///
+/// # Errors
+/// [`Unsupported`] for what `dispatcher` refuses.
+pub(super) fn update<M, C: Default + Copy>(
+    dispatcher: &impl QueryDispatcher,
+    pos12: &Pose,
+    (g1, g2): (&dyn Shape, &dyn Shape),
+    prediction: Real,
+    manifold: &mut ContactManifold<M, C>,
+) -> Result<bool, Unsupported> {
+    let polygons = (g1.as_polygonal_feature_map(), g2.as_polygonal_feature_map());
+    let (Some((polygons1, border1)), Some((polygons2, border2))) = polygons else { return Ok(false) };
+    let before = std::mem::take(&mut manifold.points);
+    let Some(contact) = dispatcher.contact(pos12, g1, g2, prediction)? else { return Ok(true) };
+    let (normal1, normal2) = (contact.normal1, contact.normal2);
+    let (mut feature1, mut feature2) = (PolygonalFeature::default(), PolygonalFeature::default());
+    polygons1.local_support_feature_toward(normal1, contact.point1 - normal1 * border1, &mut feature1);
+    polygons2.local_support_feature_toward(normal2, contact.point2 - normal2 * border2, &mut feature2);
+    let features = (&feature1, &feature2);
+    PolygonalFeature::contacts(
+        pos12,
+        &pos12.inverse(),
+        normal1,
+        normal2,
+        features.0,
+        features.1,
+        manifold,
+        false,
+    );
+    for point in &mut manifold.points {
+        point.local_p1 += normal1 * border1;
+        point.local_p2 += normal2 * border2;
+        point.dist = (point.dist - border1 - border2).max(contact.dist);
+    }
+    let names = [PackedFeatureId::UNKNOWN; 2];
+    manifold.points.push(TrackedContact::new(
+        contact.point1,
+        contact.point2,
+        names[0],
+        names[1],
+        contact.dist,
+    ));
+    (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
+    manifold.match_contacts(&before);
+    Ok(true)
+}
