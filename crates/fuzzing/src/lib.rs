@@ -2,18 +2,24 @@
 //! through `fuzz/fuzz_targets`, the test suite through `tests/proximity/fuzz.rs`.
 
 mod chain_mesh;
+mod coherence;
 mod constructors;
 mod dispatcher;
 mod link_triangle;
 mod mesh_file;
+mod motions;
 mod root_finders;
 mod source;
+mod touching;
 mod tube;
 
 pub use chain_mesh::chain_mesh;
+pub use coherence::coherence;
 pub use constructors::constructors;
 pub use dispatcher::dispatcher;
 pub use link_triangle::link_triangle;
 pub use mesh_file::mesh_file;
+pub use motions::motions;
 pub use root_finders::root_finders;
+pub use touching::touching;
 pub use tube::tube;

@@ -1,0 +1,161 @@
+//! One engine in a long loop beside a fresh one for each question: what was asked before changes no answer, nor do vertices
+//! that moved, and every margin means the same everywhere.
+
+use crate::source::Source;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Decision, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::{Chain, Tube};
+
+/// A mesh that moves, two robots of which one is asked for, and its pose.
+struct Scene {
+    vertices: Vec<Vector>,
+    indices: Vec<[u32; 3]>,
+    robots: [Chain; 2],
+    robot: usize,
+    pose: Pose,
+}
+
+impl Scene {
+    fn mesh(&self) -> Option<TriMesh> {
+        TriMesh::new(self.vertices.clone(), self.indices.clone()).ok()
+    }
+
+    fn problem(&self) -> String {
+        let robot = &self.robots[self.robot];
+        format!("\n{robot:?}\n{:?}\n{:?} {:?}", self.pose, self.vertices, self.indices)
+    }
+}
+
+/// A sequence of changes, mostly tiny, and of questions.
+pub fn coherence(bytes: &[u8]) {
+    let mut source = Source::new(bytes);
+    let (vertices, indices) = source.wall();
+    let (Some(first), Some(second)) = (source.chain(), source.chain()) else { return };
+    let mut scene = Scene { vertices, indices, robots: [first, second], robot: 0, pose: source.pose() };
+    let Some(mut search) = scene.mesh().and_then(|mesh| BvhSearch::new(&mesh).ok()) else { return };
+    for _ in 0..2 + source.below(10) {
+        change(&mut source, &mut scene, &mut search);
+        let Some(mesh) = scene.mesh() else { return };
+        let Ok(fresh) = BvhSearch::new(&mesh) else { return };
+        ask(&mut source, &scene, &mut search, fresh, &mesh);
+    }
+}
+
+fn change(source: &mut Source, scene: &mut Scene, search: &mut BvhSearch) {
+    match source.below(8) {
+        0..3 => scene.pose = source.nudged(scene.pose),
+        3 => {
+            let before = scene.vertices.clone();
+            let way = source.point();
+            match source.below(3) {
+                0 => scene.vertices.iter_mut().for_each(|vertex| *vertex += way),
+                1 => scene.vertices.iter_mut().step_by(3).for_each(|vertex| vertex.z *= 0.5),
+                _ => scene.vertices[0] = way,
+            }
+            // What is refused changes nothing.
+            if search.set_vertices(&scene.vertices).is_err() {
+                scene.vertices = before;
+            }
+        }
+        4 => scene.robot = 1 - scene.robot,
+        5 => *search = search.clone(),
+        6 => search.forget(),
+        // The same again.
+        _ => {}
+    }
+}
+
+/// A question, and what answers it: both engines say the same.
+fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: BvhSearch, mesh: &TriMesh) {
+    let (robot, pose) = (&scene.robots[scene.robot], &scene.pose);
+    let problem = || scene.problem();
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let kept = search.per_link(robot, pose, &mut ours);
+    let asked = fresh.per_link(robot, pose, &mut theirs);
+    assert_eq!((kept.is_ok(), &ours), (asked.is_ok(), &theirs), "per link{}", problem());
+    if kept.is_err() {
+        assert!(search.minimum(robot, pose).is_err(), "{}", problem());
+        return;
+    }
+    let nearer = |least: LinkProximity, link: &LinkProximity| {
+        let (one, other) = ((least.distance, least.triangle), (link.distance, link.triangle));
+        if other < one { *link } else { least }
+    };
+    let least = ours.iter().copied().reduce(|least, link| nearer(least, &link)).expect("a robot has links");
+    assert_eq!(search.minimum(robot, pose).as_ref(), Ok(&least), "minimum{}", problem());
+    let mut exhaustive = Exhaustive::<f32>::new(mesh).expect("a mesh as before");
+    assert_eq!(exhaustive.minimum(robot, pose).as_ref(), Ok(&least), "exhaustive{}", problem());
+
+    let distance = least.distance;
+    let margin = match source.below(12) {
+        0 => f64::INFINITY,
+        1 => f64::MAX,
+        2 => -0.0,
+        3 => -1.0,
+        4 => f64::NAN,
+        5 => distance,
+        6 => distance.next_up(),
+        7 => distance.next_down(),
+        8 => 2.0 * distance,
+        _ => source.number(),
+    };
+    for _ in 0..2 {
+        match search.clears(robot, pose, margin) {
+            Ok(clears) => {
+                assert!(margin >= 0.0 && clears == (distance > margin), "{margin} {distance}{}", problem())
+            }
+            Err(_) => assert!(margin.is_nan() || margin < 0.0, "clears {margin}{}", problem()),
+        }
+        match search.minimum_within(robot, pose, margin) {
+            Ok(Some(found)) => {
+                assert!(found == least && distance <= margin, "{margin} {found:?}{}", problem())
+            }
+            Ok(None) => assert!(distance > margin, "nothing within {margin}, but {distance}{}", problem()),
+            Err(_) => assert!(margin.is_nan() || margin < 0.0, "minimum within {margin}{}", problem()),
+        }
+    }
+    let (mut contacts, mut others) = (Vec::new(), Vec::new());
+    let kept = search.within(robot, pose, margin, &mut contacts);
+    let asked = fresh.within(robot, pose, margin, &mut others);
+    assert_eq!((kept.is_ok(), &contacts), (asked.is_ok(), &others), "within {margin}{}", problem());
+    assert_eq!(kept.is_ok(), margin >= 0.0, "within {margin}{}", problem());
+    assert!(contacts.iter().all(|contact| contact.distance <= margin), "beyond {margin}{}", problem());
+    if distance <= margin && margin >= 0.0 {
+        let nearest = contacts.iter().map(|contact| contact.distance).fold(f64::INFINITY, f64::min);
+        assert_eq!(nearest, distance, "within {margin}{}", problem());
+    }
+
+    let places: Vec<_> = (0..source.below(4)).map(|_| (robot, source.nudged(*pose))).collect();
+    let mut batch = Vec::new();
+    if search.minimum_batch(&places, &mut batch).is_ok() {
+        for ((robot, place), answer) in places.iter().zip(&batch) {
+            assert_eq!(fresh.minimum(robot, place).as_ref(), Ok(answer), "{place:?}{}", problem());
+        }
+    }
+    tube(search, scene, distance, margin);
+}
+
+/// The tube of a chain where no pose rounds: its bounds hold the chain's distance, each time.
+fn tube(search: &mut BvhSearch, scene: &Scene, distance: f64, margin: f64) {
+    let tube = Tube::from(&scene.robots[scene.robot]);
+    if scene.pose != Pose::IDENTITY {
+        return;
+    }
+    let tolerance = 1e-3 * tube.length();
+    for _ in 0..2 {
+        if let Ok(found) = search.clearance(&tube, &scene.pose, tolerance) {
+            let holds = found.lower <= distance && distance <= found.upper;
+            assert!(holds, "{found:?} for {distance}{}", scene.problem());
+        }
+        match search.tube_clears(&tube, &scene.pose, margin, tolerance) {
+            Ok(Decision::Clear) => {
+                assert!(distance > margin, "clear of {margin} at {distance}{}", scene.problem())
+            }
+            Ok(Decision::Touches) => {
+                assert!(distance <= margin, "within {margin} at {distance}{}", scene.problem())
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Motions beside the shapes that they pass: tiny turns and long ways, from starts that touch. What is proven clear is clear
+//! at every time that is looked at.
+
+use crate::source::Source;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, FirstContact, MotionAnswer, Proximity};
+use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
+
+/// At so many times a motion is compared with its shapes.
+const TIMES: u32 = 24;
+
+/// A chain that is moved as a whole, or whose points move along lines.
+pub fn motions(bytes: &[u8]) {
+    let mut source = Source::new(bytes);
+    let (vertices, indices) = source.wall();
+    let Ok(mesh) = TriMesh::new(vertices, indices) else { return };
+    let Ok(search) = BvhSearch::new(&mesh) else { return };
+    let (points, radii) = source.centreline();
+    let Ok(chain) = Chain::from_centreline(&points, &radii) else { return };
+    if source.flag() {
+        let from = source.pose();
+        let to = source.nudged(from);
+        let Ok(motion) = RigidMotion::new(Tube::from(&chain), [from, to]) else { return };
+        check(&mut source, search, &mesh, &motion, |t| {
+            let pose = motion.shape(t, &mut Tube::from(&chain)).ok()?;
+            Some((chain.clone(), pose))
+        });
+    } else {
+        let size = 2.0_f64.powi(-(source.below(40) as i32));
+        let mut moved = |point: Vector| point + source.way() * size;
+        let to: Vec<_> = points.iter().map(|&point| moved(point)).collect();
+        let Ok(motion) = LinearMotion::chain(&points, &to, &radii) else { return };
+        check(&mut source, search, &mesh, &motion, |t| {
+            let between: Vec<_> = points.iter().zip(&to).map(|(from, to)| from.lerp(*to, t)).collect();
+            Chain::from_centreline(&between, &radii).ok().map(|chain| (chain, Pose::IDENTITY))
+        });
+    }
+}
+
+/// The shape at a time, as a chain.
+type Shape<'a> = &'a dyn Fn(f64) -> Option<(Chain, Pose)>;
+
+fn check<M: Motion>(
+    source: &mut Source,
+    mut search: BvhSearch,
+    mesh: &TriMesh,
+    motion: &M,
+    shape: impl Fn(f64) -> Option<(Chain, Pose)>,
+) {
+    let shape: Shape<'_> = &shape;
+    let Ok(mut exact) = BvhSearch::new(mesh) else { return };
+    let mut distance = |t: f64| {
+        let (chain, pose) = shape(t)?;
+        exact.minimum(&chain, &pose).ok().map(|found| found.distance)
+    };
+    let Some(start) = distance(0.0) else { return };
+    let (vertices, indices) = (mesh.vertices(), mesh.indices());
+    let ends = [shape(0.0), shape(1.0)];
+    let problem = || format!("\n{ends:?}\n{vertices:?} {indices:?}");
+    let length = shape(0.0).map_or(1.0, |(chain, _)| Tube::from(&chain).length());
+    // Poses are rounded on the way.
+    let largest = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(length, f64::max);
+    let slack = 1e-12 * largest;
+    assert!(verify_motion(motion, 7).is_ok(), "its own speed is refused{}", problem());
+    let margin = match source.below(6) {
+        0 => 0.0,
+        1 => start,
+        2 => start.next_down().max(0.0),
+        3 => 0.999 * start,
+        4 => f64::INFINITY,
+        _ => source.number().abs(),
+    };
+    let resolution = length * [1e-2, 1e-3, 1e-5][source.below(3)];
+    let answer = search.clears_motion(motion, margin, resolution);
+    let first = search.time_of_contact(motion, margin, resolution);
+    assert_eq!(search.clears_motion(motion, margin, resolution), answer, "asked again{}", problem());
+    assert_eq!(search.time_of_contact(motion, margin, resolution), first, "asked again{}", problem());
+    // Until when it is said to be clear.
+    let clear_until = [
+        match answer {
+            Ok(MotionAnswer::Clear) => Some(2.0),
+            Ok(MotionAnswer::Contact { t, upper, .. }) => {
+                assert!((0.0..=1.0).contains(&t) && upper <= margin, "{answer:?} {margin}{}", problem());
+                let there = distance(t);
+                assert!(
+                    there.is_none_or(|there| there <= upper + slack),
+                    "{there:?} {answer:?}{}",
+                    problem()
+                );
+                None
+            }
+            Ok(MotionAnswer::Undecided { interval, .. }) => Some(interval[0]),
+            _ => None,
+        },
+        match first {
+            Ok(FirstContact::Never) => Some(2.0),
+            Ok(FirstContact::Within { clear_until, t, upper, .. }) => {
+                assert!(clear_until <= t && upper <= margin, "{first:?} {margin}{}", problem());
+                Some(clear_until)
+            }
+            Ok(FirstContact::Undecided { interval, .. }) => Some(interval[0]),
+            _ => None,
+        },
+    ];
+    for k in 0..=TIMES {
+        let t = f64::from(k) / f64::from(TIMES);
+        let Some(there) = distance(t) else { continue };
+        for clear_until in clear_until.into_iter().flatten().filter(|&until| t < until) {
+            let is_clear = there > margin - slack;
+            assert!(is_clear, "{there} at {t}, clear of {margin} until {clear_until}{}", problem());
+        }
+    }
+    let contradict = (matches!(answer, Ok(MotionAnswer::Clear))
+        && matches!(first, Ok(FirstContact::Within { .. })))
+        || (matches!(answer, Ok(MotionAnswer::Contact { .. })) && first == Ok(FirstContact::Never));
+    assert!(!contradict, "{answer:?} {first:?}{}", problem());
+}
