@@ -11,7 +11,7 @@ use super::{GpuError, Precision};
 use crate::Chain;
 use crate::proximity::{
     Contact, DeviceFailure, HasMesh, LinkProximity, Mesh, MeshError, PlacedLink, PlacedRobot, Proximity,
-    ProximityError, SearchFrame, check_margin, contacts_by_all_triangles, pairs,
+    ProximityError, SearchFrame, check_bound, check_margin, contacts_by_all_triangles, pairs,
 };
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -205,7 +205,10 @@ impl Proximity for GpuExhaustive {
         pose: &Pose,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_margin(bound)?;
+        check_bound(bound)?;
+        if bound < 0.0 {
+            return PlacedRobot::new(robot, pose).map(|_| None);
+        }
         let least = self.minimum(robot, pose)?;
         Ok((least.distance <= bound).then_some(least))
     }

@@ -6,12 +6,18 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A margin that can be kept.
 pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
-    if margin.is_nan() || margin < 0.0 { Err(ProximityError::BadMargin { margin }) } else { Ok(()) }
+    check_not_negative("margin", margin)
 }
 
-/// A tolerance or a resolution.
-pub(super) fn check_tolerance(tolerance: Real) -> Result<(), ProximityError> {
-    if tolerance >= 0.0 { Ok(()) } else { Err(ProximityError::BadTolerance { tolerance }) }
+/// A margin, a tolerance or a resolution, as the function that was called names it.
+pub(super) fn check_not_negative(parameter: &'static str, value: Real) -> Result<(), ProximityError> {
+    // Written so that NaN is an error.
+    if value >= 0.0 { Ok(()) } else { Err(ProximityError::Negative { parameter, value }) }
+}
+
+/// A bound, which asks for nothing where it is below zero.
+pub(crate) fn check_bound(bound: Real) -> Result<(), ProximityError> {
+    if bound.is_nan() { Err(ProximityError::NotANumber { parameter: "bound" }) } else { Ok(()) }
 }
 
 /// A pose that keeps every link within range. `ends` are base and tip in the mesh's frame.

@@ -65,8 +65,11 @@ pub trait Proximity: HasMesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
+    /// A bound below zero asks for nothing: in the example above the room is below zero where a margin is violated, and
+    /// what must keep less away than that cannot be tighter.
+    ///
     /// # Errors
-    /// The bound is negative or NaN, the pose is not finite, or it moves a link out of range.
+    /// The bound is NaN, the pose is not finite, or it moves a link out of range.
     fn minimum_within(
         &mut self,
         robot: &Chain,

@@ -9,7 +9,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum MeshError {
     /// A vertex has a coordinate that is NaN or infinite.
-    #[error("vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair the mesh")]
+    #[error("vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices")]
     NotFinite {
         /// The vertex's position in the mesh.
         vertex: usize,
@@ -18,7 +18,7 @@ pub enum MeshError {
     },
     /// A vertex lies so far out that squares of coordinates could overflow.
     #[error(
-        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit"
+        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit for its vertices"
     )]
     OutOfRange {
         /// The vertex's position in the mesh.
@@ -74,24 +74,28 @@ pub enum ProximityError {
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// A margin must be a number that is at least 0.
-    #[error("the margin is {margin}; it must be at least 0")]
-    BadMargin {
-        /// The offending margin.
-        margin: Real,
+    /// A margin, a tolerance or a resolution must be a number that is at least 0.
+    #[error("`{parameter}` is {value}; it must be at least 0")]
+    Negative {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// The offending number.
+        value: Real,
     },
-    /// A tolerance or a resolution must be a number that is at least 0.
-    #[error("the tolerance is {tolerance}; it must be at least 0")]
-    BadTolerance {
-        /// The offending tolerance.
-        tolerance: Real,
+    /// A bound must be a number, of either sign.
+    #[error("`{parameter}` is NaN; it must be a number")]
+    NotANumber {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
     },
     /// The bounds of a tube cannot come as close as was asked for.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \
-         a larger tolerance"
+         a larger {parameter}"
     )]
     ToleranceTooFine {
+        /// The parameter, as the function that was called names it: a tolerance or a resolution.
+        parameter: &'static str,
         /// What was asked for.
         tolerance: Real,
         /// What the samples and the stated error allow here.

@@ -68,7 +68,7 @@ mod wide_bvh;
 mod winding;
 
 #[cfg(feature = "gpu")]
-pub(crate) use checks::check_margin;
+pub(crate) use checks::{check_bound, check_margin};
 #[cfg(feature = "gpu")]
 pub(crate) use engine::{HasMesh, pairs};
 #[cfg(feature = "gpu")]

@@ -94,9 +94,9 @@ impl Chain {
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
     pub fn set_centreline(&mut self, points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
-        check(points, segment_radii, points.len().saturating_sub(1))?;
+        check_segments(points, segment_radii)?;
         algorithm_1::from_segment_radii(points, segment_radii, &mut self.caps);
-        self.assemble(points, segment_radii)
+        self.assemble(points, segment_radii, "segment_radii")
     }
 
     /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper prints it.
@@ -109,11 +109,18 @@ impl Chain {
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline), with as many radii as points.
     pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
-        check(points, vertex_radii, points.len())?;
+        check(["points", "vertex_radii"], points, vertex_radii, points.len())?;
         let segment_radii: Vec<_> = vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
         let mut chain = Self::empty();
         algorithm_1::from_vertex_radii(points, vertex_radii, &mut chain.caps);
-        chain.assemble(points, &segment_radii)?;
+        chain.assemble(points, &segment_radii, "vertex_radii").map_err(|error| match error {
+            // The radius of a segment is the smaller of two.
+            RobotError::HidesLength { parameter, index, value, length } => {
+                let index = if vertex_radii[index] <= vertex_radii[index + 1] { index } else { index + 1 };
+                RobotError::HidesLength { parameter, index, value, length }
+            }
+            other => other,
+        })?;
         Ok(chain)
     }
 
@@ -198,16 +205,24 @@ impl Chain {
     }
 
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
-        check(points, segment_radii, points.len().saturating_sub(1))?;
+        check_segments(points, segment_radii)?;
         let mut chain = Self { caps: vec![[cap; 2]; segment_radii.len()], ..Self::empty() };
-        chain.assemble(points, segment_radii)?;
+        chain.assemble(points, segment_radii, "segment_radii")?;
         Ok(chain)
     }
 
-    /// Makes links of the segments that have a length; radii and `self.caps` are per segment.
-    fn assemble(&mut self, points: &[Vector], radii: &[Real]) -> Result<(), RobotError> {
+    /// Makes links of the segments that have a length; radii and `self.caps` are per segment, and `parameter` is what the
+    /// radii came from.
+    fn assemble(
+        &mut self,
+        points: &[Vector],
+        radii: &[Real],
+        parameter: &'static str,
+    ) -> Result<(), RobotError> {
         let has_length = |&k: &usize| has_direction(points[k], points[k + 1], radii[k]);
-        let Some(last) = (0..radii.len()).rfind(has_length) else { return Err(RobotError::AllPointsEqual) };
+        let Some(last) = (0..radii.len()).rfind(has_length) else {
+            return Err(without_length(points, radii, parameter));
+        };
         self.links.clear();
         self.segments.clear();
         for k in (0..radii.len()).filter(has_length) {
@@ -247,14 +262,36 @@ impl PartialEq for Chain {
     }
 }
 
-/// Enough points, as many radii as they need, and nothing out of range.
-pub(super) fn check(points: &[Vector], radii: &[Real], expected: usize) -> Result<(), RobotError> {
+/// Why none of the segments has a length.
+fn without_length(points: &[Vector], radii: &[Real], parameter: &'static str) -> RobotError {
+    match (0..radii.len()).find(|&k| points[k] != points[k + 1]) {
+        Some(index) => {
+            let length = super::scale::length(points[index + 1] - points[index]);
+            RobotError::HidesLength { parameter, index, value: radii[index], length }
+        }
+        None => RobotError::AllPointsEqual,
+    }
+}
+
+/// [`check`] of the parameters `points` and `segment_radii`.
+pub(super) fn check_segments(points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
+    check(["points", "segment_radii"], points, segment_radii, points.len().saturating_sub(1))
+}
+
+/// Enough points, as many radii as they need, and nothing out of range. `names` are those of the two parameters.
+pub(super) fn check(
+    names: [&'static str; 2],
+    points: &[Vector],
+    radii: &[Real],
+    expected: usize,
+) -> Result<(), RobotError> {
     if points.len() < 2 {
-        return Err(RobotError::TooFewPoints { count: points.len() });
+        return Err(RobotError::TooFewPoints { parameter: names[0], count: points.len() });
     }
     if radii.len() != expected {
-        return Err(RobotError::LengthsDiffer { points: points.len(), expected, radii: radii.len() });
+        let (points, radii) = (points.len(), radii.len());
+        return Err(RobotError::LengthsDiffer { parameter: names[1], points, expected, radii });
     }
-    check_points(points)?;
-    check_radii(radii)
+    check_points(names[0], points)?;
+    check_radii(names[1], radii)
 }

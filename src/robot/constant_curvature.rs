@@ -66,8 +66,7 @@ impl ConstantCurvature {
     /// # Errors
     /// No section; a length that is not positive, a radius that is negative, or a number that is not finite.
     pub fn new(sections: &[BendingSection]) -> Result<Self, RobotError> {
-        let stated: Vec<_> = sections.iter().map(stated).collect();
-        check_sections(&stated)?;
+        check("sections", sections)?;
         let (mut start, mut frame) = (0.0, Pose::IDENTITY);
         let place = |section: &BendingSection| {
             let arc = Arc { section: *section, start, frame };
@@ -122,6 +121,12 @@ impl ConstantCurvature {
             (frame.translation, frame.rotation * Vector::Z)
         })
     }
+}
+
+/// # Errors
+/// No section; a length that is not positive, a radius that is negative, or a number that is not finite.
+pub(super) fn check(parameter: &'static str, sections: &[BendingSection]) -> Result<(), RobotError> {
+    check_sections(parameter, &sections.iter().map(stated).collect::<Vec<_>>())
 }
 
 /// A section as a tube states it.

@@ -1,4 +1,4 @@
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 use thiserror::Error;
 
 /// Why a link or a chain could not be built. Each message names the value at fault and what to change.
@@ -6,16 +6,24 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum RobotError {
     /// A point has a coordinate that is NaN or infinite.
-    #[error("point {index} has a coordinate that is not finite ({value}); remove or repair that point")]
+    #[error(
+        "point {index} has a coordinate that is not finite ({value}); remove or repair it in `{parameter}`"
+    )]
     PointNotFinite {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the point in the input.
         index: usize,
         /// The offending coordinate.
         value: Real,
     },
     /// A point lies so far out that differences of coordinates could overflow.
-    #[error("point {index} has the coordinate {value}, beyond +-{limit:e}; choose a larger unit of length")]
+    #[error(
+        "point {index} in `{parameter}` has the coordinate {value}, beyond +-{limit:e}; choose a larger unit of length"
+    )]
     PointOutOfRange {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the point in the input.
         index: usize,
         /// The offending coordinate.
@@ -24,8 +32,10 @@ pub enum RobotError {
         limit: Real,
     },
     /// A radius is NaN, infinite, negative or beyond the accepted range.
-    #[error("radius {index} is {value}; a radius must be finite, at least 0 and at most {limit:e}")]
+    #[error("radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}")]
     BadRadius {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the radius in the input.
         index: usize,
         /// The offending radius.
@@ -43,14 +53,18 @@ pub enum RobotError {
         index: usize,
     },
     /// A centreline needs at least two points.
-    #[error("a centreline needs at least 2 points, got {count}")]
+    #[error("a centreline needs at least 2 points, got {count} in `{parameter}`")]
     TooFewPoints {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// How many points were given.
         count: usize,
     },
     /// The number of radii does not fit the number of points.
-    #[error("{points} points need {expected} radii, got {radii}")]
+    #[error("{points} points need {expected} radii, got {radii} in `{parameter}`")]
     LengthsDiffer {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// How many points were given.
         points: usize,
         /// How many radii they need.
@@ -59,7 +73,7 @@ pub enum RobotError {
         radii: usize,
     },
     /// A motion needs as many points at its end as at its start.
-    #[error("the motion starts with {from} points and ends with {to}; give both the same number")]
+    #[error("`from` has {from} points and `to` has {to}; give both the same number")]
     PointsDiffer {
         /// How many points it starts with.
         from: usize,
@@ -68,15 +82,19 @@ pub enum RobotError {
     },
     /// A motion needs the same sections at its end as at its start, with the same radii.
     #[error(
-        "section {index} of the motion is not the same at both ends; give as many sections, of the same radii"
+        "section {index} is not the same in `from` and `to`; give both as many sections, of the same radii"
     )]
     SectionsDiffer {
         /// The first section that is missing or has another radius.
         index: usize,
     },
     /// A pose has a component that is NaN or infinite, or lies out of range.
-    #[error("a pose of the motion is not finite or beyond +-{limit:e}")]
+    #[error("the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}")]
     BadPose {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// The offending component.
+        value: Real,
         /// The largest magnitude accepted.
         limit: Real,
     },
@@ -131,36 +149,64 @@ pub enum RobotError {
     /// Every point of the centreline is the same.
     #[error("all points of the centreline are the same; a chain needs two distinct points")]
     AllPointsEqual,
-    /// A tolerance is NaN, infinite or negative.
-    #[error("the tolerance is {value}; it must be finite and at least 0")]
-    BadTolerance {
-        /// The offending tolerance.
+    /// A radius beside which the length of its segment is nothing to compute with.
+    #[error(
+        "radius {index} is {value}, beside which the length {length} of its segment is lost; check the unit of \
+         `{parameter}`"
+    )]
+    HidesLength {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// Position of the radius in the input.
+        index: usize,
+        /// The radius.
+        value: Real,
+        /// The length of the segment.
+        length: Real,
+    },
+    /// A number is NaN, infinite or negative.
+    #[error("`{parameter}` is {value}; it must be finite and at least 0")]
+    Negative {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// The offending number.
         value: Real,
     },
     /// A tube needs at least one section.
-    #[error("a tube needs at least one section")]
-    NoSections,
+    #[error("there are no sections in `{parameter}`; a tube needs at least one section")]
+    NoSections {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+    },
     /// A section's length is not a positive number.
-    #[error("section {index} has the length {value}; it must be finite and more than 0")]
+    #[error("section {index} in `{parameter}` has the length {value}; it must be finite and more than 0")]
     BadLength {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the section in the input.
         index: usize,
         /// The offending length.
         value: Real,
     },
     /// A section's curvature is NaN, infinite or negative.
-    #[error("section {index} has the curvature {value}; it must be finite and at least 0")]
+    #[error("section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0")]
     BadCurvature {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the section in the input.
         index: usize,
         /// The offending curvature.
         value: Real,
     },
     /// A direction of the centreline is zero or not finite.
-    #[error("tangent {index} is zero or not finite; give the direction of the centreline there")]
+    #[error("tangent {index} in `{parameter}` is {value}; give the direction of the centreline there")]
     BadTangent {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
         /// Position of the tangent among those given; of a function, the section.
         index: usize,
+        /// The offending direction.
+        value: Vector,
     },
     /// Samples are too far apart for a curve that bends so much.
     #[error(

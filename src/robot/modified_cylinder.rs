@@ -41,10 +41,16 @@ impl ModifiedCylinder {
     /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap is flat
     /// although the length is 0, or vanishes beside the radius (2^-400 of it).
     pub fn new(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Result<Self, RobotError> {
-        check_points(&[start, end])?;
-        check_radii(&[radius])?;
+        check_place("start", 0, start)?;
+        check_place("end", 1, end)?;
+        check_radii("radius", &[radius])?;
         if !has_direction(start, end, radius) && caps != [Cap::Round; 2] {
-            return Err(RobotError::FlatCapWithoutAxis { index: 0 });
+            return Err(if start == end {
+                RobotError::FlatCapWithoutAxis { index: 0 }
+            } else {
+                let length = scale::length(end - start);
+                RobotError::HidesLength { parameter: "radius", index: 0, value: radius, length }
+            });
         }
         Ok(Self::unchecked(start, end, radius, caps))
     }
@@ -133,24 +139,29 @@ impl TryFrom<&Capsule> for ModifiedCylinder {
 }
 
 /// Every coordinate is finite and within [`COORDINATE_LIMIT`].
-pub(crate) fn check_points(points: &[Vector]) -> Result<(), RobotError> {
-    for (index, point) in points.iter().enumerate() {
-        for value in point.to_array() {
-            if !value.is_finite() {
-                return Err(RobotError::PointNotFinite { index, value });
-            }
-            if value.abs() > COORDINATE_LIMIT {
-                return Err(RobotError::PointOutOfRange { index, value, limit: COORDINATE_LIMIT });
-            }
+pub(crate) fn check_points(parameter: &'static str, points: &[Vector]) -> Result<(), RobotError> {
+    points.iter().enumerate().try_for_each(|(index, &point)| check_place(parameter, index, point))
+}
+
+/// The same of one point.
+pub(crate) fn check_place(parameter: &'static str, index: usize, point: Vector) -> Result<(), RobotError> {
+    for value in point.to_array() {
+        if !value.is_finite() {
+            return Err(RobotError::PointNotFinite { parameter, index, value });
+        }
+        if value.abs() > COORDINATE_LIMIT {
+            return Err(RobotError::PointOutOfRange { parameter, index, value, limit: COORDINATE_LIMIT });
         }
     }
     Ok(())
 }
 
 /// Every radius is finite, not negative and within [`COORDINATE_LIMIT`].
-pub(crate) fn check_radii(radii: &[Real]) -> Result<(), RobotError> {
+pub(crate) fn check_radii(parameter: &'static str, radii: &[Real]) -> Result<(), RobotError> {
     match radii.iter().position(|radius| !(0.0..=COORDINATE_LIMIT).contains(radius)) {
-        Some(index) => Err(RobotError::BadRadius { index, value: radii[index], limit: COORDINATE_LIMIT }),
+        Some(index) => {
+            Err(RobotError::BadRadius { parameter, index, value: radii[index], limit: COORDINATE_LIMIT })
+        }
         None => Ok(()),
     }
 }

@@ -61,7 +61,8 @@ impl TryFrom<Links> for Chain {
 
     fn try_from(data: Links) -> Result<Self, String> {
         let points: Vec<_> = data.points.into_iter().map(Vector::from_array).collect();
-        check(&points, &data.radii, points.len().saturating_sub(1)).map_err(|error| error.to_string())?;
+        check(["points", "radii"], &points, &data.radii, points.len().saturating_sub(1))
+            .map_err(|error| error.to_string())?;
         let count = data.radii.len();
         if data.caps.len() != count || data.segments.len() != count {
             let (caps, segments) = (data.caps.len(), data.segments.len());

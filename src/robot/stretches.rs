@@ -1,7 +1,7 @@
 //! A sampled centreline as stretches of one radius, for whoever thins it out.
 
 use super::RobotError;
-use super::chain::check;
+use super::chain::check_segments;
 use parry3d_f64::math::{Real, Vector};
 use std::borrow::Cow;
 
@@ -33,9 +33,9 @@ impl<'a> Stretches<'a> {
         segment_radii: &'a [Real],
         tolerance: Real,
     ) -> Result<Self, RobotError> {
-        check(points, segment_radii, points.len().saturating_sub(1))?;
+        check_segments(points, segment_radii)?;
         if !(0.0..Real::INFINITY).contains(&tolerance) {
-            return Err(RobotError::BadTolerance { value: tolerance });
+            return Err(RobotError::Negative { parameter: "tolerance", value: tolerance });
         }
         let has_repeats = points.windows(2).any(|ends| ends[0] == ends[1]);
         let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });

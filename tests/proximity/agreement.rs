@@ -244,7 +244,11 @@ fn the_first_bad_robot_of_a_batch_is_reported_and_nothing_answered() {
         assert_eq!([per_link.len(), minimum.len(), clears.len()], [0; 3], "{name}");
         clears.push(true);
         let margin = engine.clears_batch(&robots[..9], -1.0, &mut clears);
-        assert_eq!((margin, clears.len()), (Err(ProximityError::BadMargin { margin: -1.0 }), 0), "{name}");
+        assert_eq!(
+            (margin, clears.len()),
+            (Err(ProximityError::Negative { parameter: "margin", value: -1.0 }), 0),
+            "{name}"
+        );
     }
 }
 

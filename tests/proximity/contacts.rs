@@ -8,7 +8,7 @@ use parry_continuum::Chain;
 use parry_continuum::distance::{Vec3, point_triangle};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, LinkProximity, Proximity};
+use parry_continuum::proximity::{BvhSearch, Contact, Exhaustive, Proximity};
 use parry_continuum::{Cap, ModifiedCylinder};
 
 /// What rounding may do to a distance: the room that the definition of a local minimum has.

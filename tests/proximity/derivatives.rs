@@ -7,7 +7,9 @@ use continuum_testing::{Case, Random, distance_cases};
 use parry_continuum::distance::{DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Contact, ContactFeature, Derivative, LinkProximity, Proximity};
+use parry_continuum::proximity::{
+    BvhSearch, Contact, ContactFeature, Derivative, Exhaustive, LinkProximity, Proximity,
+};
 use parry_continuum::{Cap, Chain};
 
 type Point = Vec3<DoubleDouble>;

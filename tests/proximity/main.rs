@@ -12,6 +12,7 @@ mod far_parts;
 mod fuzz;
 mod large;
 mod motion;
+mod moved;
 mod parity;
 mod patches;
 mod pieces;

@@ -241,7 +241,7 @@ fn batches_answer_as_single_queries_do() {
     assert!(decisions.contains(&Decision::Clear) && decisions.contains(&Decision::Touches));
     assert_eq!(
         search.clearance_batch(&robots, -1.0, &mut clearances),
-        Err(ProximityError::BadTolerance { tolerance: -1.0 })
+        Err(ProximityError::Negative { parameter: "tolerance", value: -1.0 })
     );
     assert!(clearances.is_empty());
 }

@@ -331,7 +331,8 @@ fn bad_input_is_named() {
         (4, 3, 0, Chain::cylinders(&good, &[]).unwrap_err()),
         (4, 4, 3, Chain::from_vertex_radii(&good, &[0.1; 3]).unwrap_err()),
     ] {
-        assert_eq!(error, RobotError::LengthsDiffer { points, expected, radii });
+        let parameter = if expected == 4 { "vertex_radii" } else { "segment_radii" };
+        assert_eq!(error, RobotError::LengthsDiffer { parameter, points, expected, radii });
     }
     let error = ModifiedCylinder::cylinder(Vector::X, Vector::X, 1.0).unwrap_err();
     assert!(error.to_string().contains("length 0"));

@@ -97,7 +97,7 @@ fn points_and_tube_are_on_the_curve() {
 fn what_is_no_section_is_named() {
     let good = BendingSection { length: 1.0, radius: 0.1, bend: [0.1, 0.0] };
     let error = |bad: BendingSection| ConstantCurvature::new(&[good, bad]).unwrap_err();
-    assert!(matches!(ConstantCurvature::new(&[]), Err(RobotError::NoSections)));
+    assert!(matches!(ConstantCurvature::new(&[]), Err(RobotError::NoSections { parameter: "sections" })));
     assert!(matches!(error(BendingSection { length: 0.0, ..good }), RobotError::BadLength { index: 1, .. }));
     assert!(matches!(error(BendingSection { radius: -1.0, ..good }), RobotError::BadRadius { index: 1, .. }));
     let bent = |bend| error(BendingSection { bend, ..good });

@@ -372,8 +372,11 @@ fn bad_input_is_named() {
         let error = simplify(&points, &[0.1; 2], tolerance).unwrap_err();
         assert!(error.to_string().contains(&tolerance.to_string()), "{error}");
     }
-    assert_eq!(simplify(&points[..1], &[], 0.1), Err(RobotError::TooFewPoints { count: 1 }));
-    let differ = RobotError::LengthsDiffer { points: 3, expected: 2, radii: 1 };
+    assert_eq!(
+        simplify(&points[..1], &[], 0.1),
+        Err(RobotError::TooFewPoints { parameter: "points", count: 1 })
+    );
+    let differ = RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
     assert_eq!(simplify(&points, &[0.1], 0.1), Err(differ));
     assert_eq!(simplify(&[Vector::X; 3], &[0.1; 2], 0.1), Err(RobotError::AllPointsEqual));
     let nan = simplify(&[Vector::ZERO, Vector::NAN], &[0.1], 0.1).unwrap_err();

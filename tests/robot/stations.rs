@@ -213,10 +213,16 @@ fn the_unit_does_not_matter() {
 fn bad_input_is_named() {
     let points = [Vector::ZERO, Vector::X, Vector::X * 2.0];
     for tolerance in [-1.0, Real::NAN, Real::INFINITY] {
-        assert!(matches!(stations(&points, &[0.1; 2], tolerance), Err(RobotError::BadTolerance { .. })));
+        assert!(matches!(
+            stations(&points, &[0.1; 2], tolerance),
+            Err(RobotError::Negative { parameter: "tolerance", .. })
+        ));
     }
-    assert_eq!(stations(&points[..1], &[], 0.1), Err(RobotError::TooFewPoints { count: 1 }));
-    let differ = RobotError::LengthsDiffer { points: 3, expected: 2, radii: 1 };
+    assert_eq!(
+        stations(&points[..1], &[], 0.1),
+        Err(RobotError::TooFewPoints { parameter: "points", count: 1 })
+    );
+    let differ = RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
     assert_eq!(stations(&points, &[0.1], 0.1), Err(differ));
     assert_eq!(stations(&[Vector::X; 3], &[0.1; 2], 0.1), Err(RobotError::AllPointsEqual));
     let nan = stations(&[Vector::ZERO, Vector::NAN], &[0.1], 0.1).unwrap_err();

@@ -14,10 +14,10 @@ fn bad_samples_are_named() {
     let points = line(5);
     let refuse =
         |points: &[Vector], radii: &[f64], tangents| Tube::from_samples(points, radii, tangents).unwrap_err();
-    assert_eq!(refuse(&points[..1], &[], None), RobotError::TooFewPoints { count: 1 });
+    assert_eq!(refuse(&points[..1], &[], None), RobotError::TooFewPoints { parameter: "points", count: 1 });
     assert_eq!(
         refuse(&points, &[0.1; 3], None),
-        RobotError::LengthsDiffer { points: 5, expected: 4, radii: 3 }
+        RobotError::LengthsDiffer { parameter: "segment_radii", points: 5, expected: 4, radii: 3 }
     );
     assert!(matches!(refuse(&points, &[0.1, 0.1, -0.1, 0.1], None), RobotError::BadRadius { index: 2, .. }));
     assert_eq!(refuse(&[Vector::X; 3], &[0.1; 2], None), RobotError::AllPointsEqual);
@@ -30,7 +30,10 @@ fn bad_samples_are_named() {
     far[2].x = 1e151;
     assert!(matches!(refuse(&far, &[0.1; 4], None), RobotError::PointOutOfRange { index: 2, .. }));
     for (tangents, index) in [([Vector::ZERO, Vector::Z], 0), ([Vector::Z, Vector::splat(f64::NAN)], 1)] {
-        assert_eq!(refuse(&points, &[0.1; 4], Some(tangents)), RobotError::BadTangent { index });
+        assert_eq!(
+            refuse(&points, &[0.1; 4], Some(tangents)),
+            RobotError::BadTangent { parameter: "end_tangents", index, value: tangents[index] }
+        );
     }
     // A corner, and a bend that is tighter than the tube is wide.
     let corner = [Vector::ZERO, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)];
@@ -51,15 +54,24 @@ fn bad_functions_are_named() {
     let good = TubeSection { length: 2.0, radius: 0.5, curvature: 0.1 };
     let refuse =
         |sections: &[TubeSection]| Tube::from_function(sections, |s| (Vector::Z * s, Vector::Z)).unwrap_err();
-    assert_eq!(refuse(&[]), RobotError::NoSections);
+    assert_eq!(refuse(&[]), RobotError::NoSections { parameter: "sections" });
     for (section, expected) in [
-        (TubeSection { length: 0.0, ..good }, RobotError::BadLength { index: 1, value: 0.0 }),
+        (
+            TubeSection { length: 0.0, ..good },
+            RobotError::BadLength { parameter: "sections", index: 1, value: 0.0 },
+        ),
         (
             TubeSection { length: f64::INFINITY, ..good },
-            RobotError::BadLength { index: 1, value: f64::INFINITY },
+            RobotError::BadLength { parameter: "sections", index: 1, value: f64::INFINITY },
         ),
-        (TubeSection { curvature: -1.0, ..good }, RobotError::BadCurvature { index: 1, value: -1.0 }),
-        (TubeSection { radius: -1.0, ..good }, RobotError::BadRadius { index: 1, value: -1.0, limit: 1e150 }),
+        (
+            TubeSection { curvature: -1.0, ..good },
+            RobotError::BadCurvature { parameter: "sections", index: 1, value: -1.0 },
+        ),
+        (
+            TubeSection { radius: -1.0, ..good },
+            RobotError::BadRadius { parameter: "sections", index: 1, value: -1.0, limit: 1e150 },
+        ),
     ] {
         assert_eq!(refuse(&[good, section]), expected);
     }
@@ -68,7 +80,7 @@ fn bad_functions_are_named() {
         RobotError::BendsWithinRadius { index: 0, .. }
     ));
     let zero = Tube::from_function(&[good], |s| (Vector::Z * s, Vector::ZERO)).unwrap_err();
-    assert_eq!(zero, RobotError::BadTangent { index: 0 });
+    assert_eq!(zero, RobotError::BadTangent { parameter: "curve", index: 0, value: Vector::ZERO });
     assert!(Tube::from_samples(&line(3), &[0.1; 2], None).unwrap().with_error(f64::NAN).is_err());
 }
 

@@ -3,7 +3,7 @@
 use super::kernels::Kernels;
 use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
-use crate::proximity::checks::check_margin;
+use crate::proximity::checks::{check_bound, check_margin};
 use crate::proximity::engine::{HasMesh, pairs};
 use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::mesh::Mesh;
@@ -198,7 +198,11 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         pose: &Pose,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_margin(bound)?;
+        check_bound(bound)?;
+        if bound < 0.0 {
+            // Nothing is asked for; robot and pose are looked at all the same.
+            return PlacedRobot::new(robot, pose).map(|_| None);
+        }
         self.run(std::iter::once((robot, pose)), Aim::Least(bound))?;
         Ok(self.least_within(0))
     }

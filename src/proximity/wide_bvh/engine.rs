@@ -8,7 +8,7 @@ use super::motion_queries::MotionMemory;
 use super::queries::RobotSearch;
 use super::tube_queries::TubeMemory;
 use crate::Chain;
-use crate::proximity::checks::check_margin;
+use crate::proximity::checks::{check_bound, check_margin};
 use crate::proximity::engine::HasMesh;
 use crate::proximity::local_minima::LocalMinima;
 use crate::proximity::mesh::Mesh;
@@ -310,8 +310,9 @@ impl Proximity for BvhSearch {
         pose: &Pose,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_margin(bound)?;
-        Ok(self.query(robot, pose)?.minimum_within(bound))
+        check_bound(bound)?;
+        let mut query = self.query(robot, pose)?;
+        Ok(if bound < 0.0 { None } else { query.minimum_within(bound) })
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {

@@ -105,7 +105,7 @@ impl<M: Motion> Moment<'_, M> {
             }
             let may_open = tube.may_open(&piece);
             if is_fine && !may_open {
-                search.check_resolved(gap, self.resolution)?;
+                search.check_resolved(gap, ("resolution", self.resolution))?;
             }
             if is_fine && (!may_open || reach.max(self.opening) <= half_resolution / 64.0) {
                 return Ok(Verdict::Undecided);

@@ -4,7 +4,7 @@ use super::BvhSearch;
 use super::engine::{Context, Memory};
 use super::hierarchy::MeshSearch;
 use super::motion_queries::MotionSearch;
-use crate::proximity::checks::{check_margin, check_tolerance};
+use crate::proximity::checks::{check_margin, check_not_negative};
 use crate::proximity::{FirstContact, MotionAnswer, ProximityError};
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
@@ -97,7 +97,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionSearch<'a, M>, ProximityError> {
         check_margin(margin)?;
-        check_tolerance(resolution)?;
+        check_not_negative("resolution", resolution)?;
         let Context { level, hierarchy, memory } = self.context();
         let Memory { scratch, motion: memory, .. } = memory;
         let search = MeshSearch { level, hierarchy, scratch };

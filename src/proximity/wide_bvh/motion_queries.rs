@@ -227,7 +227,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let search = MeshSearch { level, hierarchy, scratch: &mut *self.search.scratch };
         let mut search = TubeSearch { search, tube, pieces: begun };
         // Below that, rounding decides.
-        search.check_resolved(32.0 * tube.slack(), self.resolution)?;
+        search.check_resolved(32.0 * tube.slack(), ("resolution", self.resolution))?;
         pieces.clear();
         if is_first {
             search.begin(self.margin.max(self.resolution));

@@ -5,7 +5,7 @@ use super::engine::{Context, Memory};
 use super::hierarchy::MeshSearch;
 use super::tube_queries::{Place, TubeMemory, TubeSearch};
 use crate::Tube;
-use crate::proximity::checks::{check_margin, check_tolerance};
+use crate::proximity::checks::{check_margin, check_not_negative};
 use crate::proximity::tube::PlacedTube;
 use crate::proximity::{Clearance, Decision, ProximityError, TubePiece};
 use parry3d_f64::math::{Pose, Real};
@@ -28,7 +28,7 @@ impl BvhSearch {
         pose: &Pose,
         tolerance: Real,
     ) -> Result<Clearance, ProximityError> {
-        check_tolerance(tolerance)?;
+        check_not_negative("tolerance", tolerance)?;
         self.context().clearance(tube, pose, tolerance)
     }
 
@@ -63,7 +63,7 @@ impl BvhSearch {
         out: &mut Vec<TubePiece>,
     ) -> Result<Clearance, ProximityError> {
         out.clear();
-        check_tolerance(tolerance)?;
+        check_not_negative("tolerance", tolerance)?;
         let answer = self.context().clearance_pieces(tube, pose, tolerance, out);
         if answer.is_err() {
             out.clear();
@@ -99,7 +99,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_margin(margin)?;
-        check_tolerance(resolution)?;
+        check_not_negative("resolution", resolution)?;
         self.context().tube_clears(tube, pose, margin, resolution)
     }
 
@@ -114,7 +114,7 @@ impl BvhSearch {
         out: &mut Vec<Clearance>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        check_tolerance(tolerance)?;
+        check_not_negative("tolerance", tolerance)?;
         self.batch(tubes, out, Clearance::unanswered, |context, (tube, pose), out| {
             *out = context.clearance(tube, pose, tolerance)?;
             Ok(())
@@ -134,7 +134,7 @@ impl BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        check_tolerance(resolution)?;
+        check_not_negative("resolution", resolution)?;
         self.batch(
             tubes,
             out,

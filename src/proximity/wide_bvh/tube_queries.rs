@@ -106,7 +106,7 @@ impl TubeSearch<'_> {
         }
         let Found { place, witness, on_mesh } = best;
         let lower = if self.pieces.is_empty() { lower.min(witness.upper) } else { 0.0 };
-        self.check_resolved(witness.upper - lower, tolerance)?;
+        self.check_resolved(witness.upper - lower, ("tolerance", tolerance))?;
         let Place { triangle, section, arc } = place;
         let Witness { upper, on_robot, .. } = witness;
         Ok((Clearance { lower, upper, arc_length: arc, section, triangle, on_robot, on_mesh }, place))
@@ -146,7 +146,7 @@ impl TubeSearch<'_> {
             } else if let Some(halves) = self.halves(&piece, &outer, 0.25 * outer.over) {
                 self.extend_nearest_last(halves, found.place.arc);
             } else {
-                self.check_resolved(upper - nearest.distance, resolution)?;
+                self.check_resolved(upper - nearest.distance, ("resolution", resolution))?;
                 decision = Decision::Undecided;
             }
         }
@@ -231,12 +231,16 @@ impl TubeSearch<'_> {
 
     /// # Errors
     /// The bounds are farther apart than was asked for, but for rounding: the samples allow no more.
-    pub(super) fn check_resolved(&self, possible: Real, tolerance: Real) -> Result<(), ProximityError> {
+    pub(super) fn check_resolved(
+        &self,
+        possible: Real,
+        (parameter, tolerance): (&'static str, Real),
+    ) -> Result<(), ProximityError> {
         // Written so that NaN is an error.
         if possible <= tolerance + 16.0 * self.tube.slack() {
             Ok(())
         } else {
-            Err(ProximityError::ToleranceTooFine { tolerance, possible })
+            Err(ProximityError::ToleranceTooFine { parameter, tolerance, possible })
         }
     }
 }

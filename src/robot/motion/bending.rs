@@ -20,6 +20,7 @@
 
 use super::{Motion, Speed, check_pose};
 use crate::distance::Scalar;
+use crate::robot::constant_curvature::check;
 use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -121,7 +122,9 @@ impl BendingMotion {
         if let Some(index) = (0..from.len().max(to.len())).find(differs) {
             return Err(RobotError::SectionsDiffer { index });
         }
-        check_pose(&pose)?;
+        check("from", from)?;
+        check("to", to)?;
+        check_pose("pose", &pose)?;
         let bend = |section: &BendingSection| Vector::new(section.bend[0], section.bend[1], 0.0);
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),

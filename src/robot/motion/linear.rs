@@ -76,8 +76,8 @@ impl LinearMotion {
         if from.len() != to.len() {
             return Err(RobotError::PointsDiffer { from: from.len(), to: to.len() });
         }
-        for points in [from, to] {
-            check(points, radii, points.len().saturating_sub(1))?;
+        for (name, points) in [("from", from), ("to", to)] {
+            check([name, "segment_radii"], points, radii, points.len().saturating_sub(1))?;
         }
         let moves = |k: &usize| from[*k] != from[*k + 1] || to[*k] != to[*k + 1];
         let segments: Vec<_> = (0..radii.len()).filter(moves).collect();

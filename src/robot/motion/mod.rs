@@ -84,7 +84,11 @@ pub struct Speed {
 }
 
 /// A pose of a motion that is finite and within range.
-fn check_pose(pose: &Pose) -> Result<(), RobotError> {
-    let is_good = pose.is_finite() && pose.translation.abs().max_element() <= COORDINATE_LIMIT;
-    if is_good { Ok(()) } else { Err(RobotError::BadPose { limit: COORDINATE_LIMIT }) }
+fn check_pose(parameter: &'static str, pose: &Pose) -> Result<(), RobotError> {
+    // The parts of a rotation are small where they are finite at all.
+    let parts = pose.translation.to_array().into_iter().chain(pose.rotation.to_array());
+    match parts.into_iter().find(|part| !(part.abs() <= COORDINATE_LIMIT)) {
+        Some(value) => Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT }),
+        None => Ok(()),
+    }
 }

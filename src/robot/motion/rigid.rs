@@ -40,8 +40,8 @@ impl RigidMotion {
     /// # Errors
     /// A pose is not finite or out of range.
     pub fn new(tube: Tube, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
-        check_pose(&from)?;
-        check_pose(&to)?;
+        check_pose("from", &from)?;
+        check_pose("to", &to)?;
         let way = (from.rotation.inverse() * to.rotation).normalize();
         let way = if way.w < 0.0 { -way } else { way };
         let shift = to.translation - from.translation;

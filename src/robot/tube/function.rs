@@ -6,7 +6,7 @@ use super::section::{Face, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
-use crate::robot::modified_cylinder::{check_points, check_radii};
+use crate::robot::modified_cylinder::{check_place, check_radii};
 use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
@@ -49,16 +49,16 @@ impl Tube {
         sections: &[TubeSection],
         curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
     ) -> Result<Self, RobotError> {
-        check_sections(sections)?;
+        check_sections("sections", sections)?;
         let mut tube = Self::empty();
         let mut start = 0.0;
         for (index, given) in sections.iter().enumerate() {
             let end = start + given.length;
             let face = |end: usize, arc_length: Real| {
                 let (centre, tangent) = curve(arc_length);
-                check_points(&[centre])?;
+                check_place("curve", index, centre)?;
                 if !(tangent.length_squared() > 0.0 && tangent.is_finite()) {
-                    return Err(RobotError::BadTangent { index });
+                    return Err(RobotError::BadTangent { parameter: "curve", index, value: tangent });
                 }
                 let outward = direction(if end == 0 { -tangent } else { tangent });
                 Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::Either }))
@@ -98,21 +98,25 @@ impl Tube {
 
 /// # Errors
 /// No section; a length that is not positive, a radius or a curvature that is negative, or one that is not finite.
-pub(in crate::robot) fn check_sections(sections: &[TubeSection]) -> Result<(), RobotError> {
+pub(in crate::robot) fn check_sections(
+    parameter: &'static str,
+    sections: &[TubeSection],
+) -> Result<(), RobotError> {
     if sections.is_empty() {
-        return Err(RobotError::NoSections);
+        return Err(RobotError::NoSections { parameter });
     }
     for (index, section) in sections.iter().enumerate() {
         if !(section.length > 0.0 && section.length < Real::INFINITY) {
-            return Err(RobotError::BadLength { index, value: section.length });
+            return Err(RobotError::BadLength { parameter, index, value: section.length });
         }
-        check_radii(&[section.radius]).map_err(|_| RobotError::BadRadius {
+        check_radii(parameter, &[section.radius]).map_err(|_| RobotError::BadRadius {
+            parameter,
             index,
             value: section.radius,
             limit: crate::robot::COORDINATE_LIMIT,
         })?;
         if !(0.0..Real::INFINITY).contains(&section.curvature) {
-            return Err(RobotError::BadCurvature { index, value: section.curvature });
+            return Err(RobotError::BadCurvature { parameter, index, value: section.curvature });
         }
     }
     Ok(())

@@ -133,7 +133,7 @@ impl Tube {
     /// The error is not finite or negative.
     pub fn with_error(mut self, error: Real) -> Result<Self, RobotError> {
         if !(0.0..Real::INFINITY).contains(&error) {
-            return Err(RobotError::BadTolerance { value: error });
+            return Err(RobotError::Negative { parameter: "error", value: error });
         }
         self.error = error;
         Ok(self)
@@ -218,7 +218,9 @@ fn check_faces(section: &Section, index: usize) -> Result<(), RobotError> {
 fn unit_tangents(tangents: [Vector; 2]) -> Result<[Vector; 2], RobotError> {
     let unit = tangents.map(super::scale::direction);
     match unit.iter().position(|tangent| !tangent.is_finite() || *tangent == Vector::ZERO) {
-        Some(index) => Err(RobotError::BadTangent { index }),
+        Some(index) => {
+            Err(RobotError::BadTangent { parameter: "end_tangents", index, value: tangents[index] })
+        }
         None => Ok(unit),
     }
 }

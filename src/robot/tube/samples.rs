@@ -23,7 +23,7 @@ use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
-use crate::robot::chain::check;
+use crate::robot::chain::check_segments;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
 use parry3d_f64::math::{Real, Vector};
 
@@ -146,7 +146,7 @@ impl Tube {
         }
         is_good &= radii.iter().fold(true, |good, &radius| good & (0.0..=COORDINATE_LIMIT).contains(&radius));
         if !is_good {
-            check(samples, radii, samples.len().saturating_sub(1))?;
+            check_segments(samples, radii)?;
         }
         let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;

@@ -40,9 +40,18 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     let good = Made(straight(3, 0.1), || 0.0);
     assert_eq!(search.clears_motion(&good, 0.0, 1e-3), Ok(MotionAnswer::Clear));
     assert_eq!(search.time_of_contact(&good, 0.0, 1e-3), Ok(FirstContact::Never));
-    assert!(matches!(search.clears_motion(&good, -1.0, 1e-3), Err(ProximityError::BadMargin { .. })));
-    assert!(matches!(search.clears_motion(&good, 0.0, -1.0), Err(ProximityError::BadTolerance { .. })));
-    assert!(matches!(search.clears_motion(&good, 0.0, Real::NAN), Err(ProximityError::BadTolerance { .. })));
+    assert!(matches!(
+        search.clears_motion(&good, -1.0, 1e-3),
+        Err(ProximityError::Negative { parameter: "margin", .. })
+    ));
+    assert!(matches!(
+        search.clears_motion(&good, 0.0, -1.0),
+        Err(ProximityError::Negative { parameter: "resolution", .. })
+    ));
+    assert!(matches!(
+        search.clears_motion(&good, 0.0, Real::NAN),
+        Err(ProximityError::Negative { parameter: "resolution", .. })
+    ));
     assert!(matches!(search.clears_motion(&good, 0.0, 0.0), Err(ProximityError::ToleranceTooFine { .. })));
     for speed in [Real::NAN, -1.0, Real::INFINITY] {
         let refused = search.clears_motion(&Made(straight(3, 0.1), || speed), 0.0, 1e-3);
