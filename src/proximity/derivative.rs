@@ -61,9 +61,11 @@ pub(super) fn derivative(
     answer: &LinkProximity,
 ) -> Result<Option<Derivative>, ProximityError> {
     let (link, corners) = near(mesh, robot, pose, answer)?;
-    let found = match NearPair::parted(&link, corners) {
-        Some(parted) => parted.derivative(|number| number),
-        None => NearPair::exactly(&link, corners).derivative(DoubleDouble::rounded),
+    let (nearest, exact) = (NearPair::of(&link, corners), NearPair::exactly(&link, corners));
+    let found = if nearest.parts.asks_way_out || exact.parts.asks_way_out {
+        nearest.parting().derivative(|number| number)
+    } else {
+        exact.derivative(DoubleDouble::rounded)
     };
     // One place decides what is a kink.
     let kink = NearestFeatures::of(&link, corners).kink;

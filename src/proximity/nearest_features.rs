@@ -68,19 +68,20 @@ pub(super) struct NearestFeatures {
 impl NearestFeatures {
     /// Of a link and a triangle in the mesh's frame.
     pub(super) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
-        let pair = link.pair(corners);
-        let (near, _) = NearPair::new(pair.triangle, pair.link);
+        let near = NearPair::of(link, corners);
+        let unit = link.pair(corners).unit;
         if near.parts.asks_way_out {
-            return near.parting().features(pair.unit, |number| number);
+            return near.parting().features(unit, |number| number);
         }
-        if near.parts.needs_digits(&near.triangle, &near.face, &near.link) {
-            let depth = near.parts.depth * pair.unit;
-            return Self {
-                depth,
-                ..NearPair::exactly(link, corners).features(pair.unit, DoubleDouble::rounded)
-            };
+        if !near.parts.needs_digits(&near.triangle, &near.face, &near.link) {
+            return near.features(unit, |number| number);
         }
-        near.features(pair.unit, |number| number)
+        let exact = NearPair::exactly(link, corners);
+        if exact.parts.asks_way_out {
+            return near.parting().features(unit, |number| number);
+        }
+        let depth = near.parts.depth * unit;
+        Self { depth, ..exact.features(unit, DoubleDouble::rounded) }
     }
 }
 
@@ -132,7 +133,9 @@ impl<T: Scalar> NearestParts<T> {
         let (length, far) = (link.end.dot(link.axis), gap.lit(FAR));
         let to_start = link.flat[0].select(axial.s * length, far);
         let to_end = link.flat[1].select((one - axial.s) * length, far);
-        let is_capsule = !at_flat_cap & (rounding - depth.min(zero)).lt(to_start.min(to_end));
+        // Rounding of the ends of a short axis turns a wide cap.
+        let turn = one.max(link.radius.over(length));
+        let is_capsule = !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
         let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
         let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
         let normal = apart.normalised();
@@ -173,12 +176,13 @@ impl<T: Scalar> NearestParts<T> {
     /// corners that are foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside
     /// a link also the third corner or an edge along it. Or a triangle without area.
     ///
-    /// The normal turns by 4 u / gap, so that a point at most 2 sqrt(3) away rises by less than 14 u / gap, and of two
-    /// points one by 28 u / gap more than the other: half of what is granted here.
+    /// Points of the triangle whose distances F differ by rounding, at most 9 u, may take each other's place: the way to
+    /// them turns by no more than sqrt(2 * 9 u / F), as the rest of the triangle does not come nearer. So a point at most
+    /// 2 sqrt(3) away rises by less than sqrt(216 u / F), and of two points one by twice as much more than the other:
+    /// sqrt(864 u / F). That is more than the 28 u / F by which the rounding of the points turns the normal.
     #[inline(always)]
     fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
-        let one = self.gap.one();
-        let tie = self.gap.lit(TIE) * (one + one + one.over(self.gap));
+        let tie = (self.gap.lit(1024.0 * T::UNIT_ROUNDOFF)).over(self.gap).sqrt();
         let [a, b, c] = *triangle;
         let [a_is_foremost, b_is_foremost, c_is_foremost] = are_foremost(triangle, self.normal, tie);
         let [ab, bc] = [a_is_foremost & b_is_foremost, b_is_foremost & c_is_foremost];
@@ -186,7 +190,7 @@ impl<T: Scalar> NearestParts<T> {
         let is_level = self.normal.dot(link.end).abs().le(tie);
         let edge = Vec3::select(ab, b - a, Vec3::select(bc, c - b, a - c));
         let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap, tie));
-        let faces_cap = (across(self.normal, link) * link.radius).le(tie);
+        let faces_cap = rise_over_cap(self.normal, link).le(tie);
         let may_be_kink = (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
         self.gap.lt(self.gap.lit(SHORT)) | may_be_kink | !has_area(face)
     }
@@ -219,10 +223,14 @@ fn are_foremost<T: Scalar>([a, b, c]: &[Vec3<T>; 3], normal: Vec3<T>, tie: T) ->
     [top.le(a), top.le(b), top.le(c)]
 }
 
-/// How much of a normal is across a link's axis.
+/// By how much a cap's rim rises over a plane with this normal: less what rounding does to the ends of a short axis, which
+/// turns a wide cap.
 #[inline(always)]
-fn across<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
-    normal.along(link.axis, -normal.dot(link.axis)).norm()
+fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
+    let across = normal.along(link.axis, -normal.dot(link.axis)).norm();
+    let one = across.one();
+    let turn = link.radius.over(link.end.dot(link.axis)).max(one);
+    across * link.radius * one.over(turn)
 }
 
 /// A link and a triangle, and what is nearest of them.
@@ -311,7 +319,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             [true, _, true] => [c, a, a],
             _ => return false,
         };
-        if at_flat_cap && tie.lt(link.radius) && (across(normal, link) * link.radius).le(tie) {
+        if at_flat_cap && tie.lt(link.radius) && rise_over_cap(normal, link).le(tie) {
             let centre = if self.parts.caps[1] { link.end } else { Vec3::zero(tie) };
             let offset = point_triangle(centre, foremost).point2 - centre;
             let radial = offset.along(link.axis, -offset.dot(link.axis)).norm();
@@ -321,17 +329,15 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         if length.le(tie) || tie.lt(normal.dot(link.end).abs()) {
             return false;
         }
-        let [from, to, last] = foremost;
-        let shared = if last == to {
-            if !is_along(to - from, link, apart, tie) {
-                return false;
-            }
-            let (from, to) = (from.dot(link.axis), to.dot(link.axis));
-            length.min(from.max(to)) - apart.zero().max(from.min(to))
-        } else {
-            self.above_face() * length
+        let [a, b, c] = foremost;
+        let shares = |[from, to]: [Vec3<T>; 2]| {
+            let (start, end) = (from.dot(link.axis), to.dot(link.axis));
+            let shared = length.min(start.max(end)) - apart.zero().max(start.min(end));
+            is_along(to - from, link, apart, tie) && apart.lit(OVER_EACH_OTHER).lt(shared)
         };
-        apart.lit(OVER_EACH_OTHER).lt(shared)
+        // One beside the face may be as near to an edge.
+        [[a, b], [b, c], [c, a]].into_iter().any(shares)
+            || (b != c && apart.lit(OVER_EACH_OTHER).lt(self.above_face() * length))
     }
 
     /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges counts.
@@ -355,15 +361,14 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
 }
 
 impl NearPair<Real> {
-    /// Where the features tell more than the nearest points.
-    pub(super) fn parted(link: &PlacedLink, corners: [Vector; 3]) -> Option<Self> {
+    /// Of which no kink is known.
+    pub(super) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         let pair = link.pair(corners);
-        let (near, _) = Self::new(pair.triangle, pair.link);
-        near.parts.asks_way_out.then(|| near.parting())
+        Self::new(pair.triangle, pair.link).0
     }
 
     /// The same on the way out of the triangle, or where a gap is none.
-    fn parting(mut self) -> Self {
+    pub(super) fn parting(mut self) -> Self {
         let [a, b, c] = self.triangle;
         let way = WayOut::new(&LinkTriangle::new(self.link, [a, b, c].map(Vector::from)));
         let (normal, on_triangle) = (Vec3::from(-way.normal), Vec3::from(way.on_triangle));

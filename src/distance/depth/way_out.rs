@@ -116,7 +116,8 @@ impl LinkTriangle {
         let at_flat_cap = flat[usize::from(at_end)];
         let lateral = unit_across(normal, axis).filter(|_| at_flat_cap);
         let across = (normal - axis * lean).length();
-        if at_flat_cap && (lateral.is_none() || across * radius <= TIE) {
+        // Rounding of the ends of a short axis turns a wide cap.
+        if at_flat_cap && (lateral.is_none() || across * radius.min(length) <= TIE) {
             let on_triangle = nearest_to(centre);
             let offset = on_triangle - centre;
             let radial = offset - axis * offset.dot(axis);
