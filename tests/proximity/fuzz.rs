@@ -65,3 +65,19 @@ fn root_finders() {
 fn tube() {
     try_bytes("tube", continuum_fuzzing::tube, 1000);
 }
+
+#[test]
+fn coherence() {
+    try_bytes("coherence", continuum_fuzzing::coherence, 1000);
+}
+
+#[test]
+fn motions() {
+    try_bytes("motions", continuum_fuzzing::motions, 200);
+}
+
+#[test]
+#[ignore = "contacts and manifolds break promises where robot and wall are aligned"]
+fn touching() {
+    try_bytes("touching", continuum_fuzzing::touching, 300);
+}

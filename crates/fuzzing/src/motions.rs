@@ -71,7 +71,7 @@ fn check<M: Motion>(
         4 => f64::INFINITY,
         _ => source.number().abs(),
     };
-    let resolution = length * [1e-2, 1e-3, 1e-5][source.below(3)];
+    let resolution = length * [1e-1, 1e-2, 1e-3][source.below(3)];
     let answer = search.clears_motion(motion, margin, resolution);
     let first = search.time_of_contact(motion, margin, resolution);
     assert_eq!(search.clears_motion(motion, margin, resolution), answer, "asked again{}", problem());

@@ -43,6 +43,20 @@ fn headers_that_count_what_is_not_there_take_no_memory() {
     }
 }
 
+/// A million elements of one byte each that no mesh needs, and a triangle behind them.
+#[test]
+fn elements_that_are_not_needed_are_not_kept() {
+    let count = 1_000_000;
+    let head = ply_header(3, 1, "binary_little_endian", "float");
+    let other = format!("element other {count}\nproperty uchar colour\nelement vertex");
+    let mut bytes = head.replace("element vertex", &other).into_bytes();
+    bytes.extend(vec![7; count]);
+    [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    let taken = memory(|| assert_eq!(read("other.ply", &bytes).unwrap().triangles, [[0, 1, 2]]));
+    assert!(taken < LITTLE, "{taken}");
+}
+
 #[test]
 fn a_file_beyond_the_limit_is_not_read() {
     let path = file("sparse.stl", b"");
