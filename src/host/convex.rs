@@ -87,10 +87,37 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         // An overlap is found first, then measured.
         let within = prediction.max(0.0);
         let mut found = self.inner.contact(self.pos12, g1, g2, within)?;
-        if found.is_none() && !self.are_apart_by(within) {
-            found = self.contact_of_closest()?;
+        if found.is_none() {
+            if self.are_apart_by(within) {
+                return Ok(None);
+            }
+            found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?;
         }
+        let found = match found {
+            Some(contact) if contact.dist > 0.0 => Some(contact),
+            Some(contact) => self.least(contact)?,
+            None => self.contact_of_closest()?,
+        };
         Ok(found.filter(|contact| contact.dist <= prediction))
+    }
+
+    /// The contact of an overlap, or a better one. Of shapes that all but touch EPA may say that they overlap by as much as
+    /// their size, and of others less than separates them.
+    fn least(&self, contact: Contact) -> Result<Option<Contact>, Unsupported> {
+        let [g1, g2] = self.shapes;
+        let points = self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?;
+        let is_apart = matches!(points, ClosestPoints::WithinMargin(..));
+        let other = if is_apart { self.contact_of_closest() } else { self.contact_of_layers() }?;
+        let rounding = ROUNDING * largest(self.pos12, g1, g2);
+        // By how much they have to be moved along this normal, and what that makes of its points.
+        let dist = contact.dist.min(self.gap(contact.normal1));
+        if let Some(less) = other.filter(|other| other.dist > dist + rounding) {
+            return Ok(Some(less));
+        }
+        let on_second = contact.point1 + contact.normal1 * dist;
+        let falls_short = dist < contact.dist - rounding;
+        let point2 = if falls_short { self.pos12.inverse_transform_point(on_second) } else { contact.point2 };
+        Ok(Some(Contact { dist, point2, ..contact }))
     }
 
     /// The contact by the closest points, if these tell a direction, or by the layers.
@@ -110,7 +137,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         self.contact_of_layers()
     }
 
-    /// The contact along the normal that the link without a layer tells.
+    /// The contact along the normal that the link without a layer tells. It separates the two.
     fn contact_of_layers(&self) -> Result<Option<Contact>, Unsupported> {
         let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes()) else {
             return Ok(None);

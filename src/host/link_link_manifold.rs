@@ -134,11 +134,12 @@ impl Meeting {
 
     /// Case 3. No other point is closer.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
-        if self.points.iter().all(|point| point.dist > dist + ROUNDING * self.extent) {
+        let enough = dist + ROUNDING * self.extent;
+        if self.points.iter().all(|point| point.dist > enough) {
             self.add(on_first, dist, [feature::BARREL.into(); 2]);
         }
-        for point in &mut self.points {
-            point.dist = point.dist.max(dist);
+        for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
+            point.dist = dist;
         }
     }
 

@@ -79,15 +79,15 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Adds the closest points, unless one of the others is as close. Then no point is closer than they are, which one may
-    /// seem to be that lies beside the triangle's edge.
+    /// Adds the closest points, unless one of the others is as close, but for rounding. Then no point is closer than they
+    /// are, which one may seem to be that lies beside the triangle's edge.
     pub fn add_closest(&mut self, distance: Real, on_link: Vector) {
-        let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
-        if least > distance + self.rounding {
+        let enough = distance + self.rounding;
+        if self.points.iter().all(|point| point.dist > enough) {
             self.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
         }
-        for point in &mut self.points {
-            point.dist = point.dist.max(distance);
+        for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
+            point.dist = distance;
         }
     }
 

@@ -1,198 +1,209 @@
 //! What the queries say of aligned and touching placements fits together, for every pair of the dispatcher's table, in
-//! both orders. What `distance` says is held against parry's shapes elsewhere (see [`pairs`](super::pairs)).
+//! both orders. (What `distance` says is held against other measurements in [`pairs`](super::pairs).)
 
 use continuum_testing::Random;
-use continuum_testing::placements::{Placement, Touch, Wall};
+use continuum_testing::placements::{Placement, Wall};
 use parry_continuum::ContinuumDispatcher;
-use parry_continuum::parry::math::{Pose, Real};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::*;
 use parry_continuum::parry::shape::Shape;
-use std::collections::BTreeMap;
 
-/// What rounding leaves where an answer is exact, and what GJK leaves for shapes of size one.
+/// Negative ones ask for an overlap as deep.
+const PREDICTIONS: [Real; 9] = [-0.2, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.02, 0.5, Real::INFINITY];
+const PLACEMENTS: usize = 400;
+
+/// What is left between two queries of the same pair: rounding, or what parry's GJK leaves for shapes of size one.
 fn tolerance(kind: Wall) -> Real {
     match kind {
-        Wall::Cuboid
-        | Wall::Capsule
-        | Wall::Cylinder
-        | Wall::Cone
-        | Wall::ConvexPolyhedron
-        | Wall::Link
-        | Wall::Chain
-        | Wall::Compound
-        | Wall::Voxels => 1e-5,
-        _ => 1e-11,
+        Wall::Triangle | Wall::Plate | Wall::BoxMesh | Wall::HeightField => 1e-11,
+        Wall::Segment | Wall::Polyline | Wall::HalfSpace | Wall::Ball => 1e-11,
+        _ => 3e-5,
     }
 }
 
-const PREDICTIONS: [Real; 9] = [-0.2, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.02, 0.5, Real::INFINITY];
+/// A placement in one of the two orders.
+struct Asked<'a> {
+    placement: &'a Placement,
+    pos12: Pose,
+    g1: &'a dyn Shape,
+    g2: &'a dyn Shape,
+}
 
-fn count() -> usize {
-    std::env::var("COUNT").map_or(300, |c| c.parse().unwrap())
+impl Asked<'_> {
+    #[track_caller]
+    fn assert(&self, holds: bool, what: impl std::fmt::Debug) {
+        let Placement { kind, touch, gap, tilt, .. } = self.placement;
+        let shapes = (self.g1.as_typed_shape(), self.g2.as_typed_shape());
+        assert!(
+            holds,
+            "{what:?}: {kind:?} {touch:?}, gap {gap:e}, tilt {tilt:e}, {:?} {shapes:?}",
+            self.pos12
+        );
+    }
+
+    fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
+        ContinuumDispatcher::default().contact(&self.pos12, self.g1, self.g2, prediction)
+    }
+
+    fn closest_points(&self, max_dist: Real) -> ClosestPoints {
+        ContinuumDispatcher::default().closest_points(&self.pos12, self.g1, self.g2, max_dist).unwrap()
+    }
+
+    fn length(&self, point1: Vector, point2: Vector) -> Real {
+        (point1 - self.pos12 * point2).length()
+    }
+
+    /// The least `dist` of the manifolds, made twice, because they are updated; infinite if there are no points.
+    fn least_of_manifolds(&self, prediction: Real) -> Real {
+        let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
+        for _ in 0..2 {
+            ContinuumDispatcher::default()
+                .contact_manifolds(&self.pos12, self.g1, self.g2, prediction, &mut manifolds, &mut workspace)
+                .unwrap();
+        }
+        manifolds.iter().flat_map(|m| &m.points).map(|point| point.dist).fold(Real::INFINITY, Real::min)
+    }
+}
+
+/// Asks of each placement in both orders. Returns how many were apart, touched within 1e-9, and overlapped by more.
+fn each(kind: Wall, seed: u64, mut ask: impl FnMut(&Asked, Real)) -> [usize; 3] {
+    let mut random = Random::new(seed);
+    let mut seen = [0; 3];
+    for _ in 0..PLACEMENTS {
+        let placement = random.placement(kind);
+        let (robot, wall) = (&*placement.robot, &*placement.wall);
+        let mut distances = [0.0; 2];
+        for (order, (pos12, g1, g2)) in
+            [(placement.pose, robot, wall), (placement.pose.inverse(), wall, robot)].into_iter().enumerate()
+        {
+            let asked = Asked { placement: &placement, pos12, g1, g2 };
+            let distance = ContinuumDispatcher::default().distance(&pos12, g1, g2);
+            let Ok(distance) = distance.map(|found| found.distance) else {
+                // parry has not got it.
+                assert_eq!(kind, Wall::Voxels);
+                continue;
+            };
+            distances[order] = distance;
+            asked.assert(distance >= 0.0, distance);
+            ask(&asked, distance);
+        }
+        assert!((distances[0] - distances[1]).abs() <= tolerance(kind), "{kind:?} {distances:?}");
+        let place = if placement.gap > 1e-9 {
+            0
+        } else if placement.gap >= -1e-9 {
+            1
+        } else {
+            2
+        };
+        seen[place] += 1;
+    }
+    assert!(seen.into_iter().all(|count| count > PLACEMENTS / 8), "{kind:?} {seen:?}");
+    seen
 }
 
 #[test]
-fn explore() {
-    let mut worst: BTreeMap<String, (usize, String)> = BTreeMap::new();
-    let d = ContinuumDispatcher::default();
-    for kind in Wall::ALL {
-        let mut random = Random::new(301);
-        for _ in 0..count() {
-            let p = random.placement(kind);
-            for (first, pos12, g1, g2) in
-                [(true, p.pose, &*p.robot, &*p.wall), (false, p.pose.inverse(), &*p.wall, &*p.robot)]
-            {
-                let tol = tolerance(kind);
-                let mut fail = |what: String, say: String| {
-                    let e = worst.entry(format!("{kind:?} {what}")).or_insert((0, String::new()));
-                    e.0 += 1;
-                    if e.0 == 1 {
-                        e.1 = format!(
-                            "{say} {first} {:?} gap {:e} tilt {:e} {:?} {:?} {pos12:?}",
-                            p.touch,
-                            p.gap,
-                            p.tilt,
-                            p.robot.as_typed_shape(),
-                            p.wall.as_typed_shape()
-                        )
-                    }
-                };
-                *&mut fail("asked".into(), String::new());
-                let dist = d.distance(&pos12, g1, g2).map(|x| x.distance);
-                let inter = d.intersection_test(&pos12, g1, g2).map(|x| x.intersecting);
-                let closest = d.closest_points(&pos12, g1, g2, Real::MAX);
-                let contact = d.contact(&pos12, g1, g2, Real::MAX);
-                if let (Ok(dist), Ok(inter)) = (dist, inter) {
-                    if inter && dist > tol {
-                        fail("meets, apart".into(), format!("{dist:e}"))
-                    }
-                    if !inter && dist == 0.0 {
-                        fail("apart, meets".into(), String::new())
-                    }
-                    match closest {
-                        Err(_) => {}
-                        Ok(ClosestPoints::Intersecting) => {
-                            if dist > tol {
-                                fail("closest meets".into(), format!("{dist:e}"))
-                            }
-                        }
-                        Ok(ClosestPoints::Disjoint) => fail("closest none".into(), format!("{dist:e}")),
-                        Ok(ClosestPoints::WithinMargin(a, b)) => {
-                            let l = (a - pos12 * b).length();
-                            if (l - dist).abs() > tol {
-                                fail("closest differs".into(), format!("{l:e} {dist:e}"))
-                            }
-                        }
-                    }
-                    match contact {
-                        Err(_) => {}
-                        Ok(None) => fail("contact none".into(), format!("{dist:e}")),
-                        Ok(Some(c)) => {
-                            if dist > tol && (c.dist - dist).abs() > tol {
-                                fail("contact differs".into(), format!("{:e} {dist:e}", c.dist))
-                            }
-                            if dist <= tol && c.dist > tol {
-                                fail("contact apart".into(), format!("{:e} {dist:e}", c.dist))
-                            }
-                            let between = c.point1 - pos12 * c.point2;
-                            if (between + c.normal1 * c.dist).length() > 10.0 * tol {
-                                fail(
-                                    "contact points".into(),
-                                    format!("{:e} {:e}", c.dist, (between + c.normal1 * c.dist).length()),
-                                )
-                            }
-                        }
-                    }
+fn points_distances_and_tests_of_touching_placements_agree() {
+    for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {
+        let slack = tolerance(kind);
+        each(kind, 301, |asked, distance| {
+            let Asked { pos12, g1, g2, .. } = asked;
+            let meets = ContinuumDispatcher::default().intersection_test(pos12, *g1, *g2).unwrap();
+            asked.assert(!meets.intersecting || distance <= slack, ("meets", distance));
+            match asked.closest_points(Real::MAX) {
+                ClosestPoints::Intersecting => asked.assert(distance <= slack, ("closest meet", distance)),
+                ClosestPoints::Disjoint => asked.assert(false, "no closest points"),
+                ClosestPoints::WithinMargin(point1, point2) => {
+                    let length = asked.length(point1, point2);
+                    asked.assert((length - distance).abs() <= slack, ("closest", length, distance));
                 }
-                for pr in PREDICTIONS {
-                    let within = d.contact(&pos12, g1, g2, pr);
-                    let full = contact.ok().flatten();
-                    if let Ok(w) = within {
-                        if w.is_some_and(|w| w.dist > pr) {
-                            fail(format!("beyond {}", pr < 0.0), format!("{pr} {w:?}"))
-                        }
-                        if let (Some(w), Some(f)) = (w, full) {
-                            if (w.dist - f.dist).abs() > tol {
-                                fail("prediction matters".into(), format!("{pr} {:e} {:e}", w.dist, f.dist))
-                            }
-                        }
-                        if let (None, Some(f)) = (w, full) {
-                            if f.dist < pr - tol {
-                                fail("prediction loses".into(), format!("{pr} {:e}", f.dist))
-                            }
-                        }
+            }
+            for max_dist in PREDICTIONS {
+                match asked.closest_points(max_dist) {
+                    ClosestPoints::Intersecting => asked.assert(distance <= slack, (max_dist, distance)),
+                    ClosestPoints::Disjoint => {
+                        asked.assert(distance >= max_dist - slack, (max_dist, distance))
                     }
-                    if let (Ok(dist), Ok(c)) = (dist, d.closest_points(&pos12, g1, g2, pr)) {
-                        match c {
-                            ClosestPoints::Intersecting => {
-                                if dist > tol {
-                                    fail("closest meets p".into(), format!("{pr} {dist:e}"))
-                                }
-                            }
-                            ClosestPoints::Disjoint => {
-                                if dist < pr - tol || dist == 0.0 && pr >= 0.0 {
-                                    fail("closest loses".into(), format!("{pr} {dist:e}"))
-                                }
-                            }
-                            ClosestPoints::WithinMargin(a, b) => {
-                                let l = (a - pos12 * b).length();
-                                if l > pr + tol || (l - dist).abs() > tol {
-                                    fail("closest beyond".into(), format!("{pr} {l:e} {dist:e}"))
-                                }
-                            }
-                        }
-                    }
-                    if pr > 1.0 {
-                        continue;
-                    }
-                    let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
-                    let mut ok = true;
-                    for _ in 0..2 {
-                        ok &= d.contact_manifolds(&pos12, g1, g2, pr, &mut manifolds, &mut workspace).is_ok();
-                    }
-                    if !ok {
-                        fail("no manifolds".into(), String::new());
-                        continue;
-                    }
-                    let least = manifolds
-                        .iter()
-                        .flat_map(|m| m.points.iter().map(|p| p.dist))
-                        .fold(Real::INFINITY, Real::min);
-                    let Ok(w) = within else { continue };
-                    let constrained = p.wall.as_trimesh().is_some_and(|m| m.flags().bits() != 0);
-                    match w {
-                        None => {
-                            if least <= pr - tol {
-                                fail(format!("manifold extra {}", pr < 0.0), format!("{pr:e} {least:e}"))
-                            } else if least < Real::INFINITY && least > pr + tol {
-                                fail(format!("manifold beyond {}", pr < 0.0), format!("{pr:e} {least:e}"))
-                            }
-                        }
-                        Some(w) if w.dist > pr - tol => {}
-                        Some(w) => {
-                            if least == Real::INFINITY {
-                                fail(format!("manifold none {constrained}"), format!("{pr:e} {:e}", w.dist))
-                            } else if least > w.dist + tol {
-                                fail(
-                                    format!("manifold far {constrained}"),
-                                    format!("{pr:e} {least:e} {:e}", w.dist),
-                                )
-                            } else if least < w.dist - tol {
-                                fail(
-                                    format!("manifold deep {constrained}"),
-                                    format!("{pr:e} {least:e} {:e}", w.dist),
-                                )
-                            }
-                        }
+                    ClosestPoints::WithinMargin(point1, point2) => {
+                        let length = asked.length(point1, point2);
+                        asked.assert(length <= max_dist.max(-slack) + slack, ("beyond", max_dist, length));
                     }
                 }
             }
-        }
+        });
     }
-    for (what, (n, say)) in &worst {
-        println!("{n:6} {what}");
-        if std::env::var("SAY").is_ok() {
-            println!("      {say}");
-        }
+}
+
+/// parry's GJK and EPA say `None` for some of these.
+#[test]
+fn an_unbounded_contact_finds_what_distance_finds() {
+    for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {
+        let slack = tolerance(kind);
+        each(kind, 302, |asked, distance| {
+            for prediction in [Real::MAX, Real::INFINITY] {
+                let contact = asked.contact(prediction).unwrap();
+                let Some(contact) = contact else { return asked.assert(false, ("no contact", distance)) };
+                let is_as_far = (contact.dist - distance).abs() <= slack;
+                asked.assert(is_as_far || distance <= slack && contact.dist <= slack, (contact, distance));
+                let between = asked.pos12 * contact.point2 - contact.point1;
+                asked.assert((between.dot(contact.normal1) - contact.dist).abs() <= 10.0 * slack, contact);
+            }
+        });
+    }
+}
+
+#[test]
+fn nothing_beyond_a_prediction_is_returned_and_nothing_within_is_lost() {
+    for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {
+        let slack = tolerance(kind);
+        let mut dropped = 0;
+        each(kind, 303, |asked, _| {
+            let all = asked.contact(Real::MAX).unwrap().map_or(Real::INFINITY, |contact| contact.dist);
+            for prediction in PREDICTIONS {
+                match asked.contact(prediction).unwrap() {
+                    Some(contact) => {
+                        asked.assert(contact.dist <= prediction, ("beyond", prediction, contact.dist));
+                        asked.assert((contact.dist - all).abs() <= slack, (prediction, contact.dist, all));
+                    }
+                    None => {
+                        dropped += usize::from(prediction < 0.0);
+                        asked.assert(all >= prediction - slack, ("lost", prediction, all));
+                    }
+                }
+            }
+        });
+        assert!(dropped > 100, "{kind:?} {dropped}");
+    }
+}
+
+/// Whether a mesh may have turned or refused the normal of a contact.
+fn has_constraints(placement: &Placement) -> bool {
+    placement.wall.as_trimesh().is_some_and(|mesh| mesh.triangle_normal_constraints(0).is_some())
+}
+
+#[test]
+fn the_least_distance_of_a_manifold_is_the_contacts() {
+    for kind in Wall::ALL.into_iter().filter(|kind| ![Wall::Voxels, Wall::Chain, Wall::Link].contains(kind)) {
+        let slack = tolerance(kind);
+        let mut compared = 0;
+        each(kind, 304, |asked, _| {
+            if has_constraints(asked.placement) {
+                return;
+            }
+            for prediction in PREDICTIONS.into_iter().filter(|prediction| prediction.is_finite()) {
+                let least = asked.least_of_manifolds(prediction);
+                match asked.contact(prediction).unwrap() {
+                    Some(contact) if contact.dist < prediction - slack => {
+                        compared += 1;
+                        let is_least = (least - contact.dist).abs() <= slack;
+                        asked.assert(is_least, (prediction, least, contact.dist));
+                    }
+                    Some(_) => {}
+                    None => asked.assert(least >= prediction - slack, ("extra", prediction, least)),
+                }
+                let is_within = least <= prediction + 1e-12 || least == Real::INFINITY;
+                asked.assert(is_within, ("beyond", prediction, least));
+            }
+        });
+        assert!(compared > 300, "{kind:?} {compared}");
     }
 }

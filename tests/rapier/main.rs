@@ -1,5 +1,6 @@
 //! Links and chains in rapier worlds.
 
+mod aligned;
 mod beam;
 mod chain;
 mod drawn;

@@ -1,7 +1,9 @@
 //! The dispatcher between a robot and every kind of shape that parry has: an answer or a refusal, never a panic and
-//! never a NaN, whatever the pose, the margin and the options.
+//! never a NaN, whatever the pose, the margin and the options. Of aligned pairs that touch more is asked.
 
 use crate::source::Source;
+use continuum_testing::Random;
+use continuum_testing::placements::{Placement, Wall};
 use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,
@@ -21,13 +23,41 @@ const KINDS: u8 = 21;
 
 pub fn dispatcher(bytes: &[u8]) {
     let mut source = Source::new(bytes);
-    let Some(robot) = robot(&mut source) else { return };
+    let source = &mut source;
+    let _ = any_pair(source);
+    if source.flag() {
+        aligned_pair(source);
+    }
+}
+
+/// Numbers of any kind; nothing if they make no robot or no other shape.
+fn any_pair(source: &mut Source) -> Option<()> {
+    let robot = robot(source)?;
     let kind = source.below(KINDS);
-    let Some(other) = other(&mut source, kind) else { return };
-    let pose = pose(&mut source);
+    let other = other(source, kind)?;
+    let pose = pose(source);
     let margin = source.number();
     for (pos12, g1, g2) in [(pose, &*robot, &*other), (pose.inverse(), &*other, &*robot)] {
-        ask(&mut source, &pos12, g1, g2, margin);
+        ask(source, &pos12, g1, g2, margin);
+    }
+    Some(())
+}
+
+/// A robot that is aligned with a wall and touches it: there what the queries say fits together.
+fn aligned_pair(source: &mut Source) {
+    let wall = Wall::ALL[source.below(Wall::ALL.len() as u8)];
+    let seed = (0..8).fold(0, |seed, _| seed << 8 | u64::from(source.byte()));
+    let Placement { robot, wall, pose, .. } = Random::new(seed).placement(wall);
+    let margin = source.number();
+    let dispatcher = ContinuumDispatcher::default();
+    for (pos12, g1, g2) in [(pose, &*robot, &*wall), (pose.inverse(), &*wall, &*robot)] {
+        let problem = || format!("{:?} {:?} {pos12:?} {margin}", g1.as_typed_shape(), g2.as_typed_shape());
+        ask(source, &pos12, g1, g2, margin);
+        let Ok(all) = dispatcher.contact(&pos12, g1, g2, f64::MAX) else { continue };
+        assert!(all.is_some(), "no contact: {}", problem());
+        if let Ok(Some(contact)) = dispatcher.contact(&pos12, g1, g2, margin) {
+            assert!(contact.dist <= margin, "beyond: {}", problem());
+        }
     }
 }
 
