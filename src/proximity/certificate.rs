@@ -7,7 +7,7 @@
 //! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
 //! normals of the features (faces, edges, axis) are tried as well.
 
-use super::checks::{check_ends, check_vertex};
+use super::checks::{check_ends, check_vertex, rigid_pose};
 use super::report::corners;
 use super::{LinkProximity, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
@@ -135,10 +135,7 @@ struct CertifiedLink {
 impl CertifiedLink {
     /// `number` is the link's position in its chain.
     fn new(link: &ModifiedCylinder, pose: &Pose, number: usize) -> Result<Self, ProximityError> {
-        if !pose.is_finite() {
-            return Err(ProximityError::PoseNotFinite);
-        }
-        let link = link.transformed(pose);
+        let link = link.transformed(&rigid_pose(pose)?);
         let (start, end) = (link.start(), link.end());
         check_ends(number, [start, end])?;
         Ok(Self { start, end, radius: link.radius(), flat: link.flat() })

@@ -1,7 +1,7 @@
 //! What every engine refuses.
 
 use super::{MeshError, ProximityError};
-use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode};
+use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode, NotRigid, rigid};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A margin that can be kept.
@@ -20,11 +20,20 @@ pub(crate) fn check_bound(bound: Real) -> Result<(), ProximityError> {
     if bound.is_nan() { Err(ProximityError::NotANumber { parameter: "bound" }) } else { Ok(()) }
 }
 
-/// A pose that keeps every link within range. `ends` are base and tip in the mesh's frame.
-pub(super) fn check_pose(robot: &Chain, pose: &Pose, [base, tip]: [Vector; 2]) -> Result<(), ProximityError> {
+/// The pose with a rotation of unit length: every query places its robot by this.
+pub(crate) fn rigid_pose(pose: &Pose) -> Result<Pose, ProximityError> {
     if !pose.is_finite() {
         return Err(ProximityError::PoseNotFinite);
     }
+    rigid(pose).map_err(|NotRigid { length }| ProximityError::PoseNotRigid { length })
+}
+
+/// A pose that keeps every link within range. `ends` are base and tip in the mesh's frame.
+pub(super) fn check_range(
+    robot: &Chain,
+    pose: &Pose,
+    [base, tip]: [Vector; 2],
+) -> Result<(), ProximityError> {
     // The capsule around all links, from base to tip, spares looking at each.
     if let Some(LinkNode::Inner { bound, .. }) = robot.link_tree().first()
         && base.abs().max(tip.abs()).max_element() + bound.radius <= COORDINATE_LIMIT

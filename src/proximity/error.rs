@@ -60,6 +60,12 @@ pub enum ProximityError {
     /// The robot's pose has a component that is NaN or infinite.
     #[error("the robot's pose is not finite; check its translation and rotation")]
     PoseNotFinite,
+    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even for single precision.
+    #[error("the robot's pose has a quaternion of length {length}; normalise its rotation")]
+    PoseNotRigid {
+        /// The length of the quaternion.
+        length: Real,
+    },
     /// The pose carries a link beyond the range in which squares of coordinates are finite.
     #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
     OutOfRange {

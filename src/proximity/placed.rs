@@ -6,7 +6,7 @@
 //! play a part in the rounding, and nothing overflows or vanishes. Distances and bounds outside of a pair are plain
 //! ones, in the unit of the mesh.
 
-use super::checks::check_pose;
+use super::checks::{check_range, rigid_pose};
 use super::{LinkProximity, ProximityError};
 use crate::distance::{
     Axial, Closest, DoubleDouble, Face, Link, Scalar, Vec3, gives_direction, segment_segment,
@@ -21,7 +21,8 @@ const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedRobot<'a> {
     robot: &'a Chain,
-    pose: &'a Pose,
+    /// Its rotation is of unit length.
+    pose: Pose,
     /// Base and tip in the mesh's frame.
     ends: [Vector; 2],
     /// By how much a rotation that is not quite of unit length stretches the robot.
@@ -37,11 +38,12 @@ pub(crate) struct PlacedRobot<'a> {
 
 impl<'a> PlacedRobot<'a> {
     /// # Errors
-    /// The pose is not finite or moves a link out of range.
-    pub(crate) fn new(robot: &'a Chain, pose: &'a Pose) -> Result<Self, ProximityError> {
+    /// The pose is not finite or not rigid, or moves a link out of range.
+    pub(crate) fn new(robot: &'a Chain, pose: &Pose) -> Result<Self, ProximityError> {
+        let pose = rigid_pose(pose)?;
         let links = robot.links();
         let ends = [pose * links[0].start(), pose * links[links.len() - 1].end()];
-        check_pose(robot, pose, ends)?;
+        check_range(robot, &pose, ends)?;
         let stretch = pose.rotation.length_squared().max(1.0);
         let around = match robot.link_tree()[0] {
             LinkNode::Inner { bound, .. } => bound.radius * stretch,
@@ -59,12 +61,12 @@ impl<'a> PlacedRobot<'a> {
 
     /// A link in the mesh's frame.
     pub(crate) fn link(&self, link: usize) -> PlacedLink {
-        PlacedLink::new(&self.robot.links()[link], self.pose)
+        PlacedLink::new(&self.robot.links()[link], &self.pose)
     }
 
     /// All links in the mesh's frame.
     pub(crate) fn placed_links(&self) -> impl Iterator<Item = PlacedLink> {
-        self.robot.links().iter().map(|link| PlacedLink::new(link, self.pose))
+        self.robot.links().iter().map(|link| PlacedLink::new(link, &self.pose))
     }
 
     /// How long the links before a link are, together.
@@ -103,7 +105,7 @@ impl<'a> PlacedRobot<'a> {
                 (ends, radius, [false; 2])
             }
             LinkNode::Leaf(link) => {
-                let link = self.robot.links()[*link].transformed(self.pose);
+                let link = self.robot.links()[*link].transformed(&self.pose);
                 ([link.start(), link.end()], link.radius(), link.flat())
             }
         }

@@ -1,5 +1,5 @@
 use super::ProximityError;
-use super::checks::{check_ends, check_triangle, check_vertex};
+use super::checks::{check_ends, check_triangle, check_vertex, rigid_pose};
 use super::placed::PlacedLink;
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -44,17 +44,14 @@ impl LinkProximity {
     /// The same in the mesh's frame.
     ///
     /// # Errors
-    /// The robot does not have it, or the pose is not finite or moves it out of range.
+    /// The robot does not have it, or the pose is not finite or not rigid, or moves it out of range.
     pub(super) fn transformed_link(
         &self,
         robot: &Chain,
         pose: &Pose,
     ) -> Result<ModifiedCylinder, ProximityError> {
         let link = self.find_link(robot)?;
-        if !pose.is_finite() {
-            return Err(ProximityError::PoseNotFinite);
-        }
-        let link = link.transformed(pose);
+        let link = link.transformed(&rigid_pose(pose)?);
         check_ends(self.link as usize, [link.start(), link.end()])?;
         Ok(link)
     }

@@ -6,9 +6,10 @@
 //! constant curvature continuum robots", 2010, equation 1). The next section begins in the frame that this one has
 //! carried along, without twist.
 
+use super::rigid_pose::rotation_by;
 use super::tube::check_sections;
 use super::{RobotError, Tube, TubeSection};
-use parry3d_f64::math::{Pose, Real, Rotation, Vector};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A stretch of constant curvature, for [`ConstantCurvature`] and [`BendingMotion`](crate::BendingMotion).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,10 +143,10 @@ impl Arc {
         // Turning about this vector bends z towards `bend`.
         let turn = Vector::new(-y, x, 0.0);
         let angle = turn.length() * length;
-        let sinc = |x: Real| if x == 0.0 { 1.0 } else { x.sin() / x };
+        let sinc = |x: Real| if x == 0.0 { 1.0 } else { libm::sin(x) / x };
         // Not 1 - cos, which loses half of the digits where the angle is small.
         let across = 0.5 * length * length * sinc(0.5 * angle) * sinc(0.5 * angle);
         let point = Vector::Z * (length * sinc(angle)) + Vector::new(x, y, 0.0) * across;
-        self.frame * Pose::from_parts(point, Rotation::from_scaled_axis(turn * length))
+        self.frame * Pose::from_parts(point, rotation_by(turn * length))
     }
 }

@@ -98,6 +98,14 @@ pub enum RobotError {
         /// The largest magnitude accepted.
         limit: Real,
     },
+    /// The rotation of a pose scales: the length of its quaternion is not 1, even for single precision.
+    #[error("the pose `{parameter}` has a quaternion of length {length}; normalise its rotation")]
+    PoseNotRigid {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// The length of the quaternion.
+        length: Real,
+    },
     /// A point of a motion's centreline moves faster than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} moves at {found}, more than the {stated} \

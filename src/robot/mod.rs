@@ -12,6 +12,7 @@ mod link_tree;
 mod modified_cylinder;
 mod motion;
 mod registration;
+mod rigid_pose;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
@@ -29,11 +30,12 @@ pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
+pub(crate) use motion::Sections;
 pub use motion::{
     BendingMotion, BendingRates, LinearMotion, Motion, RigidMotion, Speed, bending_speed, verify_motion,
 };
-pub(crate) use motion::{Sampled, Sections};
 pub use registration::{MatrixError, pose_from_matrix};
+pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;

@@ -24,4 +24,5 @@ mod thin_links;
 mod threads;
 mod ties;
 mod tube;
+mod tube_jumps;
 mod visits;

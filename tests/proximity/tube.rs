@@ -5,8 +5,10 @@ use continuum_scene::ventricle;
 use continuum_testing::{Arcs, Random, Stretch};
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Certificate, Clearance, Decision, Proximity, ProximityError};
-use parry_continuum::{Chain, RobotError, Tube, TubeSection};
+use parry_continuum::proximity::{
+    BvhSearch, Certificate, Clearance, Decision, Exhaustive, Proximity, ProximityError,
+};
+use parry_continuum::{BendingMotion, BendingSection, Chain, RigidMotion, RobotError, Tube, TubeSection};
 use std::sync::Arc;
 
 fn anatomy() -> TriMesh {
@@ -405,9 +407,69 @@ fn a_pose_of_single_precision_keeps_lengths() {
     let tube = Tube::from(&Chain::cylinders(&[Vector::ZERO, 5.0 * Vector::Z], &[1.0]).unwrap());
     let corners = [[-99.0, -99.0], [99.0, -99.0], [0.0, 99.0]].map(|[x, y]| Vector::new(x, y, 15.0));
     let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
-    for w in [1.0, 0.99999994, 1.0000001, 0.5, 3.0] {
+    for w in [1.0, 0.99999994, 1.0000001] {
         let pose = Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 0.0, w));
         let found = search.clearance(&tube, &pose, 1e-9).unwrap();
         assert!(found.lower <= 10.0 && 10.0 <= found.upper, "{w}: {found:?}");
+    }
+}
+
+/// One rule for all: rounding of single precision is made good, and any other length of a quaternion is refused, however
+/// large or small; chains, tubes, certificates and motions agree.
+#[test]
+fn rotations_that_scale_are_refused_by_all() {
+    let chain =
+        Chain::cylinders(&[Vector::new(1e3, -700.0, 0.0), Vector::new(1e3, -700.0, 5.0)], &[1.0]).unwrap();
+    let tube = Tube::from(&chain);
+    let corners = [[-9e3, -9e3], [9e3, -9e3], [0.0, 9e3]].map(|[x, y]| Vector::new(x, y, 2500.0));
+    let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    let (mut search, mut all) = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f64>::new(&mesh).unwrap());
+    let mut random = Random::new(8);
+    let posed = |q: Rotation| Pose::from_parts(Vector::new(1.0, 2.0, 3.0), q);
+    let still = |pose: Pose| {
+        let bent = BendingSection { length: 5.0, radius: 1.0, bend: [0.0, 0.1] };
+        let bending = BendingMotion::new(&[bent], &[bent], pose).map(|_| ());
+        [bending, RigidMotion::new(tube.clone(), [Pose::IDENTITY, pose]).map(|_| ())]
+    };
+    for round in 0..300 {
+        let unit = random.pose(0.0).rotation;
+        let exact = search.minimum(&chain, &posed(unit)).unwrap();
+        // Rounded to single precision, or as wrong as a few products in it.
+        let rounded = unit.to_array().map(|c| f64::from(c as f32));
+        let rounded = if round % 2 == 0 {
+            Rotation::from_array(rounded)
+        } else {
+            unit * (1.0 + 9e-7 * random.between(-1.0, 1.0))
+        };
+        let pose = posed(rounded);
+        let found = search.minimum(&chain, &pose).unwrap();
+        // A turn by 2e-7, but no scale, which would be 1e-3 and more.
+        assert!(
+            (found.distance - exact.distance).abs() < if round % 2 == 0 { 1e-3 } else { 1e-9 },
+            "{found:?} {exact:?}"
+        );
+        assert_eq!(all.minimum(&chain, &pose).unwrap(), found);
+        let certificate = found.certify(&chain, &pose, &mesh).unwrap();
+        assert!(
+            certificate.lower <= found.distance * (1.0 + 1e-12)
+                && found.distance <= certificate.upper * (1.0 + 1e-12)
+        );
+        let bounds = search.clearance(&tube, &pose, 1e-9).unwrap();
+        assert!(bounds.lower <= found.distance && found.distance <= bounds.upper, "{bounds:?} {found:?}");
+        assert!(still(pose).iter().all(Result::is_ok));
+        for length in [0.0, 1e-162, 1e-155, 0.5, 1.0 - 1e-5, 1.0 + 1e-5, 3.0, 1e155, 1e300] {
+            let pose = posed(unit * length);
+            let is_refused = |error: ProximityError| matches!(error, ProximityError::PoseNotRigid { length: told } if (told - length).abs() <= 1e-12 * length);
+            assert!(is_refused(search.minimum(&chain, &pose).unwrap_err()), "{length}");
+            assert!(is_refused(search.clears_inside(&chain, &pose, 1.0).unwrap_err()), "{length}");
+            assert!(is_refused(all.minimum(&chain, &pose).unwrap_err()), "{length}");
+            assert!(is_refused(search.clearance(&tube, &pose, 1.0).unwrap_err()), "{length}");
+            assert!(is_refused(search.tube_clears(&tube, &pose, 1.0, 1.0).unwrap_err()), "{length}");
+            assert!(is_refused(found.certify(&chain, &pose, &mesh).unwrap_err()), "{length}");
+            assert!(
+                still(pose).iter().all(|made| matches!(made, Err(RobotError::PoseNotRigid { .. }))),
+                "{length}"
+            );
+        }
     }
 }

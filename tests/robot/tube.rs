@@ -47,6 +47,14 @@ fn bad_samples_are_named() {
         (0..40).map(|k| f64::from(k) * 0.1).map(|a| Vector::new(a.cos(), a.sin(), 0.0)).collect();
     assert!(matches!(refuse(&arc, &[1.01; 39], None), RobotError::BendsWithinRadius { .. }));
     assert!(Tube::from_samples(&arc, &[0.99; 39], None).is_ok());
+    // Repeated points before the bend do not count themselves away.
+    let mut shaft =
+        vec![Vector::new(1.0, -0.2, 0.0), Vector::new(1.0, -0.2, 0.0), Vector::new(1.0, -0.1, 0.0)];
+    shaft.extend([shaft[2], Vector::X]);
+    shaft.extend(&arc);
+    let radii: Vec<_> = (1..shaft.len()).map(|k| if k < 5 { 0.1 } else { 1.01 }).collect();
+    let refused = refuse(&shaft, &radii, None);
+    assert!(matches!(refused, RobotError::BendsWithinRadius { index: 4, .. }), "{refused:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::kernels::Kernels;
 use super::pass::{Aim, Pass, Triangles};
 use crate::Chain;
-use crate::proximity::checks::{check_bound, check_margin};
+use crate::proximity::checks::{check_bound, check_margin, rigid_pose};
 use crate::proximity::engine::{HasMesh, pairs};
 use crate::proximity::local_minima::{LocalMinima, RobotContacts, Wall};
 use crate::proximity::mesh::Mesh;
@@ -149,7 +149,8 @@ impl<T: SearchPrecision> Exhaustive<T> {
     fn least(&self, robot: &Chain, pose: &Pose, number: usize) -> LinkProximity {
         self.least_within(number).unwrap_or_else(|| {
             // Without a bound some triangle is always the nearest; this is any other.
-            let link = PlacedLink::new(&robot.links()[0], pose);
+            let pose = rigid_pose(pose).unwrap_or(*pose); // as it was searched for
+            let link = PlacedLink::new(&robot.links()[0], &pose);
             link.measure(0, self.triangles.mesh.corners(0)).report(0)
         })
     }

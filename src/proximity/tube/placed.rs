@@ -3,6 +3,7 @@
 use super::Piece;
 use crate::distance::Scalar;
 use crate::proximity::ProximityError;
+use crate::proximity::checks::rigid_pose;
 use crate::proximity::placed::PlacedLink;
 use crate::robot::{COORDINATE_LIMIT, Face, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -30,12 +31,9 @@ pub(crate) struct PlacedTube<'a> {
 
 impl<'a> PlacedTube<'a> {
     /// # Errors
-    /// The tube has no section, or the pose is not finite or moves it out of range.
+    /// The tube has no section, or the pose is not finite or not rigid, or moves it out of range.
     pub(crate) fn new(tube: &'a Tube, pose: &Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
-        let pose = rigid(pose);
-        if !pose.is_finite() {
-            return Err(ProximityError::PoseNotFinite);
-        }
+        let pose = rigid_pose(pose)?;
         let radius = tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
         // A rotation keeps lengths, and a length is at most twice the largest coordinate.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
@@ -111,13 +109,4 @@ impl<'a> PlacedTube<'a> {
     pub(super) fn face(&self, face: &Face) -> Face {
         Face { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
     }
-}
-
-/// The pose with a rotation of unit length, as it is if that is so but for rounding.
-fn rigid(pose: &Pose) -> Pose {
-    let squared = pose.rotation.length_squared();
-    if (squared - 1.0).abs() <= 4.0 * Real::EPSILON {
-        return *pose;
-    }
-    Pose::from_parts(pose.translation, pose.rotation.normalize())
 }

@@ -20,7 +20,7 @@
 //! times that.
 
 use super::PlacedTube;
-use crate::robot::Section;
+use crate::robot::{Section, length};
 use parry3d_f64::math::{Real, Vector};
 
 /// How many places between a face and a place are tried, each half as far from the latter as the one before.
@@ -68,8 +68,9 @@ impl PlacedTube<'_> {
             is_beside = false;
             let across = offset - face.outward * ahead;
             let size = across.length();
-            let upper =
-                ahead.abs().hypot((size - section.radius).max(0.0)) + section.radius * face.tilt + rounding;
+            let upper = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
+                + section.radius * face.tilt
+                + rounding;
             if upper < best.upper {
                 let share = if size > section.radius { section.radius / size } else { 1.0 };
                 best = Witness { upper, arc: face_arc, on_robot: face.centre + across * share };

@@ -21,8 +21,7 @@ impl BvhSearch {
     /// The work is a query for each shape that the proof takes: one if the motion is small beside the room that it has,
     /// and more where it passes close by. Only the pieces that are not proven yet are looked at again.
     ///
-    /// The stated speeds are trusted. [`verify_motion`](crate::verify_motion) tries them; in debug builds every query does
-    /// too, with the shapes that it needs anyway, and refuses a motion that is found too fast.
+    /// The stated speeds are trusted. [`verify_motion`](crate::verify_motion) tries them: call it in your tests.
     ///
     /// The query allocates nothing once its memory has grown; making the shapes may. [`LinearMotion`](crate::LinearMotion)
     /// and [`RigidMotion`](crate::RigidMotion) make theirs in memory that is used again, and so can a motion of one's own

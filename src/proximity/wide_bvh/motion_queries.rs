@@ -18,7 +18,7 @@ use super::tube_queries::{Found, TubeSearch};
 use crate::distance::Scalar;
 use crate::proximity::tube::{Piece, PlacedTube};
 use crate::proximity::{FirstContact, MotionAnswer, ProximityError};
-use crate::robot::{Motion, Sampled, Sections, Tube};
+use crate::robot::{Motion, Sections, Tube};
 use parry3d_f64::math::{Pose, Real};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -28,8 +28,6 @@ use std::ops::Range;
 pub(super) struct MotionMemory {
     tube: Tube,
     sections: Sections,
-    /// The last shape and this one.
-    sampled: [Sampled; 2],
     /// Pieces that wait for their turn in the present shape, the next one last.
     pieces: Vec<Waiting>,
     /// What `TubeSearch` keeps pieces in.
@@ -44,7 +42,6 @@ impl Default for MotionMemory {
         Self {
             tube: Tube::empty(),
             sections: Sections::default(),
-            sampled: Default::default(),
             pieces: Vec::new(),
             begun: Vec::new(),
             failed: Vec::new(),
@@ -192,20 +189,11 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Fills the tube with the shape at `t`.
     fn shape(&mut self, t: Real) -> Result<Pose, ProximityError> {
-        let MotionMemory { tube, sections, sampled, .. } = &mut *self.memory;
+        let MotionMemory { tube, sections, .. } = &mut *self.memory;
         // Only what this shape states counts.
         tube.forget_error();
         let pose = self.motion.shape(t, tube)?;
         sections.check(t, tube)?;
-        // In debug builds the shapes that come along also try the stated speeds.
-        if cfg!(debug_assertions) {
-            sampled.swap(0, 1);
-            sampled[1].take(t, tube, &pose, 2);
-            if self.shapes > 0 {
-                let [before, here] = &*sampled;
-                here.check_from(before, self.motion)?;
-            }
-        }
         self.shapes += 1;
         Ok(pose)
     }

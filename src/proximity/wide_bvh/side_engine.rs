@@ -3,6 +3,7 @@
 use super::BvhSearch;
 use super::winding::Winding;
 use crate::Chain;
+use crate::proximity::checks::rigid_pose;
 use crate::proximity::{InsideAnswer, Proximity, ProximityError, Side};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -60,7 +61,8 @@ impl BvhSearch {
         margin: Real,
     ) -> Result<InsideAnswer, ProximityError> {
         let clears = self.clears(robot, pose, margin)?;
-        let base = robot.links().first().map_or(Side::Undecided, |link| self.side(*pose * link.start()));
+        let pose = rigid_pose(pose)?;
+        let base = robot.links().first().map_or(Side::Undecided, |link| self.side(pose * link.start()));
         Ok(InsideAnswer { base, clears })
     }
 }

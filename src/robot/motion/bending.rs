@@ -18,7 +18,7 @@
 //! where the last section counts as far as s. All terms grow with the lengths, so the longest during the motion count.
 //! With lengths that change at constant rates, s' is linear in the share and largest at an end of the piece.
 
-use super::{Motion, Speed, check_pose};
+use super::{Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::constant_curvature::check;
 use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
@@ -110,8 +110,8 @@ impl BendingMotion {
     /// The motion from the sections `from` to the sections `to`.
     ///
     /// # Errors
-    /// The two differ in number or in radii; a length that is not positive, or a number that is not finite; or a section
-    /// with a flat end whose curvature times its radius may be 1 or more.
+    /// The two differ in number or in radii; a length that is not positive, or a number that is not finite; a pose
+    /// whose rotation is not of unit length; or a section with a flat end whose curvature times its radius may be 1 or more.
     pub fn new(from: &[BendingSection], to: &[BendingSection], pose: Pose) -> Result<Self, RobotError> {
         // Radii that are not numbers are refused below.
         let same = |a: Real, b: Real| a == b || a.is_nan() && b.is_nan();
@@ -124,7 +124,7 @@ impl BendingMotion {
         }
         check("from", from)?;
         check("to", to)?;
-        check_pose("pose", &pose)?;
+        let pose = rigid_pose("pose", &pose)?;
         let bend = |section: &BendingSection| Vector::new(section.bend[0], section.bend[1], 0.0);
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),

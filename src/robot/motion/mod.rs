@@ -3,6 +3,7 @@
 mod bending;
 mod linear;
 mod rigid;
+mod sampled;
 mod sections;
 #[cfg(test)]
 mod tests;
@@ -12,10 +13,9 @@ pub use bending::{BendingMotion, BendingRates, bending_speed};
 pub use linear::LinearMotion;
 pub use rigid::RigidMotion;
 pub(crate) use sections::Sections;
-pub(crate) use verify::Sampled;
 pub use verify::verify_motion;
 
-use super::{COORDINATE_LIMIT, RobotError, Tube};
+use super::{COORDINATE_LIMIT, NotRigid, RobotError, Tube, rigid};
 use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, and a promise of how fast it moves.
@@ -83,12 +83,12 @@ pub struct Speed {
     pub turn: Real,
 }
 
-/// A pose of a motion that is finite and within range.
-fn check_pose(parameter: &'static str, pose: &Pose) -> Result<(), RobotError> {
+/// The pose of a motion with a rotation of unit length, if it is finite, within range and rigid.
+fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
     // The parts of a rotation are small where they are finite at all.
     let parts = pose.translation.to_array().into_iter().chain(pose.rotation.to_array());
-    match parts.into_iter().find(|part| !(part.abs() <= COORDINATE_LIMIT)) {
-        Some(value) => Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT }),
-        None => Ok(()),
+    if let Some(value) = parts.into_iter().find(|part| !(part.abs() <= COORDINATE_LIMIT)) {
+        return Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT });
     }
+    rigid(pose).map_err(|NotRigid { length }| RobotError::PoseNotRigid { parameter, length })
 }

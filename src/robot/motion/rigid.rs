@@ -5,8 +5,9 @@
 //! turns faster than w. |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is
 //! within k l^2 / 8 of its chord, where the larger of the chord's two ends counts.
 
-use super::{Motion, Speed, check_pose};
+use super::{Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
+use crate::robot::rigid_pose::rotation_by;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
@@ -38,10 +39,9 @@ impl RigidMotion {
     /// The motion of `tube` from the first pose to the second.
     ///
     /// # Errors
-    /// A pose is not finite or out of range.
+    /// A pose is not finite or out of range, or its rotation is not of unit length.
     pub fn new(tube: Tube, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
-        check_pose("from", &from)?;
-        check_pose("to", &to)?;
+        let (from, to) = (rigid_pose("from", &from)?, rigid_pose("to", &to)?);
         let way = (from.rotation.inverse() * to.rotation).normalize();
         let way = if way.w < 0.0 { -way } else { way };
         let shift = to.translation - from.translation;
@@ -54,13 +54,13 @@ fn scaled_axis(rotation: Rotation) -> Vector {
     let half = Vector::new(rotation.x, rotation.y, rotation.z);
     let sine = half.length();
     // The sine of half of the angle, which is as long as the angle where its square vanishes.
-    half * if sine > 0.0 { 2.0 * sine.atan2(rotation.w) / sine } else { 2.0 }
+    half * if sine > 0.0 { 2.0 * libm::atan2(sine, rotation.w) / sine } else { 2.0 }
 }
 
 impl Motion for RigidMotion {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         tube.clone_from(&self.tube);
-        let rotation = self.from.rotation * Rotation::from_scaled_axis(self.turn * t);
+        let rotation = self.from.rotation * rotation_by(self.turn * t);
         Ok(Pose::from_parts(self.from.translation + self.shift * t, rotation.normalize()))
     }
 
@@ -69,7 +69,7 @@ impl Motion for RigidMotion {
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let angle = self.turn.length() * up;
         let Some(section) = self.tube.sections().get(section) else { return Speed { point: 0.0, turn: 0.0 } };
-        let [a, b] = shares.map(|share| self.turn.cross(self.tube.at_share(section, share).0).length());
+        let [a, b] = shares.map(|share| self.turn.cross(self.tube.at_share(section, share).point).length());
         let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
         // The ends are between samples, and the curve beside them.
         let off = 0.125 * section.curvature * length * length + section.deviation + self.tube.error();

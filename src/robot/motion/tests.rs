@@ -10,8 +10,8 @@ use parry3d_f64::math::{Real, Vector};
 fn at(motion: &dyn Motion, t: Real, section: usize, share: Real) -> (Vector, Vector) {
     let mut tube = Tube::empty();
     let pose = motion.shape(t, &mut tube).unwrap();
-    let (point, direction, _) = tube.at_share(&tube.sections()[section], share);
-    (pose * point, pose.rotation * direction)
+    let here = tube.at_share(&tube.sections()[section], share);
+    (pose * here.point, pose.rotation * here.direction)
 }
 
 fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {

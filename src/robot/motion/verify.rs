@@ -1,15 +1,26 @@
 //! Whether a motion keeps to the speeds that it states.
+//!
+//! What one step shows is little: a point between samples is known to their deviation, every point to the stated error,
+//! and where steps are fine, a motion of any speed stays within that. So shapes far apart in time are compared too, 1, 2, 4
+//! and so on steps apart and with the first shape: the way that was stated for the steps between adds up, and what is
+//! not known of two shapes counts once.
 
-use super::{Motion, Sections};
+use super::sampled::{Moved, Place, Sampled, places};
+use super::{Motion, Sections, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
-use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::math::Real;
 
-/// Tries the speeds that a motion states, at `steps` even steps of its time and nine places in each section.
+/// Tries the speeds that a motion states, at `steps` even steps of its time and nine places in each section, and at samples.
 ///
-/// From one step to the next no point may move farther than its stated speed allows, and no direction may turn more. A
-/// bound that is too low only for a moment, or only between two places, shows in steps that are fine enough. Where a tube
-/// is given by samples, directions between them are only roughly known, and a turn must be so much larger to be found.
+/// From one step to the next no point may move farther than its stated speed allows, and no direction may turn more; nor
+/// on the way of 2, 4, 8 and more steps, or from the beginning. A bound that is too low only for a moment, or only between
+/// two places, shows in steps that are fine enough.
+///
+/// What the shapes leave open cannot be held against a motion: a stated error ([`Tube::with_error`](crate::Tube::with_error)),
+/// twice, and between samples how far the curve may be from their lines. A stated speed that is too low is found if it
+/// makes more of a difference than that, at some place from some shape to a later one. Steps as short as one likes do no
+/// harm. At samples that keep their shares of the section, and where the curve is a function, only the stated error is left.
 ///
 /// # Errors
 /// The first time and place at which the motion is faster than stated, with both speeds; a shape that cannot be made; or
@@ -34,101 +45,74 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// ```
 pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError> {
     let steps = steps.max(1);
-    let (mut tube, mut sections) = (Tube::empty(), Sections::default());
-    let (mut before, mut here) = (Sampled::default(), Sampled::default());
+    let (mut tube, mut sections, mut here) = (Tube::empty(), Sections::default(), Sampled::default());
+    let (mut all, mut stated) = (Vec::new(), Vec::new());
+    // The first shape; then the last one of every step, of every second one, of every fourth and so on.
+    let mut kept = Vec::<Sampled>::new();
     for step in 0..=steps {
         let t = Real::from(step) / Real::from(steps);
         tube.forget_error();
-        let pose = motion.shape(t, &mut tube)?;
+        let pose = rigid_pose("motion", &motion.shape(t, &mut tube)?)?;
         sections.check(t, &tube)?;
-        std::mem::swap(&mut before, &mut here);
-        here.take(t, &tube, &pose, 8);
+        if step == 0 {
+            all = places(&tube);
+        }
+        here.take(t, &tube, &pose, &all);
         if step > 0 {
-            here.check_from(&before, motion)?;
+            let times = [Real::from(step - 1) / Real::from(steps), t];
+            stated.clear();
+            stated.extend(all.iter().map(|place| way_and_angle(motion, place, times)));
+            kept.iter_mut().for_each(|before| before.add(&stated));
+            // Those of every 2^k steps, if this is one, and the first.
+            let met = 2 + step.trailing_zeros() as usize;
+            for before in kept.iter().take(met) {
+                check(before, &here, &all, motion)?;
+            }
+        }
+        let due = if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
+        kept.resize_with(kept.len().max(2 + steps.ilog2() as usize), Sampled::default);
+        let first = usize::from(step > 0);
+        for before in kept.iter_mut().take(due).skip(first) {
+            before.clone_from(&here);
         }
     }
     Ok(())
 }
 
-/// Some places of a shape.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Sampled {
-    t: Real,
-    places: Vec<Place>,
-    /// What rounding can do to a point.
-    rounding: Real,
+/// How far a place may move, and by how much it may turn, between two times.
+fn way_and_angle(motion: &impl Motion, place: &Place, times: [Real; 2]) -> [Real; 2] {
+    let speed = motion.speed(place.section, place.shares, times);
+    let apart = times[1] - times[0];
+    [speed.point * apart, speed.turn * apart]
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    section: usize,
-    share: Real,
-    point: Vector,
-    /// How far off the point may be.
-    error: Real,
-    direction: Vector,
-    /// How far off the direction may be.
-    tilt: Real,
-}
-
-impl Sampled {
-    /// Samples a shape at `parts` + 1 places in each section.
-    pub(crate) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, parts: u32) {
-        self.t = t;
-        self.places.clear();
-        let mut longest: Real = 0.0;
-        for (number, section) in tube.sections().iter().enumerate() {
-            longest = longest.max(section.end);
-            for part in 0..=parts {
-                let share = Real::from(part) / Real::from(parts);
-                let (point, direction, tilt) = tube.at_share(section, share);
-                self.places.push(Place {
-                    section: number,
-                    share,
-                    point: pose * point,
-                    error: section.deviation + tube.error(),
-                    direction: pose.rotation * direction,
-                    tilt: tilt + 32.0 * Real::UNIT_ROUNDOFF,
-                });
-            }
-        }
-        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate; a place along the
-        // curve by less than one of its length.
-        let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + longest;
-        self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
-    }
-
-    /// # Errors
-    /// Something moved faster than stated on the way from another shape of the same sections.
-    pub(crate) fn check_from(&self, before: &Self, motion: &impl Motion) -> Result<(), RobotError> {
-        let (times, rounding) =
-            ([before.t.min(self.t), before.t.max(self.t)], before.rounding + self.rounding);
-        let apart = times[1] - times[0];
-        if apart <= 0.0 {
-            return Ok(());
-        }
-        for (from, to) in before.places.iter().zip(&self.places) {
-            let &Place { section, share, .. } = to;
-            let stated = motion.speed(section, [share; 2], times);
-            let t = 0.5 * (times[0] + times[1]);
-            let moved = (to.point - from.point).length() - rounding - from.error - to.error;
+/// # Errors
+/// Something moved faster than stated on the way from an earlier shape to a later one.
+fn check(before: &Sampled, here: &Sampled, places: &[Place], motion: &impl Motion) -> Result<(), RobotError> {
+    let times = [before.t, here.t];
+    let (t, apart) = (0.5 * (times[0] + times[1]), times[1] - times[0]);
+    for (number, place) in places.iter().enumerate() {
+        let Some(Moved { way, angle }) = before.moved(here, number) else { continue };
+        let (whole, steps) = (way_and_angle(motion, place, times), before.stated(number));
+        // Sums of fewer than 2^32 terms above 0, each of which has a few roundings.
+        let up = 1.0 + 2.0_f64.powi(34) * Real::UNIT_ROUNDOFF;
+        let &Place { section, shares: [share, _] } = place;
+        for (moved, [whole, steps], is_turn) in
+            [(way, [whole[0], steps[0]], false), (angle, [whole[1], steps[1]], true)]
+        {
             // Written so that NaN is too low.
-            let keeps = moved <= stated.point * apart;
-            if !keeps {
-                let (found, stated) = (moved / apart, stated.point);
-                return Err(RobotError::FasterThanStated { t, section, share, found, stated });
-            }
-            // Without length there is no direction.
-            if from.direction == Vector::ZERO || to.direction == Vector::ZERO {
+            let is_kept = |stated: Real| moved <= stated * up;
+            if is_kept(whole) && is_kept(steps) {
                 continue;
             }
-            let turned = (to.direction - from.direction).length() - from.tilt - to.tilt;
-            let keeps = turned <= stated.turn * apart;
-            if !keeps {
-                let (found, stated) = (turned / apart, stated.turn);
-                return Err(RobotError::TurnsFasterThanStated { t, section, share, found, stated });
-            }
+            let stated = if is_kept(whole) { steps } else { whole } / apart;
+            let found = moved / apart;
+            return Err(if is_turn {
+                RobotError::TurnsFasterThanStated { t, section, share, found, stated }
+            } else {
+                RobotError::FasterThanStated { t, section, share, found, stated }
+            });
         }
-        Ok(())
     }
+    Ok(())
 }

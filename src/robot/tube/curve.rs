@@ -31,6 +31,18 @@ pub(crate) struct Foot {
     pub arc: Real,
 }
 
+/// A place of a curve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub point: Vector,
+    /// How far off the point may be.
+    pub off: Real,
+    /// The unit direction.
+    pub direction: Vector,
+    /// How far off that may be.
+    pub tilt: Real,
+}
+
 impl Clone for Curve {
     fn clone(&self) -> Self {
         match self {
@@ -134,8 +146,10 @@ impl Curve {
         }
     }
 
-    /// The point and the unit direction at a share of the section, and how far that direction may be off.
-    pub(super) fn at_share(&self, section: &Section, share: Real) -> (Vector, Vector, Real) {
+    /// The place at a share of the section: between two samples, at the same share of the line between them.
+    ///
+    /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2 away at its share u.
+    pub(super) fn at_share(&self, section: &Section, share: Real) -> Place {
         match self {
             Self::Samples { points, arcs } => {
                 let [from, to] = self.ticks_around(section, [share; 2]);
@@ -147,12 +161,14 @@ impl Curve {
                 // What the curve may turn by, and what the rounding of a few operations can turn the line by.
                 let length = arcs[to] - arcs[from];
                 let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
-                let off = section.curvature * length * section.stretch + rounding / length;
-                (a + (b - a) * along, direction(b - a), off)
+                let tilt = section.curvature * length * section.stretch + rounding / length;
+                let longest = length * section.stretch;
+                let off = 0.5 * section.curvature * longest * longest * (along * (1.0 - along)).max(0.0);
+                Place { point: a + (b - a) * along, off, direction: direction(b - a), tilt }
             }
             Self::Function(curve) => {
                 let (point, tangent) = curve(section.start + (section.end - section.start) * share);
-                (point, direction(tangent), 0.0)
+                Place { point, off: 0.0, direction: direction(tangent), tilt: 0.0 }
             }
         }
     }

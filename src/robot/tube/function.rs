@@ -88,7 +88,7 @@ impl Tube {
             });
         }
         for (index, section) in tube.sections.iter().enumerate() {
-            check_faces(section, index)?;
+            check_faces(section, || index)?;
         }
         tube.mark_lasting_faces();
         tube.curve = Curve::Function(Arc::new(curve));

@@ -1,6 +1,7 @@
 //! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
 
 mod curve;
+mod direction_at_end;
 mod faces;
 mod from_chain;
 mod function;
@@ -15,7 +16,7 @@ pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
 use super::{Cap, RobotError};
-use curve::{Curve, Foot};
+use curve::{Curve, Foot, Place};
 use parry3d_f64::math::{Real, Vector};
 
 /// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius for each section.
@@ -29,8 +30,9 @@ use parry3d_f64::math::{Real, Vector};
 /// next one. Lengths are in one unit, points in the robot's frame.
 ///
 /// # What is known of the curve
-/// - [`from_samples`](Self::from_samples): the curve goes through the samples and bends nowhere more than they show. A
-///   curve that turns more sharply between two samples than at any of them is not covered: sample more densely.
+/// - [`from_samples`](Self::from_samples): the curve goes through the samples, and each section bends nowhere more than
+///   its samples show at most. Within that its curvature may jump anywhere. A curve that turns more sharply between two
+///   samples than at any of them is not covered: sample more densely.
 /// - [`from_function`](Self::from_function): the curve is the function, and its curvature in each section is at most
 ///   what is stated. [`verify`](Self::verify) tries that on samples.
 /// - `Tube::from(&chain)`: straight pieces with the chain's caps, whose queries have no error but rounding.
@@ -86,10 +88,12 @@ impl Tube {
     /// The tube around a smooth curve through `points`, with one radius for each segment between them.
     ///
     /// `end_tangents` are the curve's directions at the first and the last point, towards the tip, of any length. Without
-    /// them, and at steps in radius, the direction of a flat face is continued from the samples, and what that leaves
-    /// open widens the bounds of every answer near the face.
+    /// them, and at steps in radius, the direction of a flat face is known from the samples alone: to half of the
+    /// section's curvature times the first segment, or better where the section bends there as much as anywhere. What that
+    /// leaves open, times the radius, widens the bounds of every answer near the face.
     ///
-    /// The curvature of a section is the largest that its samples show: turn / distance between neighbouring segments.
+    /// The curvature of a section is the largest that its samples show: turn / distance between neighbouring segments. A
+    /// section of one segment shows nothing of its own; the turns at its two ends count, which its neighbours share.
     /// Repeated points are dropped, together with the radius of the segment without length between them.
     ///
     /// # Errors
@@ -188,10 +192,15 @@ impl Tube {
         self.curve.ticks_around(section, shares)
     }
 
-    /// The point and the unit direction at a share of a section, and how far the direction may be off. Between samples
-    /// they are those of the line that joins them.
-    pub(crate) fn at_share(&self, section: &Section, share: Real) -> (Vector, Vector, Real) {
+    /// The place at a share of a section.
+    pub(crate) fn at_share(&self, section: &Section, share: Real) -> Place {
         self.curve.at_share(section, share)
+    }
+
+    /// The shares of the two samples around a share of a section; none where the curve is a function.
+    pub(crate) fn samples_around(&self, section: &Section, share: Real) -> Option<[Real; 2]> {
+        let Curve::Samples { .. } = self.curve else { return None };
+        Some(self.ticks_around(section, [share; 2]).map(|tick| self.share(section, tick)))
     }
 
     pub(crate) fn empty() -> Self {
@@ -207,10 +216,10 @@ impl Tube {
 }
 
 /// Discs behind a flat face must not stick out of it, which they would where the centreline bends within a radius.
-fn check_faces(section: &Section, index: usize) -> Result<(), RobotError> {
+fn check_faces(section: &Section, index: impl FnOnce() -> usize) -> Result<(), RobotError> {
     let Section { curvature, radius, faces, .. } = *section;
     if faces.iter().any(Option::is_some) && curvature * radius >= 1.0 {
-        return Err(RobotError::BendsWithinRadius { index, curvature, radius });
+        return Err(RobotError::BendsWithinRadius { index: index(), curvature, radius });
     }
     Ok(())
 }

@@ -11,14 +11,12 @@
 //!   long (Schwarz: the chord of an arc of curvature k is the shortest; asin x <= x (1 + x^2 / 5) up to 1/2);
 //! - it leaves the chord by at most k l^2 / 8, where l is its length.
 //!
-//! A face stands across the curve's direction at its centre. Where that is not given it is continued from the section's
-//! first two segments as if the turn went on evenly, and the tilt that is left open is how far the same rule, applied to
-//! the second and third segment, misses the first. For a curvature that changes steadily the miss is three times the
-//! error; for one that jumps within these segments it is twice the error or more. With fewer segments the direction is
-//! that of the first one, and it may be off by k l / 2.
+//! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost everywhere. Which way a
+//! face stands is told in `direction_at_end`.
 
 use super::Tube;
 use super::curve::Curve;
+use super::direction_at_end::direction_at_end;
 use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::distance::Scalar;
@@ -29,17 +27,17 @@ use parry3d_f64::math::{Real, Vector};
 
 /// A segment between two samples.
 #[derive(Clone, Copy)]
-struct Segment {
-    direction: Vector,
-    length: Real,
+pub(super) struct Segment {
+    pub direction: Vector,
+    pub length: Real,
     /// What the rounding of the samples can do to the direction.
-    noise: Real,
+    pub noise: Real,
 }
 
 impl Segment {
     /// None without a length.
     #[inline(always)]
-    fn between(from: Vector, to: Vector, rounding: Real) -> Option<Self> {
+    pub(super) fn between(from: Vector, to: Vector, rounding: Real) -> Option<Self> {
         let along = to - from;
         let length = along.length();
         if length > 0.0 {
@@ -206,18 +204,19 @@ impl Tube {
             result = Err(RobotError::AllPointsEqual);
         }
         if result.is_ok() {
-            result = self.stand_faces(&points, tangents, rounding);
+            result = self.stand_faces(&points, tangents, rounding, samples);
         }
         self.curve = Curve::Samples { points, arcs };
         result
     }
 
-    /// Finds the flat ends of the sections and their directions.
+    /// Finds the flat ends of the sections and their directions. `points` are the samples without those repeated.
     fn stand_faces(
         &mut self,
         points: &[Vector],
         tangents: Option<[Vector; 2]>,
         rounding: Real,
+        samples: &[Vector],
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
         for end in [0, 1] {
@@ -243,33 +242,20 @@ impl Tube {
             });
         }
         for section in &self.sections {
-            super::check_faces(section, section.first as usize)?;
+            super::check_faces(section, || position_of(section.first as usize, samples))?;
         }
         self.mark_lasting_faces();
         Ok(())
     }
 }
 
-/// The direction out of a section at its first sample and how far off it may be; `sample` counts from there.
-fn direction_at_end(
-    sample: impl Fn(usize) -> Vector,
-    count: usize,
-    curvature: Real,
-    rounding: Real,
-) -> (Vector, Real) {
-    let segment = |k: usize| {
-        if k + 1 < count { Segment::between(sample(k + 1), sample(k), rounding) } else { None }
-    };
-    let Some(first) = segment(0) else { return (Vector::ZERO, Real::INFINITY) };
-    let plain = (first.direction, 0.5 * curvature * first.length * 1.05 + 4.0 * first.noise);
-    let (Some(second), Some(third)) = (segment(1), segment(2)) else { return plain };
-    // What a steady turn would make of the direction `ahead` by so much, from the middle of `near`.
-    let continued = |near: &Segment, far: &Segment, ahead: Real| {
-        near.direction + (near.direction - far.direction) * (ahead / (0.5 * (near.length + far.length)))
-    };
-    let outward = continued(&first, &second, 0.5 * first.length).normalize();
-    let miss = (continued(&second, &third, 0.5 * (first.length + second.length)) - first.direction).length();
-    let tilt = miss + 8.0 * (first.noise + second.noise + third.noise);
-    // A turn so wild that the continuation is worth less than the segment itself.
-    if tilt < plain.1 + (outward - plain.0).length() { (outward, tilt) } else { plain }
+/// Where a point stood among the samples before repeated ones were dropped.
+fn position_of(point: usize, samples: &[Vector]) -> usize {
+    let (mut last, mut count) = (0, 0);
+    for k in 1..samples.len() {
+        if count < point && Segment::between(samples[last], samples[k], 0.0).is_some() {
+            (last, count) = (k, count + 1);
+        }
+    }
+    last
 }

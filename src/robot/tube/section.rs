@@ -41,6 +41,6 @@ impl Section {
     /// asin(curvature radius) / curvature.
     pub(crate) fn room(&self) -> Real {
         let bend = (self.curvature * self.radius).min(1.0);
-        if bend > 0.0 { bend.asin() / self.curvature } else { self.radius }
+        if bend > 0.0 { libm::asin(bend) / self.curvature } else { self.radius }
     }
 }

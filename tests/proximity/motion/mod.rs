@@ -4,6 +4,7 @@ mod chains;
 mod edges;
 mod first_contact;
 mod jumps;
+mod left_out;
 mod refused;
 mod speeds;
 

@@ -1,0 +1,134 @@
+//! Some places of a shape: where they are, which way the curve leads there, and how well both are known.
+
+use crate::distance::Scalar;
+use crate::robot::Tube;
+use crate::robot::scale::{direction, length};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// A share of a section; or, from one share to another, the chord between the two.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub section: usize,
+    pub shares: [Real; 2],
+}
+
+/// The places to try: nine even shares of each section; and where a shape is given by samples, eight of its samples and
+/// the chords from them to the next, which are known best.
+pub(super) fn places(tube: &Tube) -> Vec<Place> {
+    const PARTS: u32 = 8;
+    let mut places = Vec::new();
+    for (number, section) in tube.sections().iter().enumerate() {
+        let mut add = |shares: [Real; 2]| places.push(Place { section: number, shares });
+        for part in 0..=PARTS {
+            add([Real::from(part) / Real::from(PARTS); 2]);
+        }
+        let mut last = None;
+        for part in 0..PARTS {
+            let middle = (Real::from(part) + 0.5) / Real::from(PARTS);
+            let Some(between) = tube.samples_around(section, middle).filter(|found| last != Some(*found))
+            else {
+                continue;
+            };
+            add([between[0]; 2]);
+            add(between);
+            last = Some(between);
+        }
+    }
+    places
+}
+
+/// A place in one shape.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    point: Vector,
+    /// How far off the point may be.
+    error: Real,
+    direction: Vector,
+    /// How far off the direction may be.
+    tilt: Real,
+    /// By how much less than the curve's directions the chord's may turn, as a factor.
+    shrink: Real,
+}
+
+/// A shape at some places, and how far these may go from there by what a motion states.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sampled {
+    pub t: Real,
+    samples: Vec<Sample>,
+    /// What rounding can do to a point.
+    rounding: Real,
+    /// The stated ways, and angles, of the steps since then, added up.
+    stated: Vec<[Real; 2]>,
+}
+
+/// How far a place went from one shape to another, at the least, and how far by what was stated; and how far it turned.
+pub(super) struct Moved {
+    pub way: Real,
+    pub angle: Real,
+}
+
+impl Sampled {
+    /// Samples a shape.
+    pub(super) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, places: &[Place]) {
+        self.t = t;
+        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate; a place along the
+        // curve by less than one of its length.
+        let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.length();
+        self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
+        self.samples.clear();
+        self.stated.clear();
+        self.stated.resize(places.len(), [0.0; 2]);
+        for place in places {
+            let Some(section) = tube.sections().get(place.section) else { continue };
+            let [from, to] = place.shares;
+            let here = tube.at_share(section, from);
+            let mut sample = Sample {
+                point: *pose * here.point,
+                error: here.off + tube.error(),
+                direction: pose.rotation * here.direction,
+                tilt: here.tilt + 32.0 * Real::UNIT_ROUNDOFF,
+                shrink: 1.0,
+            };
+            if from < to {
+                let there = tube.at_share(section, to);
+                let chord = *pose * there.point - sample.point;
+                let size = length(chord);
+                // The mean of the directions between two shares turns by no more than they do. The chord is that mean times
+                // the length, if shares of the curve are as long as those of the samples' lines: they are to `stretch`. And
+                // where the mean is 1 - b^2 / 24 long or longer, for the turn b in between, its direction turns by as
+                // much more.
+                let bend = section.curvature * (section.end - section.start) * (to - from) * section.stretch;
+                sample.direction = direction(chord);
+                sample.tilt = (section.stretch - 1.0)
+                    + (here.off + there.off + self.rounding) / size
+                    + 32.0 * Real::UNIT_ROUNDOFF;
+                sample.shrink = (1.0 - bend * bend / 24.0).max(0.0);
+            }
+            self.samples.push(sample);
+        }
+    }
+
+    /// Adds what is stated for another step.
+    pub(super) fn add(&mut self, stated: &[[Real; 2]]) {
+        for (sum, [way, angle]) in self.stated.iter_mut().zip(stated) {
+            *sum = [sum[0] + way, sum[1] + angle];
+        }
+    }
+
+    /// What was stated since, for a place.
+    pub(super) fn stated(&self, place: usize) -> [Real; 2] {
+        self.stated.get(place).copied().unwrap_or_default()
+    }
+
+    /// How far a place went at least, from here to another shape.
+    pub(super) fn moved(&self, to: &Self, place: usize) -> Option<Moved> {
+        let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
+        let way =
+            (there.point - from.point).length() - self.rounding - to.rounding - from.error - there.error;
+        // Without length there is no direction.
+        let has_direction = from.direction != Vector::ZERO && there.direction != Vector::ZERO;
+        let turned = (there.direction - from.direction).length() * (from.shrink * there.shrink).sqrt();
+        let angle = if has_direction { turned - from.tilt - there.tilt } else { Real::NEG_INFINITY };
+        Some(Moved { way, angle })
+    }
+}

@@ -1,0 +1,220 @@
+//! Each term of a motion alone, left out of what is stated or stated too low, is found in as many steps as one likes; and
+//! motions that state what they do are never accused.
+
+use super::speeds::Understated;
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::{
+    BendingMotion, BendingSection, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
+};
+
+/// How a tube is given.
+#[derive(Clone, Copy, Debug)]
+enum Given {
+    /// By so many samples.
+    Samples(usize),
+    /// By samples, and off by so much.
+    Rough(usize, Real),
+}
+
+/// An arc that does one thing at a time, each at a steady rate.
+#[derive(Clone, Copy, Debug)]
+struct Arc {
+    given: Given,
+    curvature: Real,
+    length: Real,
+    /// Added to the curvature during the motion, to the length, to the place, to the angle about an axis.
+    bending: Real,
+    growth: Real,
+    shift: Vector,
+    turn: Vector,
+    /// What is stated: all terms, or some of them multiplied by something.
+    stated: [Real; 4],
+    turn_stated: Real,
+}
+
+const STILL: Arc = Arc {
+    given: Given::Samples(40),
+    curvature: 0.05,
+    length: 30.0,
+    bending: 0.0,
+    growth: 0.0,
+    shift: Vector::ZERO,
+    turn: Vector::ZERO,
+    stated: [1.0; 4],
+    turn_stated: 1.0,
+};
+
+impl Motion for Arc {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let (curvature, length) = (self.curvature + self.bending * t, self.length + self.growth * t);
+        let (count, error) = match self.given {
+            Given::Samples(count) => (count, 0.0),
+            Given::Rough(count, error) => (count, error),
+        };
+        let point = |k: usize| {
+            let s = length * k as Real / (count - 1) as Real;
+            let (sin, cos) = (0.5 * curvature * s).sin_cos();
+            // In the limit of no curvature a straight line.
+            if curvature == 0.0 {
+                Vector::Z * s
+            } else {
+                Vector::new(sin, 0.0, cos) * (2.0 * sin / curvature)
+            }
+        };
+        let points: Vec<_> = (0..count).map(point).collect();
+        tube.set_samples(&points, &vec![0.5; count - 1], None)?;
+        *tube = std::mem::replace(tube, Tube::from_samples(&points[..2], &[0.5], None)?).with_error(error)?;
+        Ok(Pose::new(self.shift * t, self.turn * t))
+    }
+
+    fn speed(&self, _section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
+        let s = (self.length + self.growth.max(0.0)) * shares[1];
+        let [bending, growth, shift, turn] = self.stated;
+        let turning = self.turn.length() * turn;
+        let bent = self.curvature.abs() + self.bending.abs();
+        let point = 0.5 * self.bending.abs() * s * s * bending
+            + self.growth.abs() * shares[1] * growth
+            + self.shift.length() * shift
+            + turning * s;
+        let angle =
+            self.bending.abs() * s * bending + bent * self.growth.abs() * shares[1] * growth + turning;
+        Speed { point: point * (1.0 + 1e-12), turn: angle * self.turn_stated * (1.0 + 1e-12) }
+    }
+}
+
+/// Each kind of motion alone, of such a size that the tip moves by about 5.
+fn each_alone() -> [Arc; 4] {
+    [
+        Arc { bending: 0.01, ..STILL },
+        Arc { growth: 5.0, ..STILL },
+        Arc { shift: Vector::new(3.0, 4.0, 0.0), ..STILL },
+        Arc { turn: Vector::Y * 0.2, ..STILL },
+    ]
+}
+
+const STEPS: [u32; 5] = [1, 10, 100, 1000, 3000];
+
+#[test]
+fn each_term_alone_is_missed() {
+    for (term, motion) in each_alone().into_iter().enumerate() {
+        for given in [Given::Samples(10), Given::Samples(40), Given::Rough(40, 0.1), Given::Rough(10, 0.5)] {
+            for steps in STEPS {
+                let mut motion = Arc { given, ..motion };
+                assert_eq!(verify_motion(&motion, steps), Ok(()), "{motion:?}, {steps}");
+                motion.stated[term] = 0.0;
+                assert!(verify_motion(&motion, steps).is_err(), "left out: {motion:?}, {steps}");
+                // A tenth too slow makes 0.3 to 0.5 of a difference, in places whose error is none at samples.
+                motion.stated[term] = 1.0 / 1.1;
+                let refused = verify_motion(&motion, steps).is_err();
+                assert!(refused || matches!(given, Given::Rough(..)), "too low: {motion:?}, {steps}");
+            }
+        }
+    }
+}
+
+/// Not the points, but the directions move more than stated.
+#[test]
+fn turns_alone_are_missed() {
+    for motion in [Arc { bending: 0.01, ..STILL }, Arc { turn: Vector::X * 0.2, ..STILL }] {
+        for (count, share) in [(10, 0.0), (40, 0.0), (10, 1.0 / 1.1), (40, 1.0 / 1.1)] {
+            for steps in STEPS {
+                let motion = Arc { given: Given::Samples(count), turn_stated: share, ..motion };
+                let refused = verify_motion(&motion, steps);
+                assert!(
+                    matches!(refused, Err(RobotError::TurnsFasterThanStated { .. })),
+                    "{refused:?}: {motion:?}, {steps}"
+                );
+            }
+        }
+    }
+}
+
+/// A robot that goes there and back is where it was; what it did in between shows on the way.
+#[test]
+fn a_way_there_and_back_is_missed() {
+    struct ThereAndBack(Real);
+    impl Motion for ThereAndBack {
+        fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+            STILL.shape(0.0, tube)?;
+            Ok(Pose::from_translation(Vector::Y * (5.0 * (std::f64::consts::PI * t).sin())))
+        }
+        fn speed(&self, _: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+            Speed { point: 5.0 * std::f64::consts::PI * self.0, turn: 0.0 }
+        }
+    }
+    for steps in [10, 100, 1000] {
+        assert_eq!(verify_motion(&ThereAndBack(1.0), steps), Ok(()));
+        for share in [0.0, 0.5] {
+            assert!(verify_motion(&ThereAndBack(share), steps).is_err(), "{share}, {steps}");
+        }
+    }
+}
+
+/// Rounding and what samples leave open are never held against a motion that states what it does.
+#[test]
+fn honest_motions_pass() {
+    let mut random = Random::new(12);
+    for round in 0..150 {
+        let size = [1e-6, 1.0, 1e6][round % 3];
+        let far = [0.0, 1e7][random.below(2) as usize] * size;
+        let count = 2 + random.below(20) as usize;
+        let given = match random.below(3) {
+            0 => Given::Rough(count, random.unit() * size),
+            _ => Given::Samples(count),
+        };
+        let motion = Arc {
+            given,
+            curvature: random.between(-0.03, 0.03) / size,
+            length: random.between(1.0, 30.0) * size,
+            bending: [0.0, random.between(-0.03, 0.03)][random.below(2) as usize] / size,
+            growth: [0.0, random.unit()][random.below(2) as usize] * 10.0 * size,
+            shift: random.point() * ([0.0, 1.0, 1e-9][random.below(3) as usize] * size),
+            turn: random.direction() * [0.0, 1.0, 1e-9][random.below(3) as usize],
+            ..STILL
+        };
+        let steps = [1, 7, 64, 300][random.below(4) as usize];
+        match motion.shape(0.0, &mut Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.1], None).unwrap()) {
+            Ok(_) => {}
+            // Too few samples for its bend.
+            Err(_) => continue,
+        }
+        // In one plane, so that bends and turns add up to no more than is stated.
+        let checked = verify_motion(&motion, steps);
+        assert!(
+            matches!(
+                checked,
+                Ok(()) | Err(RobotError::TurnsTooSharply { .. } | RobotError::BendsWithinRadius { .. })
+            ),
+            "{checked:?}: {motion:?}, {steps}"
+        );
+        let radii = [0.3 * size; 3];
+        let mut points = |spread: Real| -> Vec<_> {
+            (0..4)
+                .map(|k| random.point() * spread + Vector::Z * (k as Real * size) + Vector::X * far)
+                .collect()
+        };
+        let (from, to) = (points(size), points(size));
+        verify_motion(&LinearMotion::chain(&from, &to, &radii).unwrap(), steps).unwrap();
+        verify_motion(&LinearMotion::capsules(&from, &to, &radii).unwrap(), steps).unwrap();
+        let mut bent = || -> Vec<_> {
+            (0..3)
+                .map(|_| BendingSection {
+                    length: random.between(0.1, 3.0) * size,
+                    radius: 0.3 * size,
+                    bend: [0, 1].map(|_| random.between(-0.5, 0.5) / size),
+                })
+                .collect()
+        };
+        let (from, to) = (bent(), bent());
+        let place =
+            |random: &mut Random| Pose::from_parts(random.point() * (size + far), random.pose(0.0).rotation);
+        verify_motion(&BendingMotion::new(&from, &to, place(&mut random)).unwrap(), steps).unwrap();
+        let mut tube = Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.1], None).unwrap();
+        if motion.shape(0.5, &mut tube).is_ok() {
+            let rigid = RigidMotion::new(tube, [place(&mut random), place(&mut random)]).unwrap();
+            verify_motion(&rigid, steps).unwrap();
+            assert!(verify_motion(&Understated(&rigid, 0.5), steps).is_err());
+        }
+    }
+}
