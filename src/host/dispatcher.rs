@@ -35,12 +35,16 @@ use parry3d_f64::shape::Shape;
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
 /// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise parry's, on polygons that stand for the link's surface |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
 /// They are those that `tests/host/pairs.rs` enforces. A shape that is no more than a line, such as a capsule of radius 0,
-/// counts as a segment. Links too large or too small for parry's iterations, beyond
+/// counts as a segment, and any other capsule as a link. Links too large or too small for parry's iterations, beyond
 /// 2^50 or below 2^-200, are refused in the last column.
+///
+/// The least `dist` of a manifold is the one that `contact` names, unless a mesh's normal constraints have turned the
+/// normal. Nothing beyond a prediction is returned, be it negative, which asks for an overlap as deep; of a manifold that
+/// means its nearest point.
 ///
 /// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
 /// `Intersecting`, and a margin is kept only by what is further away than it. A nonlinear cast that does not stop at
