@@ -24,11 +24,11 @@ const ROUNDING: Real = 64.0 * Real::EPSILON;
 /// A link and another convex shape, in either order.
 pub(super) struct ConvexPair<'a, L> {
     inner: &'a L,
-    pos12: &'a Pose,
-    shapes: [&'a dyn Shape; 2],
+    pub(super) pos12: &'a Pose,
+    pub(super) shapes: [&'a dyn Shape; 2],
     supports: [&'a dyn SupportMap; 2],
-    link: &'a ModifiedCylinder,
-    link_is_first: bool,
+    pub(super) link: &'a ModifiedCylinder,
+    pub(super) link_is_first: bool,
 }
 
 impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
@@ -213,12 +213,12 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     }
 
     /// How far the second shape begins beyond the end of the first along a unit vector.
-    fn gap(&self, normal: Vector) -> Real {
+    pub(super) fn gap(&self, normal: Vector) -> Real {
         (self.support(1, -normal) - self.support(0, normal)).dot(normal)
     }
 
     /// The point of one of the shapes that is furthest along a unit vector, in the first's frame.
-    fn support(&self, which: usize, normal: Vector) -> Vector {
+    pub(super) fn support(&self, which: usize, normal: Vector) -> Vector {
         if which == 0 {
             self.supports[0].local_support_point_toward(normal)
         } else {

@@ -3,6 +3,7 @@
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
 use super::elements::{self, FieldPair};
+use super::link_pair::LinkPair;
 use super::link_triangle::LinkTriangle;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
@@ -380,7 +381,10 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
         }
         let inner = self.inner(pos12, g1, g2)?;
         match ConvexPair::of(inner, pos12, g1, g2) {
-            Some(pair) => pair.contact(prediction),
+            Some(pair) => match LinkPair::of(pos12, g1, g2) {
+                Some(links) => links.contact(&pair, pos12, prediction),
+                None => Ok(pair.contact(prediction)?.map(|contact| pair.shallowest(contact))),
+            },
             None => inner.contact(pos12, g1, g2, prediction),
         }
     }

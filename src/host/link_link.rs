@@ -5,13 +5,15 @@
 //! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the other's axis, which is a
 //!    triangle without a height to the narrow phase, less the other's radius.
 //!
-//! [`foot`](super::foot) tells where that is exact. Two flat caps, and what lies so deep that an axis gives no
-//! direction, have no closed form here.
+//! [`foot`](super::foot) tells where that is exact. Where the axes of two round links come so close that the way between
+//! them gives no direction, the normal is that of [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the
+//! other link, have no closed form here.
 
 use super::axial::unit;
 use super::foot::Foot;
 use super::link_triangle::closest;
 use crate::ModifiedCylinder;
+use crate::distance::depth::{Body, LinkLink};
 use crate::distance::{Vec3, segment_segment};
 use parry3d_f64::math::{Real, Vector};
 
@@ -19,6 +21,8 @@ use parry3d_f64::math::{Real, Vector};
 const ROUNDING: Real = 8.0 * Real::EPSILON;
 /// Axes closer than this share of the largest coordinate give no direction: half of its digits would be rounding.
 const DIRECTION: Real = 1.5e-8;
+/// Axes closer than this share of the largest coordinate give a direction that has lost digits; features have them all.
+const FINE_DIRECTION: Real = 1e-2;
 
 /// Where two links meet.
 pub(super) struct Touch {
@@ -33,8 +37,10 @@ pub(super) enum Answer {
     /// Further apart than the margin.
     Apart,
     Touch(Touch),
-    /// No closed form.
-    Unknown,
+    /// No closed form; whether an axis says already that they overlap.
+    Unknown {
+        overlap: bool,
+    },
 }
 
 /// Cases 1 and 2, for links whose coordinates are at most `extent`.
@@ -57,20 +63,33 @@ pub(super) fn touch(
         let to_flat = Foot::new(link, at).to_flat;
         to_flat > rounding - dist.min(0.0) && (to_flat == Real::INFINITY || -dist <= link.radius())
     };
-    let has_direction = axes.distance > DIRECTION * extent;
-    if let (Some(normal), true) = (unit(feet[1] - feet[0]), has_direction && is_capsule(first, feet[0]))
-        && is_capsule(second, feet[1])
-    {
+    if is_capsule(first, feet[0]) && is_capsule(second, feet[1]) {
+        let pair = pair(first, second);
+        let way = unit(feet[1] - feet[0]).filter(|_| axes.distance > DIRECTION * extent);
+        let normal = match way {
+            Some(normal) if axes.distance > FINE_DIRECTION * extent => normal,
+            Some(normal) => pair.refined(normal).normal,
+            None => pair.widest(None).normal,
+        };
         return Answer::Touch(Touch { dist, normal, on_first: feet[0] + normal * first.radius() });
     }
+    let mut overlap = false;
     for (solid, swollen, is_swapped) in [(first, second, false), (second, first, true)] {
         let (apart, on_solid, on_axis) = closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
+        overlap |= apart <= 0.0;
         let dist = apart - swollen.radius();
         if dist > margin + rounding {
             return Answer::Apart;
         }
         let is_exact = Foot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
         if let (Some(out), true) = (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent) {
+            let out = if apart > FINE_DIRECTION * extent {
+                out
+            } else {
+                let first_out = if is_swapped { -out } else { out };
+                let normal = pair(first, second).widest(Some(first_out)).normal;
+                if is_swapped { -normal } else { normal }
+            };
             let on_swollen = on_axis - out * swollen.radius();
             return Answer::Touch(if is_swapped {
                 Touch { dist, normal: -out, on_first: on_swollen }
@@ -79,5 +98,12 @@ pub(super) fn touch(
             });
         }
     }
-    Answer::Unknown
+    Answer::Unknown { overlap }
+}
+
+/// The two links as the narrow phase knows them.
+pub(super) fn pair(first: &ModifiedCylinder, second: &ModifiedCylinder) -> LinkLink {
+    let [first, second] =
+        [first, second].map(|link| Body::new(link.start(), link.end(), link.radius(), link.flat()));
+    LinkLink { first, second }
 }

@@ -9,6 +9,7 @@
 use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
 use super::link_link::{self, Answer};
+use super::link_pair::LinkPair;
 use super::meeting::{Meeting as OneSided, ROUNDING};
 use super::{footing, rim};
 use crate::ModifiedCylinder;
@@ -27,22 +28,15 @@ pub(super) fn update<M, C: Default + Copy>(
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
 ) -> bool {
-    let (Some(link1), Some(link2)) = (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>())
-    else {
+    let Some(LinkPair { links: [first, second], origin, extent }) = LinkPair::of(pos12, g1, g2) else {
         return false;
     };
-    let origin = link1.start();
-    let [first, second] = [*link1, link2.transformed(pos12)].map(|link| from(&link, origin));
-    let ends = [first.start(), first.end(), second.start(), second.end()];
-    let extent = ends.iter().fold(Vector::ZERO, |most, end| most.max(end.abs())).max_element();
-    let extent = extent.max(first.radius()).max(second.radius());
-
     let touch = match link_link::touch(&first, &second, extent, prediction) {
         Answer::Apart => {
             manifold.points.clear();
             return true;
         }
-        Answer::Unknown => return false,
+        Answer::Unknown { .. } => return false,
         Answer::Touch(touch) => touch,
     };
     let normal = touch.normal;

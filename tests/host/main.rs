@@ -4,6 +4,7 @@ mod casts;
 mod chain;
 mod composites;
 mod contact;
+mod depths;
 mod dispatcher;
 mod draw;
 mod free_edges;

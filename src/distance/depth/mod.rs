@@ -5,11 +5,15 @@
 mod direction;
 mod ellipse;
 mod foot;
+mod link_link;
+mod link_link_points;
 mod link_triangle;
 mod separation;
 mod way_out;
 
 pub(crate) use direction::{perpendicular, unit, unit_across};
 pub(crate) use foot::to_flat;
+pub(crate) use link_link::{Body, LinkLink};
 pub(crate) use link_triangle::{LinkTriangle, ROUNDING, Way, face_normal};
+pub(crate) use separation::across_rim;
 pub(crate) use way_out::WayOut;

@@ -64,7 +64,7 @@ pub(super) fn directions(link: &Link<Real>, triangle: [Vector; 3], mut consider:
 
 /// The last row of the table: the disc around the origin that faces `outward`, and the line along the unit
 /// vector `edge` through `point`.
-fn across_rim(outward: Vector, radius: Real, point: Vector, edge: Vector) -> Option<Vector> {
+pub(crate) fn across_rim(outward: Vector, radius: Real, point: Vector, edge: Vector) -> Option<Vector> {
     // Half axes of the shadow: `long` is in the disc's plane, `short` is the way that the disc faces.
     let long = unit_across(outward.cross(edge), edge)?;
     let lean = outward.dot(edge);
