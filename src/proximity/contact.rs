@@ -14,8 +14,9 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
 ///
-/// What it means where the two touch is told at each field: the distance is then 0 and both points are one, but the
-/// normal and the depth still tell the way out.
+/// Where the two touch or overlap the distance is 0 and both points are one. Depth and normal belong together then: they
+/// are the least translation that separates the link from this triangle, and `fraction`, `lever`, `feature` and `kink` are
+/// those of the points that part last. It is the way out of that triangle, and not of the wall that it is part of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Contact {
@@ -31,23 +32,28 @@ pub struct Contact {
     pub feature: ContactFeature,
     /// The distance between link and triangle, 0 where they touch or overlap.
     pub distance: Real,
-    /// The distance between the link's axis and the triangle, less the radius: the distance with a sign, negative where
-    /// they overlap. It is known beside the link and beyond a round cap, where every point is one radius from the axis,
-    /// as long as the axis does not cross the triangle. Beyond a flat cap it would jump, so there is none.
+    /// The distance with a sign: where they overlap, minus the length of the least translation that separates the link
+    /// from this triangle, flat caps and their rims included. Beside the link and beyond a round cap that is the distance
+    /// between axis and triangle less the radius, as long as the axis does not cross the triangle and no flat cap is
+    /// nearer. There is always one; it is that which the dispatcher's `contact` names for link and triangle.
     pub depth: Option<Real>,
-    /// The unit vector from the wall to the robot. Where they touch it leads from the triangle to the link's axis, and
-    /// there is none if the axis itself meets the triangle.
+    /// The unit vector from the wall to the robot. Where they overlap a translation of the link by `-depth` along it
+    /// separates the two. Beside the link and beyond a round cap it leads from the triangle to the link's axis; at a flat
+    /// cap, and where the axis crosses the triangle, to the side that is nearer. There is none where the opposite way out
+    /// is as short, as far as rounding can tell (16 u of the extent): where the axis lies in the plane of the triangle and
+    /// meets it, neither side is the robot's.
     pub normal: Option<Vector>,
     /// The link's closest point.
     pub on_robot: Vector,
     /// The triangle's closest point; the same as `on_robot` where the distance is 0.
     pub on_mesh: Vector,
-    /// From the point of the axis at `fraction` to the link's closest point: the arm on which a turn of the link moves
-    /// that point.
+    /// From the point of the axis at `fraction` to the link's closest point, or the one that parts last: the arm on which
+    /// a turn of the link moves that point.
     pub lever: Vector,
     /// Whether other points of the two are as near, as far as rounding can tell: an edge or a face along the link, or
-    /// one across a flat cap. The distance then has a kink: its derivative depends on the direction of the motion, and
-    /// what is computed is that for one of the points.
+    /// one across a flat cap; or, where they overlap, another way out is as short. The distance, or the depth, then has a
+    /// kink: its derivative depends on the direction of the motion, and what is computed is that for one of the points. A
+    /// triangle without area counts as one too, because its corners can move against one another.
     pub kink: bool,
 }
 
@@ -127,8 +133,8 @@ impl Contact {
         }
     }
 
-    /// How fast the distance changes with a joint q, or with time: the derivative of [`distance`](Self::distance), and
-    /// of [`depth`](Self::depth) where link and wall touch. The wall stands still.
+    /// How fast the distance changes with a joint q, or with time: the derivative of [`depth`](Self::depth), which is the
+    /// [`distance`](Self::distance) where they are apart. The wall stands still.
     ///
     /// `velocity` is dc/dq, that of the centreline's point at [`arc_length`](Self::arc_length), and `angular_velocity`
     /// is how the link turns there, dt/dq = angular_velocity x t for its direction t; both in the mesh's frame. A turn
@@ -139,8 +145,8 @@ impl Contact {
     /// normal . (velocity + angular_velocity x lever)
     /// ```
     ///
-    /// There is none where there is no normal, and none where a flat cap touches: its distance stays 0. At a
-    /// [`kink`](Self::kink) it is the derivative for `on_robot`.
+    /// There is none where there is no normal. At a [`kink`](Self::kink) it is the derivative for one of the points that
+    /// are as near.
     ///
     /// ```
     /// use parry_continuum::Chain;

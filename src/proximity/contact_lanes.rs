@@ -167,7 +167,7 @@ fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize,
 mod tests {
     use super::*;
     use crate::distance::lanes::tests::levels;
-    use crate::proximity::TriangleFeature;
+    use crate::proximity::{LinkFeature, TriangleFeature};
     use continuum_testing::Random;
 
     /// A link and a triangle, many of them parallel, level or touching.
@@ -213,7 +213,12 @@ mod tests {
             for contact in &alone {
                 kinks += usize::from(contact.kink);
                 touching += usize::from(contact.distance <= 0.0);
-                at_cap += usize::from(contact.distance > 0.0 && contact.depth.is_none());
+                let at_flat = match contact.feature.link {
+                    LinkFeature::StartCap => places[contact.link as usize].flat[0],
+                    LinkFeature::EndCap => places[contact.link as usize].flat[1],
+                    LinkFeature::Side => false,
+                };
+                at_cap += usize::from(contact.distance > 0.0 && at_flat);
                 parts[match contact.feature.triangle {
                     TriangleFeature::Face => 0,
                     TriangleFeature::Edge(_) => 1,

@@ -9,12 +9,12 @@ use crate::distance::{DoubleDouble, Scalar, Vec3};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The derivative of a link's distance from a triangle with respect to each number that the two are made of, in the
-/// mesh's frame; of the axis distance less the radius where the two overlap ([`depth`](super::Contact::depth)).
+/// mesh's frame; of [`depth`](super::Contact::depth), the least translation, where the two overlap.
 ///
 /// By the envelope theorem only the closest points as they are count, and not how they move: with n the normal from
 /// triangle to link, the distance grows by n times what the motion does to the link's closest point, less what it does to
 /// the triangle's. Let f be the fraction along the axis, w the triangle's closest point as a mean of its corners, L the
-/// length, a the axis and l the lever, from the axis to the link's closest point:
+/// length, a the axis and l the lever, from the axis to the link's closest point (where they overlap, those that part last):
 ///
 /// | derivative with respect to | beside the link, or beyond a round cap | beyond a flat cap |
 /// |---|---|---|
@@ -24,8 +24,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// | `vertices[i]` | -w_i n | -w_i n |
 ///
 /// The second term for a flat cap is its lever: the cap turns with the axis. Its radius counts at the rim alone, because
-/// n is parallel to a where the closest point lies inside of it. Computed with about 32 digits and rounded
-/// at the end.
+/// n is parallel to a where the closest point lies inside of it. Computed with about 32 digits and rounded at the end;
+/// where a flat cap or a crossing axis decides the way out, with 16.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Derivative {
@@ -37,9 +37,8 @@ pub struct Derivative {
     pub radius: Real,
     /// With respect to the triangle's corners.
     pub vertices: [Vector; 3],
-    /// Whether the distance has a kink here, as [`Contact::kink`](super::Contact::kink) tells: these are then the
-    /// derivatives for one of the points that are as near. A triangle without area has one too, because its corners can
-    /// move against one another.
+    /// Whether the distance has a kink here: the same as [`Contact::kink`](super::Contact::kink). These are then the
+    /// derivatives for one of the points that are as near.
     pub kink: bool,
 }
 
@@ -50,7 +49,7 @@ impl Derivative {
     }
 }
 
-/// How the distance of an answer about this mesh changes.
+/// How the distance, or depth, of an answer about this mesh changes.
 ///
 /// # Errors
 /// Those of [`Proximity::derivative`](super::Proximity::derivative).

@@ -6,6 +6,7 @@ mod certify;
 mod chain_cases;
 mod coherence;
 mod contacts;
+mod depths;
 mod derivatives;
 mod discs;
 mod far_parts;
