@@ -110,9 +110,8 @@ fn every_case_within_64_units() {
         let numbers = Numbers::new(case, robot.links()[0].caps().map(|cap| cap == Cap::Flat));
         let is_depth = !is_at_flat_cap(&contact, &robot);
         let value = numbers.value(is_depth);
-        if found.distance <= 0.0 && (value.rounded() - contact.depth.unwrap()).abs() > 1e-9 * case.scale
-            || !is_depth && found.distance <= 0.0
-        {
+        let is_capsule = is_depth && (value.rounded() - contact.depth.unwrap()).abs() < 1e-9 * case.scale;
+        if found.distance <= 0.0 && !is_capsule {
             continue; // a way out at a flat cap or across the axis: the room of depths
         }
         let gap = if is_depth { value + case.r.into() } else { value }.rounded();
@@ -222,7 +221,8 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
         let Some(derivative) = search.derivative(&robot, &pose, &answer).unwrap() else { continue };
         let radius = robot.links()[answer.link as usize].radius();
         let at_flat_cap = is_at_flat_cap(&contact, &robot);
-        if if at_flat_cap { answer.distance < 1e-3 } else { contact.depth.unwrap() + radius < 0.15 } {
+        let room = if at_flat_cap { answer.distance - 1e-3 } else { contact.depth.unwrap() + radius - 0.15 };
+        if room < 0.0 {
             continue; // a step away the cap touches, or the normal has turned
         }
         let only = Only::new(mesh, answer.triangle);
