@@ -317,9 +317,6 @@ fn changes(
     if contact.kink {
         census.kinks += 1;
         census.silent_kinks += usize::from(largest_jump < 1e-4);
-        if largest_jump < 1e-4 && std::env::var("SHOW").is_ok() {
-            println!("silent: {largest_jump} {}", at());
-        }
     } else {
         census.smooth += 1;
     }
