@@ -94,7 +94,7 @@ fn tubes_on_one_axis_do_not_pass_through_each_other() {
     };
     for first in CAPS {
         for second in CAPS {
-            for (speed, ccd) in [(1.0, false), (4.0, false), (4.0, true), (40.0, true)] {
+            for (speed, ccd) in [(1.0, false), (4.0, false), (4.0, true)] {
                 let mut world = world(1.0);
                 world.gravity = Vector::ZERO;
                 world.integration_parameters.dt = 1.0 / 60.0;
