@@ -1,12 +1,12 @@
 //! The contact manifold of a link and a half-space: what the link stands on (see [`footing`](super::footing)), and how
-//! high each of these points is over the plane; and the link's lowest point, if none of the others is as low: where a flat
-//! cap all but lies on the plane, no more than rounding tells at which of its rim's points.
+//! high each of these points is over the plane. The lowest has the height of the link's lowest point: where a flat cap all
+//! but lies on the plane, no more than rounding tells which of its rim's points that is.
 //!
 //! Where the nearest is within the prediction, all count, so that the host sees what a fast link is about to reach.
 
 use super::axial::unit;
-use super::meeting::ROUNDING;
-use super::{feature, footing};
+use super::feature::{self, SAME_POINT};
+use super::footing;
 use crate::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
@@ -34,22 +34,21 @@ pub(super) fn update<M, C: Default + Copy>(
     let pose = if link_is_first { pos12.inverse() } else { *pos12 };
     let down = pose.rotation.inverse() * -plane;
     let before = std::mem::take(&mut manifold.points);
-    let mut nearest = Real::INFINITY;
-    let mut add = |on_link: Vector, name: PackedFeatureId| {
-        let over = pose * on_link;
-        let height = over.dot(plane);
-        // A number that is none is refused below.
-        let is_lowest_too =
-            name == feature::BARREL.into() && height >= nearest - ROUNDING * over.abs().max_element();
-        if !is_lowest_too {
-            nearest = nearest.min(height);
-            let below = over - plane * height;
-            let face = PackedFeatureId::face(0);
-            manifold.points.push(TrackedContact::flipped(on_link, below, name, face, height, !link_is_first));
-        }
+    let height_of = |on_link: Vector| (pose * on_link).dot(plane);
+    let point_at = |on_link: Vector, name: PackedFeatureId| {
+        let height = height_of(on_link);
+        let below = pose * on_link - plane * height;
+        TrackedContact::flipped(on_link, below, name, PackedFeatureId::face(0), height, !link_is_first)
     };
-    footing::points(link, down, &mut add);
-    add(link.local_support_point_toward(down), feature::BARREL.into());
+    footing::points(link, down, |on_link, name| manifold.points.push(point_at(on_link, name)));
+    let lowest = link.local_support_point_toward(down);
+    let nearest = height_of(lowest);
+    let stands_for_it = manifold.points.iter_mut().min_by(|a, b| a.dist.total_cmp(&b.dist));
+    let share = SAME_POINT * (link.length() + link.radius());
+    match stands_for_it.filter(|point| point.dist - nearest <= share) {
+        Some(point) => point.dist = nearest,
+        None => manifold.points.push(point_at(lowest, feature::BARREL.into())),
+    }
     if !manifold.points.iter().all(|point| point.dist.is_finite()) {
         manifold.points.clear();
         return Err(Unsupported);

@@ -126,12 +126,13 @@ impl Meeting {
         }
     }
 
-    /// Case 3. No other point is closer.
+    /// Case 3. Of others that are all but as close the nearest stands for them, with their distance.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
-        let enough = dist + ROUNDING * self.extent;
-        if self.points.iter().all(|point| point.dist > enough) {
-            self.add(on_first, dist, [feature::BARREL.into(); 2]);
+        let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
+        if least > dist + SAME_POINT * self.extent {
+            return self.add(on_first, dist, [feature::BARREL.into(); 2]);
         }
+        let enough = least.max(dist + ROUNDING * self.extent);
         for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
             point.dist = dist;
         }

@@ -79,13 +79,15 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Adds the closest points, unless one of the others is as close, but for rounding. Then no point is closer than they
-    /// are, which one may seem to be that lies beside the triangle's edge.
+    /// Adds the closest points, unless one of the others is all but as close: then the nearest of these stands for them, with
+    /// their distance, so that a link at rest which trembles a little keeps its points and their names. No point is closer
+    /// than they are, which one may seem to be that lies beside the triangle's edge.
     pub fn add_closest(&mut self, distance: Real, on_link: Vector) {
-        let enough = distance + self.rounding;
-        if self.points.iter().all(|point| point.dist > enough) {
-            self.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
+        let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
+        if least > distance + SAME_POINT * self.size {
+            return self.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
         }
+        let enough = least.max(distance + self.rounding);
         for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
             point.dist = distance;
         }
