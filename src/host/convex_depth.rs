@@ -17,7 +17,11 @@ use parry3d_f64::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};
 /// How often the corner that lies foremost is looked for again.
 const ROUNDS: usize = 3;
 /// How often a point is taken from one shape to the other to find where they touch.
-const PROJECTIONS: usize = 32;
+const PROJECTIONS: usize = 8;
+/// It has settled where it moves by less than this share of the link's size.
+const SETTLED: Real = 1e-9;
+/// Normals as near as this to each other, as a cosine, touch at one place.
+const SAME_NORMAL: Real = 1.0 - 1e-10;
 /// By how much rounding can put a normal outside of those that an edge has.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
@@ -57,7 +61,8 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
                 break;
             }
         }
-        let near = if best.1 == found.1 { contact.point1 } else { self.touching(&placed, best) };
+        let near =
+            if best.1.dot(found.1) > SAME_NORMAL { contact.point1 } else { self.touching(&placed, best) };
         self.report(best, near)
     }
 
@@ -77,10 +82,11 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         for _ in 0..PROJECTIONS {
             let on_other = placed.other.project_point(&apart, on_link, true).point;
             let next = placed.link.project_local_point(on_other, true).point;
-            if next == on_link {
+            let moved = (next - on_link).length();
+            on_link = next;
+            if moved <= SETTLED * (placed.link.length() + placed.link.radius()) {
                 break;
             }
-            on_link = next;
         }
         on_link - toward_second
     }

@@ -33,13 +33,16 @@ use parry3d_f64::shape::Shape;
 /// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
 /// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
-/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | parry's EPA: separates within 1e-5, of two round surfaces within 0.05 |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | separates, to rounding; round links exact; the shortest translation but for what stands below |
 /// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
 /// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
-/// They are those that `tests/host/pairs.rs` enforces. A shape that is no more than a line, such as a capsule of radius 0,
+/// They are those that `tests/host/pairs.rs` and `tests/host/depths.rs` enforce. The translation that separates a link
+/// from another convex shape is longer than the shortest that was found by a search of all directions by at most 1e-12 for a
+/// round link against a round link or a `Capsule`, 1e-6 for other links and a `Cylinder`, for a `Cuboid`, a `ConvexPolyhedron` and a
+/// `RoundCuboid`, and 0.01 for a `Cone` and a `RoundCylinder`. A shape that is no more than a line, such as a capsule of radius 0,
 /// counts as a segment, and any other capsule as a link. Links too large or too small for parry's iterations, beyond
 /// 2^50 or below 2^-200, are refused in the last column.
 ///

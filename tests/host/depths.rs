@@ -41,7 +41,7 @@ fn searched(random: &mut Random, gap: impl Fn(Vector) -> Real) -> (Real, Vector)
     let mut best = starts[0];
     for mut at in starts.into_iter().take(6) {
         let mut step = 0.1;
-        while step > 1e-7 {
+        for _ in 0..90 {
             let (u, v) = at.1.any_orthonormal_pair();
             let around = (0..6).map(|k| Real::from(k) * std::f64::consts::TAU / 6.0 + step);
             let next = around
@@ -119,12 +119,11 @@ fn place(random: &mut Random) -> (&'static str, Pose) {
 fn depths_are_the_least_but_for_what_the_table_says() {
     let dispatcher = ContinuumDispatcher::default();
     let mut random = Random::new(401);
-    let count = std::env::var("COUNT").map_or(400, |count| count.parse().unwrap());
     let mut seen = BTreeMap::<(&str, &str), usize>::new();
     let mut bad = Vec::new();
     for (name, allowed) in EXCESS {
         let (mut worst, mut over, mut total) = ((0.0, String::new()), 0, 0);
-        for _ in 0..count {
+        for _ in 0..100 {
             let caps = if ["round link", "capsule"].contains(&name) { CAPS[1] } else { random.caps() };
             let (half, radius) = (size(&mut random), size(&mut random));
             let link = ModifiedCylinder::new(-half * Vector::Y, half * Vector::Y, radius, caps).unwrap();
@@ -157,7 +156,7 @@ fn depths_are_the_least_but_for_what_the_table_says() {
     }
     println!("{seen:?}");
     assert!(bad.is_empty(), "{}", bad.join("\n"));
-    assert!(EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > 20)), "{seen:?}");
+    assert!(EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > 5)), "{seen:?}");
 }
 
 /// The points are where the distance along the normal says.
@@ -183,4 +182,81 @@ fn manifold_agrees(
     let least = manifold.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
     assert!((least - contact.dist).abs() < 1e-12, "{least} {}", context());
     assert!((manifold.local_n1 - contact.normal1).length() < 1e-9, "{manifold:?} {}", context());
+}
+
+fn contact(pose: &Pose, first: &ModifiedCylinder, second: &ModifiedCylinder) -> Contact {
+    ContinuumDispatcher::default().contact(pose, first, second, 0.0).unwrap().unwrap()
+}
+
+/// Two round links overlap by their radii less the distance of their axes, wherever these lie: on one axis, crossing or
+/// parallel, in any unit of length.
+#[test]
+fn round_links_overlap_by_their_radii_less_the_distance_of_their_axes() {
+    let mut random = Random::new(402);
+    let capsule = |start, end, radius| ModifiedCylinder::capsule(start, end, radius).unwrap();
+    let first = capsule(Vector::ZERO, 10.0 * Vector::X, 1.0);
+    for (shift, depth) in [(4.0, 2.0), (0.0, 2.0), (9.0, 2.0), (10.0, 2.0), (11.0, 1.0), (-11.5, 0.5)] {
+        let place = Pose::from_translation(Vector::X * shift);
+        for turn in [0.0, std::f64::consts::PI] {
+            let turned = place
+                * Pose::from_translation(5.0 * Vector::X)
+                * Pose::rotation(Vector::Y * turn)
+                * Pose::from_translation(-5.0 * Vector::X);
+            let found = contact(&turned, &first, &first);
+            assert!((found.dist + depth).abs() < 1e-14, "{shift} {turn} {found:?}");
+            assert!((gap(&turned, &first, &first, found.normal1) + depth).abs() < 1e-14, "{found:?}");
+        }
+    }
+    let (mut crossing, mut deep) = (0, 0);
+    for _ in 0..5000 {
+        let [r1, r2] = [size(&mut random), size(&mut random)];
+        let angle =
+            if random.chance(0.3) { random.log_between(1e-17, 1e-3) } else { random.between(0.0, 1.6) };
+        let height = if random.chance(0.3) { 0.0 } else { random.log_between(1e-16, 1.0) } * (r1 + r2);
+        let (one, other) =
+            (capsule(-Vector::X, Vector::X, r1), capsule(-2.0 * Vector::X, 2.0 * Vector::X, r2));
+        // They cross in the middle, one above the other.
+        let pose = Pose::from_translation(Vector::Y * height) * Pose::rotation(Vector::Y * angle);
+        let found = contact(&pose, &one, &other);
+        let depth = r1 + r2 - height;
+        assert!((found.dist + depth).abs() < 1e-14, "{angle} {height} {found:?}");
+        let own = gap(&pose, &one, &other, found.normal1);
+        assert!((own - found.dist).abs() < 1e-13, "{own} {angle} {height} {found:?}");
+        crossing += usize::from(height == 0.0);
+        deep += usize::from(height < 1e-9);
+        for exponent in [-100, -3, 40] {
+            let unit = Real::powi(2.0, exponent);
+            let [one, other] = [&one, &other]
+                .map(|link| capsule(link.start() * unit, link.end() * unit, link.radius() * unit));
+            let pose = Pose { translation: pose.translation * unit, ..pose };
+            let scaled = contact(&pose, &one, &other);
+            assert_eq!((scaled.dist, scaled.normal1), (found.dist * unit, found.normal1), "{angle} {height}");
+        }
+    }
+    assert!(crossing > 1000 && deep > 1500, "{crossing} {deep}");
+}
+
+/// Two cylinders on one axis: out along it, or across it, whichever is shorter.
+#[test]
+fn cylinders_on_one_axis_part_along_it_or_across() {
+    for (radius, length, shift) in
+        [(1.0, 10.0, 4.0), (1.0, 10.0, 9.0), (0.9, 1.8, 0.0), (0.25, 8.0, 1.0), (2.0, 1.0, 0.5)]
+    {
+        for tilt in [0.0, 1e-15, 1e-9, 1e-6] {
+            let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z * length, radius).unwrap();
+            let pose = Pose::new(Vector::Z * shift, Vector::X * tilt);
+            let found = contact(&pose, &link, &link);
+            let least = (2.0 * radius).min(length - shift);
+            assert!(
+                (found.dist + least).abs() < 1e-12 + 20.0 * tilt,
+                "{radius} {length} {shift} {tilt} {found:?}"
+            );
+            let own = gap(&pose, &link, &link, found.normal1);
+            assert!((own - found.dist).abs() < 1e-13, "{own} {found:?}");
+            // Moved apart by it they meet no more.
+            let moved = Pose::from_translation(found.normal1 * (1e-4 - found.dist)) * pose;
+            let apart = ContinuumDispatcher::default().distance(&moved, &link, &link).unwrap().distance;
+            assert!(apart > 0.0, "{apart} {found:?}");
+        }
+    }
 }

@@ -150,8 +150,7 @@ fn barrels_that_cross_meet_exactly() {
     assert!(shallow > 2000 && near_caps > 5000, "{shallow} {near_caps}");
 }
 
-/// Barrels that overlap by more across their axes than along them: the short way out is the flat caps', which parry's
-/// EPA finds within a twentieth.
+/// Barrels that overlap by more across their axes than along them: the short way out is the flat caps'.
 #[test]
 fn where_flat_caps_are_the_way_out_barrels_do_not_answer() {
     let mut random = Random::new(163);
