@@ -1,8 +1,8 @@
 //! All links against all triangles, on one thread, against a loop of parry's `distance(Cylinder, Triangle)`.
 
-use continuum_scene::levels::levels;
-use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::{ctr, timing, ventricle};
+use continuum_demo::levels::levels;
+use continuum_demo::subdivide::{in_four, shuffled};
+use continuum_demo::{ctr, timing, ventricle};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;

@@ -3,7 +3,7 @@
 //! The robot sways into the wall and back while its tubes turn, so that its shape differs at every step. Everything
 //! is kinematic: the bodies cost nothing to move, what is left are the broad and the narrow phase.
 
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,6 +1,6 @@
 //! Per-link closest pairs by search, against parry on the same mesh and links, in one run; and the side of a point.
 
-use continuum_scene::{cavity, steer, timing};
+use continuum_demo::{cavity, steer, timing};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;

@@ -5,9 +5,9 @@
 //! Algorithm 1 (`Chain::from_centreline`) places round caps only where they stay inside.
 
 use clap::Parser;
-use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
-use continuum_scene::command;
-use continuum_scene::picture::{Camera, Picture, Solid};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_demo::command;
+use continuum_demo::picture::{Camera, Picture, Solid};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::SharedShape;
 use parry_continuum::{Cap, Chain, ModifiedCylinder, RobotError};

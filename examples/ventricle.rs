@@ -8,9 +8,9 @@
 //! or with `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
 
 use clap::{Parser, ValueEnum};
-use continuum_scene::anatomy::{Anatomy, no_goal, show};
-use continuum_scene::ctr::{Centreline, Joints, Robot, three_tubes};
-use continuum_scene::{command, figure, steer, timing, ventricle};
+use continuum_demo::anatomy::{Anatomy, no_goal, show};
+use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
+use continuum_demo::{command, figure, steer, timing, ventricle};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,7 +1,7 @@
 //! The robot's points, and how they change with its joints.
 
-use continuum_scene::ctr::{Joints, Robot, three_tubes};
-use continuum_scene::ventricle;
+use continuum_demo::ctr::{Joints, Robot, three_tubes};
+use continuum_demo::ventricle;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::Contact;

@@ -10,7 +10,7 @@ mod kinematics;
 mod plot;
 
 use clap::Parser;
-use continuum_scene::{command, ventricle};
+use continuum_demo::{command, ventricle};
 use kinematics::Kinematics;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Real, Vector};

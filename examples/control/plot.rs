@@ -1,7 +1,7 @@
 //! Clearance and tip error over time, as a picture.
 
 use crate::Run;
-use continuum_scene::canvas::{Align, Canvas, Colour, hex};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex};
 use parry_continuum::parry::math::Real;
 
 const SIZE: [usize; 2] = [1200, 820];

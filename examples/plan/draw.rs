@@ -1,8 +1,8 @@
 //! The picture of a way: the shapes that the robot takes, from pale to dark, cut open in front of them.
 
 use super::edges::{Edges, Place, text};
-use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
-use continuum_scene::picture::{Camera, Picture, SKY, Skin, Solid};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_demo::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};

@@ -1,8 +1,8 @@
 //! The edges of a planner: motions in joint space, and two ways to check them.
 
-use continuum_scene::ctr::{Joints, Robot};
-use continuum_scene::joint_motion::JointMotion;
-use continuum_scene::steer::Random;
+use continuum_demo::ctr::{Joints, Robot};
+use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::steer::Random;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
 use parry_continuum::{Motion, RobotError, Speed, Tube};

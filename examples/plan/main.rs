@@ -11,9 +11,9 @@ mod edges;
 mod planner;
 
 use clap::Parser;
-use continuum_scene::anatomy::{Anatomy, no_goal};
-use continuum_scene::ctr::{Robot, three_tubes};
-use continuum_scene::{command, steer, ventricle};
+use continuum_demo::anatomy::{Anatomy, no_goal};
+use continuum_demo::ctr::{Robot, three_tubes};
+use continuum_demo::{command, steer, ventricle};
 use edges::{Check, Costs, DRAWN_IN, Edges, Place, RESOLUTION, place, text};
 use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real};

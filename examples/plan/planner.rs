@@ -2,7 +2,7 @@
 //! towards each other. Only clear places are worth growing to, so these are drawn in batches.
 
 use super::edges::{Edges, Place, along, any_place, length, way};
-use continuum_scene::steer::Random;
+use continuum_demo::steer::Random;
 
 /// The longest edge, mm.
 const LONGEST: f64 = 6.0;

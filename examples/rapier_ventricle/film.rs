@@ -2,10 +2,10 @@
 //! wire shows where the wall has bent the robot away from it, and dots where the wall holds it.
 
 use super::record::Moment;
-use continuum_scene::canvas::{Align, Canvas, Colour, hex, mix};
-use continuum_scene::colour_map::ColourMap;
-use continuum_scene::figure;
-use continuum_scene::picture::{Camera, Picture, SKY, Skin, Solid};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_demo::colour_map::ColourMap;
+use continuum_demo::figure;
+use continuum_demo::picture::{Camera, Picture, SKY, Skin, Solid};
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};

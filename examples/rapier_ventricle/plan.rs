@@ -1,7 +1,7 @@
 //! What the robot is told to do: its tubes come out along a planned shape, then its base is pushed on.
 
-use continuum_scene::ctr::{Joints, Robot};
-use continuum_scene::rod::RestShape;
+use continuum_demo::ctr::{Joints, Robot};
+use continuum_demo::rod::RestShape;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 
 /// Bending stiffness that stands for 1 in the robot's ratios, in mN mm^2: soft, as a robot of polymer tubes is.

@@ -1,6 +1,6 @@
 //! A control loop allocates nothing once it runs: centreline, chain, queries, contacts.
 
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};

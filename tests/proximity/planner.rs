@@ -1,7 +1,7 @@
 //! The planner's question: random shapes in a ventricle, most of them colliding, at margins around their distance.
 
-use continuum_scene::steer::Random;
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::steer::Random;
+use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random as Seeded;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};

@@ -1,10 +1,10 @@
 //! Inside or outside: never wrong on closed meshes, undecided near holes, the same for all ways to give a mesh.
 
 use crate::parity::{Parity, on_grid};
-use continuum_scene::field::{Body, Tube, round};
-use continuum_scene::remesh::remesh;
-use continuum_scene::surface::extract;
-use continuum_scene::{cavity, ctr, lumen, subdivide, ventricle};
+use continuum_demo::field::{Body, Tube, round};
+use continuum_demo::remesh::remesh;
+use continuum_demo::surface::extract;
+use continuum_demo::{cavity, ctr, lumen, subdivide, ventricle};
 use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};

@@ -1,7 +1,7 @@
 //! Tubes against the truth: a chain so fine that its own error does not matter.
 
-use continuum_scene::ctr::{self, Robot};
-use continuum_scene::ventricle;
+use continuum_demo::ctr::{self, Robot};
+use continuum_demo::ventricle;
 use continuum_testing::{Arcs, Random, Stretch};
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,7 +1,7 @@
 //! How much of a mesh a query looks at: figures that do not depend on the machine, and that no change may exceed unnoticed.
 
-use continuum_scene::steer::Random;
-use continuum_scene::{cavity, ctr, lumen, ventricle};
+use continuum_demo::steer::Random;
+use continuum_demo::{cavity, ctr, lumen, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,6 +1,6 @@
 //! The elastic robot of the example `rapier_ventricle` bends as beam theory says, pulled or pressed against a wall.
 
-use continuum_scene::rod::{self, RestShape, Rod};
+use continuum_demo::rod::{self, RestShape, Rod};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use rapier3d_f64::prelude::*;
 

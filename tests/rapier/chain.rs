@@ -1,7 +1,7 @@
 //! A chain as one collider: moved through the ventricle it raises its events at the steps that the exact
 //! clearance says, and it makes no contacts with itself.
 
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};

@@ -1,6 +1,6 @@
 //! What the program runs on, and how much memory it holds.
 
-use continuum_scene::levels::levels;
+use continuum_demo::levels::levels;
 use std::fs;
 
 /// The processor, its cores, and the instructions that the engines use there.

@@ -1,6 +1,6 @@
 //! The robot of the paper's comparisons, by each model.
 
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use parry_continuum::{Chain, RobotError};
 
 /// Links of each model.

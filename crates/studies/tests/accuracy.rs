@@ -1,6 +1,6 @@
 //! What docs/ACCURACY.md says of this crate is what this crate computes.
 
-use continuum_scene::levels::levels;
+use continuum_demo::levels::levels;
 use continuum_studies::accuracy::measure::{Measured, Measurement, measure, problems, range};
 use continuum_studies::accuracy::{EACH, LARGEST, certificates, engines, reference, tables};
 use continuum_studies::{long_table, quote};

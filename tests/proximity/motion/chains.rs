@@ -1,7 +1,7 @@
 //! Chains whose vertices move straight.
 
 use super::polyline;
-use continuum_scene::ventricle;
+use continuum_demo::ventricle;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;

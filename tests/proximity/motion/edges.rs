@@ -1,8 +1,8 @@
 //! Edges of a planner, each point of which moves on a curve of its own, against fine steps.
 
 use super::{Steps, anatomy, arcs, random_edge};
-use continuum_scene::joint_motion::JointMotion;
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity};

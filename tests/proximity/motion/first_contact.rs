@@ -1,7 +1,7 @@
 //! When a motion first comes as near as a margin.
 
 use super::{Steps, anatomy, random_edge};
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::Real;
 use parry_continuum::proximity::FirstContact;

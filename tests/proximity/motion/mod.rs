@@ -8,9 +8,9 @@ mod left_out;
 mod refused;
 mod speeds;
 
-use continuum_scene::ctr::Robot;
-use continuum_scene::joint_motion::JointMotion;
-use continuum_scene::ventricle;
+use continuum_demo::ctr::Robot;
+use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::ventricle;
 use continuum_testing::{Arcs, Random};
 use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Real, Vector};

@@ -1,7 +1,7 @@
 //! Motions that cannot be asked about.
 
 use super::anatomy;
-use continuum_scene::ventricle;
+use continuum_demo::ventricle;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{FirstContact, MotionAnswer, ProximityError};
 use parry_continuum::{

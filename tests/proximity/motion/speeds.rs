@@ -1,7 +1,7 @@
 //! Whether motions keep to the speeds that they state.
 
 use super::{polyline, random_edge};
-use continuum_scene::{ctr, ventricle};
+use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{

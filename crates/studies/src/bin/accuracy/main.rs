@@ -11,8 +11,8 @@ mod peers;
 mod slice;
 
 use clap::Parser;
-use continuum_scene::command;
-use continuum_scene::levels::levels;
+use continuum_demo::command;
+use continuum_demo::levels::levels;
 use continuum_studies::accuracy::measure::{Measurement, measure, problems, range};
 use continuum_studies::accuracy::{EACH, LARGEST, certificates, engines, reference, tables};
 use continuum_studies::long_table;

@@ -4,8 +4,8 @@
 //! smaller, from the bottom up the triangle tilts away from the tube's axis. Every cell is one query.
 
 use crate::peers::parry_distance;
-use continuum_scene::canvas::{Align, Canvas, Colour, hex};
-use continuum_scene::colour_map::ColourMap;
+use continuum_demo::canvas::{Align, Canvas, Colour, hex};
+use continuum_demo::colour_map::ColourMap;
 use continuum_testing::precision::Precision;
 use parry_continuum::ModifiedCylinder;
 use parry_continuum::distance::triangle_modified_cylinder;

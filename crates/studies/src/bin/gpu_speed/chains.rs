@@ -2,7 +2,7 @@
 
 use crate::timed::{Timed, medians, milliseconds};
 use crate::{Opened, text};
-use continuum_scene::ventricle;
+use continuum_demo::ventricle;
 use continuum_studies::gpu::Discs;
 use continuum_studies::long_table;
 use continuum_studies::models::LINKS;

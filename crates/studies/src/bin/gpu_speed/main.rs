@@ -17,7 +17,7 @@ mod roots;
 mod timed;
 
 use clap::Parser;
-use continuum_scene::command;
+use continuum_demo::command;
 use continuum_studies::models::models;
 use parry_continuum::gpu::{Gpu, GpuError, Precision};
 use std::fs;

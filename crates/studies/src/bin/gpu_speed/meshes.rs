@@ -1,8 +1,8 @@
 //! The meshes that all chapters ask, and the engines on the GPU for one of them.
 
 use crate::{Opened, text};
-use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::ventricle;
+use continuum_demo::subdivide::{in_four, shuffled};
+use continuum_demo::ventricle;
 use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::Proximity;

@@ -3,7 +3,7 @@
 use crate::meshes::on_gpus;
 use crate::timed::{Job, medians, milliseconds};
 use crate::{Opened, text};
-use continuum_scene::ventricle;
+use continuum_demo::ventricle;
 use continuum_studies::models::LINKS;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;

@@ -2,10 +2,10 @@
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
-use continuum_scene::levels::levels;
-use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::timing::{self, medians};
-use continuum_scene::ventricle;
+use continuum_demo::levels::levels;
+use continuum_demo::subdivide::{in_four, shuffled};
+use continuum_demo::timing::{self, medians};
+use continuum_demo::ventricle;
 use continuum_studies::machine;
 use continuum_studies::models::models;
 use fearless_simd::Level;

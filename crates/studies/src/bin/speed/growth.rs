@@ -2,9 +2,9 @@
 
 use crate::Effort;
 use crate::exhaustive::on_one_thread;
-use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::timing::{cylinders, medians, parry};
-use continuum_scene::ventricle;
+use continuum_demo::subdivide::{in_four, shuffled};
+use continuum_demo::timing::{cylinders, medians, parry};
+use continuum_demo::ventricle;
 use continuum_studies::models::models;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;

@@ -1,7 +1,7 @@
 //! How long a control loop may have to wait: not the median of a query alone, but its rare worst.
 
 use crate::Effort;
-use continuum_scene::cavity;
+use continuum_demo::cavity;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{BvhSearch, Contact, LinkProximity, Proximity, ProximityError};

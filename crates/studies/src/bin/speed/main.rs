@@ -17,7 +17,7 @@ mod planner;
 mod search;
 
 use clap::Parser;
-use continuum_scene::command;
+use continuum_demo::command;
 use continuum_studies::{machine, quote};
 use goals::Goals;
 use std::fs;

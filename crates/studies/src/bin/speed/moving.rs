@@ -2,8 +2,8 @@
 
 use crate::Effort;
 use crate::exhaustive::divided;
-use continuum_scene::timing::medians;
-use continuum_scene::ventricle;
+use continuum_demo::timing::medians;
+use continuum_demo::ventricle;
 use continuum_studies::models::models;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};

@@ -2,9 +2,9 @@
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
-use continuum_scene::steer::Random;
-use continuum_scene::timing::{self, medians};
-use continuum_scene::{cavity, ctr, lumen, ventricle};
+use continuum_demo::steer::Random;
+use continuum_demo::timing::{self, medians};
+use continuum_demo::{cavity, ctr, lumen, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::query;

@@ -2,8 +2,8 @@
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
-use continuum_scene::cavity;
-use continuum_scene::timing::{self, medians};
+use continuum_demo::cavity;
+use continuum_demo::timing::{self, medians};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::query::{self, ClosestPoints};
 use parry_continuum::parry::shape::{Cylinder, TriMesh};

@@ -1,8 +1,8 @@
 //! Figure 9 and Table IV on the CPU: every triangle against every link, with the paper's solvers and with ours.
 
 use super::peak;
-use continuum_scene::subdivide::{in_four, shuffled};
-use continuum_scene::ventricle;
+use continuum_demo::subdivide::{in_four, shuffled};
+use continuum_demo::ventricle;
 use continuum_studies::Number;
 use continuum_studies::every_pair::EveryPair;
 use continuum_studies::long_table;

@@ -18,7 +18,7 @@ mod turns;
 
 use clap::{Parser, ValueEnum};
 
-use continuum_scene::command;
+use continuum_demo::command;
 use continuum_studies::machine;
 use std::fs;
 use std::path::PathBuf;

@@ -5,7 +5,7 @@ use crate::shapes::{Stations, step_before};
 use crate::statistics::quantile;
 use crate::subject::{Model, Subject};
 use crate::ways::{self, Device, text};
-use continuum_scene::ctr::{Centreline, Joints, Robot};
+use continuum_demo::ctr::{Centreline, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Chain, simplify};

@@ -2,8 +2,8 @@
 
 use crate::statistics::quantile;
 use crate::ways::text;
-use continuum_scene::ctr::{Centreline, Curve, Joints, Robot};
-use continuum_scene::subdivide::in_four;
+use continuum_demo::ctr::{Centreline, Curve, Joints, Robot};
+use continuum_demo::subdivide::in_four;
 use continuum_studies::long_table;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;

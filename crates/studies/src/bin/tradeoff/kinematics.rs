@@ -5,7 +5,7 @@ use crate::shapes::Stations;
 use crate::statistics::{Share, length, quantile};
 use crate::subject::Model;
 use crate::ways::text;
-use continuum_scene::ctr::{Joints, Robot};
+use continuum_demo::ctr::{Joints, Robot};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -65,7 +65,7 @@ pub fn chapter(
 
     let mut page = format!(
         "## Beside the kinematic model\n\n\
-         Real tubes twist. `crates/scene/src/torsion.rs` solves for that (Poisson's ratio 0.3); tests compare it with \
+         Real tubes twist. `crates/demo/src/torsion.rs` solves for that (Poisson's ratio 0.3); tests compare it with \
          published equations solved by an independent integrator. Here is what leaving it out does to the clearance, \
          beside what the model of the links does, on {} of the shapes. Of the robot with torsion, the angles at the \
          tubes' ends are those drawn. The same angles at the base: motors turn the tubes there. The same angles at the \

@@ -27,9 +27,9 @@ mod subject;
 mod ways;
 
 use clap::Parser;
-use continuum_scene::anatomy::Anatomy;
-use continuum_scene::steer::Random;
-use continuum_scene::{command, ctr};
+use continuum_demo::anatomy::Anatomy;
+use continuum_demo::steer::Random;
+use continuum_demo::{command, ctr};
 use continuum_studies::{long_table, quote};
 use outcome::outcomes;
 use std::fs;

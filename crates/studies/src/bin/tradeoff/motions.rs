@@ -2,10 +2,10 @@
 
 use crate::statistics::{Share, quantile};
 use crate::ways::text;
-use continuum_scene::ctr::{Joints, Robot};
-use continuum_scene::joint_motion::JointMotion;
-use continuum_scene::steer::Random;
-use continuum_scene::ventricle;
+use continuum_demo::ctr::{Joints, Robot};
+use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::steer::Random;
+use continuum_demo::ventricle;
 use continuum_studies::machine;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;

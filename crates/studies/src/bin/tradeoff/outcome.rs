@@ -3,7 +3,7 @@
 use crate::shapes::Stations;
 use crate::subject::{Model, Subject};
 use crate::ways::{Clearance, Peer, least, text};
-use continuum_scene::ctr::{Joints, Robot};
+use continuum_demo::ctr::{Joints, Robot};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Capsule, Cylinder, TriMesh};

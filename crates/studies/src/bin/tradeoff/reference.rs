@@ -3,7 +3,7 @@
 use crate::outcome::{REFERENCE_SPACING, reference};
 use crate::shapes::Stations;
 use crate::ways::text;
-use continuum_scene::ctr::{Joints, Robot};
+use continuum_demo::ctr::{Joints, Robot};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,7 +1,7 @@
 //! The robot's shapes: joints drawn from a seed, and stations along the curve of each.
 
-use continuum_scene::ctr::{Centreline, Joints, Robot};
-use continuum_scene::steer::Random;
+use continuum_demo::ctr::{Centreline, Joints, Robot};
+use continuum_demo::steer::Random;
 use parry_continuum::parry::math::Real;
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
 //! One shape of the robot as each program takes it: models made of the same links.
 
-use continuum_scene::ctr::Centreline;
-use continuum_scene::timing;
+use continuum_demo::ctr::Centreline;
+use continuum_demo::timing;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Capsule, Cylinder};
 use parry_continuum::{Chain, RobotError, simplify};

@@ -1,9 +1,9 @@
 //! The robot in motion is the robot of each moment, and no faster than it says.
 
-use continuum_scene::ctr::{Joints, Robot, three_tubes};
-use continuum_scene::joint_motion::JointMotion;
-use continuum_scene::steer::Random;
-use continuum_scene::ventricle;
+use continuum_demo::ctr::{Joints, Robot, three_tubes};
+use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::steer::Random;
+use continuum_demo::ventricle;
 use parry_continuum::parry::math::Real;
 use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::Pose, verify_motion};
 

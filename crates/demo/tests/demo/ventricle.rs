@@ -1,12 +1,12 @@
 //! The scene of the examples is what it says: a closed ventricle with a robot that fits, a start and a goal in any
 //! other mesh, and pictures that show caps as they are queried.
 
-use continuum_scene::canvas::Canvas;
-use continuum_scene::colour_map::ColourMap;
-use continuum_scene::ctr::three_tubes;
-use continuum_scene::picture::{Camera, Picture, Solid};
-use continuum_scene::surface::Mesh;
-use continuum_scene::{lettering, remesh, steer, surface, ventricle};
+use continuum_demo::canvas::Canvas;
+use continuum_demo::colour_map::ColourMap;
+use continuum_demo::ctr::three_tubes;
+use continuum_demo::picture::{Camera, Picture, Solid};
+use continuum_demo::surface::Mesh;
+use continuum_demo::{lettering, remesh, steer, surface, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{Ray, RayCast};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};

@@ -4,8 +4,8 @@
 //! nothing with `ctr` and `torsion` and printed to 1e-9 mm: each pair of joints with tubes that do not
 //! twist and with tubes that do.
 
-use continuum_scene::ctr::{Joints, Robot, Section, Tube, three_tubes};
-use continuum_scene::ventricle;
+use continuum_demo::ctr::{Joints, Robot, Section, Tube, three_tubes};
+use continuum_demo::ventricle;
 use parry_continuum::parry::math::{Real, Vector};
 use serde::Deserialize;
 use std::collections::BTreeMap;

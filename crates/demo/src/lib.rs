@@ -1,4 +1,4 @@
-//! The scene that examples, benches and tests share: a brain ventricle, a concentric tube robot in it, and a picture of
+//! The demo that examples, benches and tests share: a brain ventricle, a concentric tube robot in it, and a picture of
 //! both. Lengths are in millimetres.
 //!
 //! | what | modules |
