@@ -85,9 +85,11 @@ pub struct Speed {
 
 /// The pose of a motion with a rotation of unit length, if it is finite, within range and rigid.
 fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
-    // The parts of a rotation are small where they are finite at all.
-    let parts = pose.translation.to_array().into_iter().chain(pose.rotation.to_array());
-    if let Some(value) = parts.into_iter().find(|part| !(part.abs() <= COORDINATE_LIMIT)) {
+    // A rotation that is finite may still be too long: that is another error.
+    let is_out = |place: &Real| !place.is_finite() || place.abs() > COORDINATE_LIMIT;
+    let places = pose.translation.to_array().into_iter().filter(is_out);
+    let parts = pose.rotation.to_array().into_iter().filter(|part| !part.is_finite());
+    if let Some(value) = places.chain(parts).next() {
         return Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT });
     }
     rigid(pose).map_err(|NotRigid { length }| RobotError::PoseNotRigid { parameter, length })
