@@ -21,9 +21,14 @@ type Census = BTreeMap<(String, String), [u32; 2]>;
 /// The numbered cases at the heads of the files.
 fn numbered_cases() -> BTreeSet<(String, String)> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let kernels = std::fs::read_dir(source.join("distance")).expect("the kernels' directory");
-    let mut files: Vec<_> = kernels.map(|entry| entry.expect("a file").path()).collect();
-    files.push(source.join("robot/algorithm_1.rs"));
+    let (mut files, mut folders) = (vec![source.join("robot/algorithm_1.rs")], vec![source.join("distance")]);
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(folder).expect("a directory of kernels");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let (inner, found): (Vec<_>, Vec<_>) = paths.partition(|path| path.is_dir());
+        folders.extend(inner);
+        files.extend(found);
+    }
     let mut cases = BTreeSet::new();
     for file in files {
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -214,6 +219,35 @@ impl View {
         [(point - self.start).dot(axis).rounded() < 0.0, (point - self.end).dot(axis).rounded() > 0.0]
     }
 
+    /// Where the edges' shadows are to the halves of the flat caps' shadows, seen along the edges: if link and triangle
+    /// overlap, and if the cap's shadow is an ellipse.
+    fn ellipses(&self, mut seen: impl FnMut(&str, &str)) {
+        let (Self { triangle, start, end, .. }, radius) = (self, exact(self.radius));
+        let flat = triangle_modified_cylinder(*triangle, *start, *end, radius, [true; 2]);
+        if flat.distance.rounded() != 0.0 {
+            return;
+        }
+        let axis = *end - *start;
+        for (centre, outward) in [(*start, -axis), (*end, axis)] {
+            for corner in 0..3 {
+                let (point, edge) =
+                    (triangle[corner] - centre, triangle[(corner + 1) % 3] - triangle[corner]);
+                let (lean, across) = (outward.dot(edge), outward.cross(edge));
+                if lean.rounded() == 0.0 || is_zero(across) {
+                    continue;
+                }
+                // In the plane of both, perpendicular to the edge, as far from it as the cap faces.
+                let height = point.dot(edge.cross(across).normalised());
+                let case = match height.rounded() > 0.0 {
+                    _ if !self.off(height.abs()) => "`p` on the long axis",
+                    true => "`p` in the upper half",
+                    false => "`p` in the lower half",
+                };
+                seen("ellipse", case);
+            }
+        }
+    }
+
     fn count(&self, mut seen: impl FnMut(&str, &str)) {
         seen("segment_segment", self.segments());
         let to_point = point_triangle(self.end, self.triangle);
@@ -232,12 +266,17 @@ impl View {
         if is_zero(self.end - self.start) {
             return;
         }
+        self.ellipses(&mut seen);
+        let apart = segment_triangle([self.start, self.end], self.triangle).distance;
         // The links of the kernels: both caps flat, both round, and one of each.
         let (ends, beyond) = (self.axis_ends(), self.beyond());
         for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
             let at_flat = (0..2).any(|end| ends[end] && flat[end]);
             let case = if at_flat { "Beyond a flat cap" } else { "Beside the barrel or beyond a round cap" };
             seen("triangle_modified_cylinder", case);
+            if !at_flat && self.off(apart) {
+                seen("foot", if apart.le(exact(self.radius)) { "Overlapping" } else { "Apart" });
+            }
             let case = match (0..2).find(|&end| beyond[end]) {
                 None => "Beside the barrel",
                 Some(end) if flat[end] => "Beyond a flat end",
