@@ -16,6 +16,9 @@ const RADIUS: Real = 0.1;
 /// machine does then slows down both alike.
 const TIMES: u32 = MANY / FEW;
 
+/// How long an engine takes: see [`time`].
+type Timed = fn(u32, &TriMesh, [Vector; 2], (Real, Vector)) -> Duration;
+
 /// Builds an engine and asks it for the contacts of a capsule, of which there is one, so many times.
 fn time<E: Proximity>(
     times: u32,
@@ -43,7 +46,7 @@ fn time<E: Proximity>(
 /// all others, and 16 times as long, if each does.
 fn grows_slowly(mesh: impl Fn(u32) -> TriMesh, axis: [Vector; 2], expected: (Real, Vector)) {
     let meshes = [(TIMES, mesh(FEW)), (1, mesh(MANY))];
-    let engines: [fn(u32, &TriMesh, [Vector; 2], (Real, Vector)) -> Duration; 2] = [
+    let engines: [Timed; 2] = [
         |times, mesh, axis, expected| time(times, mesh, axis, expected, |mesh| BvhSearch::new(mesh).unwrap()),
         |times, mesh, axis, expected| {
             time(times, mesh, axis, expected, |mesh| Exhaustive::<f32>::new(mesh).unwrap())

@@ -48,7 +48,7 @@ fn ball((rows, columns): (u32, u32)) -> TriMesh {
 fn robots(count: u32) -> Vec<(Chain, Pose)> {
     let mut random = Random::new(7);
     let robot = |k: u32| {
-        let way = random.point().normalize_or_zero() * if k % 2 == 0 { 1.2 } else { 0.5 };
+        let way = random.point().normalize_or_zero() * if k.is_multiple_of(2) { 1.2 } else { 0.5 };
         let points: Vec<_> = (0..8).map(|joint| way * (RADIUS * f64::from(joint) / 7.0)).collect();
         (Chain::from_centreline(&points, &[0.05; 7]).unwrap(), Pose::IDENTITY)
     };

@@ -103,7 +103,7 @@ impl LinkTriangle {
             let found = segment_triangle([Vec3::zero(0.0), end.into()], part.map(Vec3::from));
             let along = Vector::from(found.point1).dot(axis);
             return Parting {
-                fraction: (along / length).max(0.0).min(1.0),
+                fraction: (along / length).clamp(0.0, 1.0),
                 lever: normal * radius,
                 on_triangle: found.point2.into(),
                 at_flat_cap: false,
