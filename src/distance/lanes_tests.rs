@@ -1,7 +1,8 @@
 //! Every instruction set of this machine gives the scalar's answers, lane by lane.
 
 use super::*;
-use crate::distance::{Kernel, Vec3, at_level, dispatch, segment_disc, triangle_modified_cylinder};
+use crate::distance::at_level::{Kernel, at_level};
+use crate::distance::{Vec3, dispatch, segment_disc, triangle_modified_cylinder};
 use fearless_simd::{Level, Simd};
 
 /// The instruction sets of this machine.

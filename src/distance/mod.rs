@@ -17,6 +17,7 @@
 //! assert_eq!(round.distance, 0.5);
 //! ```
 
+#[cfg(any(test, feature = "laboratory"))]
 mod at_level;
 mod bounds;
 pub(crate) mod depth;
@@ -25,6 +26,9 @@ mod dispatch;
 mod double_double;
 mod face;
 mod frame;
+#[cfg(feature = "laboratory")]
+#[doc(hidden)] // for this project's own studies and tests
+pub mod laboratory;
 pub(crate) mod lanes;
 mod plane_disc;
 mod point_disc;
@@ -39,31 +43,26 @@ mod triangle_modified_cylinder;
 mod unfused;
 mod vec3;
 
+pub(crate) use disc_solver::{Convex, DiscSolver};
 pub(crate) use dispatch::dispatch;
 pub(crate) use face::Face;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
 #[cfg(feature = "gpu")]
 pub(crate) use scalar::CBRT_BITS_F32;
+pub(crate) use scalar::Mask;
 pub(crate) use triangle_modified_cylinder::Axial;
 
-#[doc(hidden)] // for the comparison of instruction sets
-pub use at_level::{Kernel, at_level};
-pub use disc_solver::{Convex, DiscSolver};
 pub use double_double::DoubleDouble;
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
 pub use point_triangle::point_triangle;
-#[doc(hidden)]
-pub use scalar::Sealed;
-pub use scalar::{Mask, Scalar};
-pub use segment_disc::{LineDisc, segment_disc, segment_disc_by};
+pub use scalar::Scalar;
+pub use segment_disc::segment_disc;
 pub use segment_segment::segment_segment;
 pub use segment_triangle::segment_triangle;
-pub use triangle_disc::{triangle_disc, triangle_disc_by};
-pub use triangle_modified_cylinder::{
-    triangle_capsule, triangle_modified_cylinder, triangle_modified_cylinder_by,
-};
+pub use triangle_disc::triangle_disc;
+pub use triangle_modified_cylinder::{triangle_capsule, triangle_modified_cylinder};
 pub(crate) use unfused::Unfused;
 pub use vec3::Vec3;
 

@@ -7,7 +7,6 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Keeps [`Scalar`] and [`Mask`] from being implemented elsewhere, so that they can grow. The project's own tests and
 /// studies do: their numbers count or imitate lanes.
-#[doc(hidden)]
 pub trait Sealed {}
 
 impl Sealed for bool {}
@@ -33,7 +32,7 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The result of a comparison.
+    /// The result of a comparison: a truth value for each lane, `bool` for `f32` and `f64`.
     type Mask: Mask<Self>;
 
     /// The largest relative error of one rounding: 2^-24 or 2^-53.

@@ -137,6 +137,8 @@ impl GpuExhaustive {
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) -> Result<(), GpuError> {
         if culling {
             self.every_pair = None;
@@ -151,6 +153,8 @@ impl GpuExhaustive {
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
     pub fn compute_every_pair(&mut self, route: &str) -> Result<(), GpuError> {
         self.every_pair = Some(self.gpu.0.every_pair(route)?);
         Ok(())

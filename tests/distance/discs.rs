@@ -1,14 +1,14 @@
 //! Segment against disc on plain and nasty problems, against twice the digits.
 
 use continuum_testing::disc_problems::{DiscProblem, problems, worst};
+use continuum_testing::narrow_phase::segment_disc;
 use continuum_testing::precision::Precision;
-use parry_continuum::distance::Convex;
 use parry_continuum::parry::math::Vector;
 
 #[test]
 fn the_convex_route_is_right_to_rounding_on_every_kind() {
-    assert!(worst::<Convex, f64>(&problems::<f64>(3000)) <= 8.0);
-    assert!(worst::<Convex, f32>(&problems::<f32>(3000)) <= 8.0);
+    assert!(worst::<f64>(segment_disc, &problems::<f64>(3000)) <= 8.0);
+    assert!(worst::<f32>(segment_disc, &problems::<f32>(3000)) <= 8.0);
 }
 
 #[test]
@@ -33,6 +33,6 @@ fn the_convex_route_where_it_once_failed() {
         radius: 1.3460198640823364,
     };
     for problem in [touching_the_rim, flat_to_rounding] {
-        assert!(problem.error::<Convex, f32>(problem.distance()) <= 8.0 * f32::UNIT, "{problem:?}");
+        assert!(problem.error::<f32>(segment_disc, problem.distance()) <= 8.0 * f32::UNIT, "{problem:?}");
     }
 }

@@ -3,7 +3,8 @@
 
 use continuum_testing::distance_cases;
 use continuum_testing::kernels::{Input, KERNELS};
-use parry_continuum::distance::{Mask, Scalar, Sealed, Vec3};
+use parry_continuum::distance::laboratory::{Mask, Sealed};
+use parry_continuum::distance::{Scalar, Vec3};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Two numbers that know nothing of each other.

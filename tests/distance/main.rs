@@ -7,6 +7,7 @@ mod certificate;
 mod discs;
 mod errata;
 mod errata_links;
+#[cfg(feature = "laboratory")]
 mod lanes;
 mod metamorphic;
 mod slivers;

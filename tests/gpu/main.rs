@@ -63,6 +63,7 @@ fn the_distances_are_those_of_the_cpu() {
         let Some(gpu) = gpu::open(precision) else { continue };
         let mut engine = GpuExhaustive::on(gpu, &mesh).unwrap();
         for culling in [true, false] {
+            #[cfg(feature = "laboratory")]
             engine.set_culling(culling).unwrap();
             let (mut answers, mut batch) = (Vec::new(), Vec::new());
             for ((robot, pose), expected) in robots.iter().zip(&expected) {

@@ -42,6 +42,7 @@ fn is_lowest(mesh: &TriMesh, robot: &Chain, pose: &Pose, answers: &[LinkProximit
 fn check(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> usize {
     let mut expected = Vec::new();
     let mut reference = Exhaustive::<f64>::new(mesh).unwrap();
+    #[cfg(feature = "laboratory")]
     reference.set_culling(false);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool(1).install(|| reference.per_link(robot, pose, &mut expected)).unwrap();

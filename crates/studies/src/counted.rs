@@ -1,7 +1,8 @@
 //! A number that counts what is done with it.
 
 use crate::Number;
-use parry_continuum::distance::{Scalar, Sealed};
+use parry_continuum::distance::Scalar;
+use parry_continuum::distance::laboratory::Sealed;
 use polynomial_roots::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};

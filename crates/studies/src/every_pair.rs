@@ -1,7 +1,8 @@
 //! Every link against every triangle, one pair after another, with the discs by any route: what the paper's tables time.
 
 use crate::Number;
-use parry_continuum::distance::{DiscSolver, Scalar, Vec3, segment_triangle, triangle_modified_cylinder_by};
+use parry_continuum::distance::laboratory::{DiscSolver, triangle_modified_cylinder_by};
+use parry_continuum::distance::{Scalar, Vec3, segment_triangle};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Cap, Chain, ModifiedCylinder};

@@ -16,7 +16,8 @@
 //! are they polished on the whole of it.
 
 use crate::Number;
-use parry_continuum::distance::{Closest, DiscSolver, LineDisc, Scalar, Vec3};
+use parry_continuum::distance::laboratory::{DiscSolver, LineDisc};
+use parry_continuum::distance::{Closest, Scalar, Vec3};
 use polynomial_roots::RootFinder;
 use std::marker::PhantomData;
 

@@ -4,14 +4,15 @@ use continuum_studies::Number;
 use continuum_studies::quartic::{QuarticAsPrinted, RecentredQuartic};
 use continuum_testing::disc_problems::{DiscProblem, Kind, problems, worst};
 use continuum_testing::precision::Precision;
-use parry_continuum::distance::DiscSolver;
+use parry_continuum::distance::laboratory::{DiscSolver, segment_disc_by};
 use parry_continuum::parry::math::Vector;
 use polynomial_roots::*;
 
 /// The share of gross errors, above 1e-4 of the extent, among the problems of some kinds.
 fn gross<S: DiscSolver<f64>>(problems: &[(Kind, DiscProblem, f64)], kinds: &[Kind]) -> f64 {
     let some = || problems.iter().filter(|(kind, ..)| kinds.contains(kind));
-    let wrong = some().filter(|(_, problem, distance)| problem.error::<S, f64>(*distance) > 1e-4);
+    let wrong =
+        some().filter(|(_, problem, distance)| problem.error(segment_disc_by::<S, f64>, *distance) > 1e-4);
     wrong.count() as f64 / some().count() as f64
 }
 
@@ -20,11 +21,11 @@ fn the_recentred_quartic_is_right_to_rounding_with_every_finder() {
     fn check<T: Number + Precision>() {
         let problems = problems::<T>(300);
         let errors = [
-            worst::<RecentredQuartic<ClosedForm>, T>(&problems),
-            worst::<RecentredQuartic<Bairstow>, T>(&problems),
-            worst::<RecentredQuartic<Companion>, T>(&problems),
-            worst::<RecentredQuartic<JenkinsTraub>, T>(&problems),
-            worst::<RecentredQuartic<ClosedForm, 1>, T>(&problems),
+            worst(segment_disc_by::<RecentredQuartic<ClosedForm>, T>, &problems),
+            worst(segment_disc_by::<RecentredQuartic<Bairstow>, T>, &problems),
+            worst(segment_disc_by::<RecentredQuartic<Companion>, T>, &problems),
+            worst(segment_disc_by::<RecentredQuartic<JenkinsTraub>, T>, &problems),
+            worst(segment_disc_by::<RecentredQuartic<ClosedForm, 1>, T>, &problems),
         ];
         assert!(errors.iter().all(|&error| error <= 16.0), "{errors:?}");
     }
@@ -69,6 +70,6 @@ fn a_double_root_is_lost_where_only_real_roots_count() {
     assert_eq!(problem.distance(), right);
     // The end (3, -0.3, 1) is sqrt(9.09) from the axis.
     let end = (1.0 + (9.09_f64.sqrt() - 2.0).powi(2)).sqrt();
-    let off = problem.error::<QuarticAsPrinted<Companion>, f64>(right) * problem.extent();
+    let off = problem.error(segment_disc_by::<QuarticAsPrinted<Companion>, f64>, right) * problem.extent();
     assert!((off - (end - right)).abs() < 1e-12, "{off}");
 }

@@ -2,8 +2,11 @@
 
 use crate::Random;
 use crate::precision::Precision;
-use parry_continuum::distance::{DiscSolver, DoubleDouble, Scalar, segment_disc_by};
+use parry_continuum::distance::{Closest, DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
+
+/// A way from a segment to a disc: [`segment_disc`](parry_continuum::distance::segment_disc), or one to compare with it.
+pub type Route<T> = fn([Vec3<T>; 2], Vec3<T>, Vec3<T>, T) -> Closest<T>;
 
 /// A segment and a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,10 +228,9 @@ impl DiscProblem {
     }
 
     /// The error of a route in the precision `T`, relative to the extent.
-    pub fn error<S: DiscSolver<T>, T: Precision>(&self, distance: f64) -> f64 {
+    pub fn error<T: Precision>(&self, route: Route<T>, distance: f64) -> f64 {
         let (centre, normal) = (T::vec3(self.centre), T::vec3(self.normal));
-        let radius = T::from_f64(self.radius);
-        let found = segment_disc_by::<S, T>(self.ends.map(T::vec3), centre, normal, radius);
+        let found = route(self.ends.map(T::vec3), centre, normal, T::from_f64(self.radius));
         let error = (found.distance.into() - distance).abs() / self.extent();
         if error.is_nan() { f64::INFINITY } else { error }
     }
@@ -310,7 +312,7 @@ pub fn problems<T: Precision>(of_each: usize) -> Vec<(Kind, DiscProblem, f64)> {
 }
 
 /// The largest error of a route in units of roundoff.
-pub fn worst<S: DiscSolver<T>, T: Precision>(problems: &[(Kind, DiscProblem, f64)]) -> f64 {
-    let errors = problems.iter().map(|(_, problem, distance)| problem.error::<S, T>(*distance));
+pub fn worst<T: Precision>(route: Route<T>, problems: &[(Kind, DiscProblem, f64)]) -> f64 {
+    let errors = problems.iter().map(|(_, problem, distance)| problem.error(route, *distance));
     errors.fold(0.0, f64::max) / T::UNIT
 }

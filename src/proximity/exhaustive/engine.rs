@@ -22,8 +22,7 @@ use std::sync::Arc;
 /// time with the widest instructions of the machine, and (feature `parallel`) on all its cores. Where single precision
 /// is too coarse, because a triangle or the robot lies very far out, the search is in double precision whatever `T`.
 ///
-/// Every triangle is visited, but most need no more than a look at the sphere around them; see
-/// [`Exhaustive::set_culling`].
+/// Every triangle is visited, but most need no more than a look at the sphere around them.
 ///
 /// A clone shares the mesh, until one of them moves it.
 pub struct Exhaustive<T: SearchPrecision> {
@@ -96,11 +95,14 @@ impl<T: SearchPrecision> Exhaustive<T> {
     ///
     /// Without them every pair of link and triangle costs its full distance, discs included: the work of the
     /// paper, for comparison with it.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) {
         self.culling = culling;
     }
 
     /// Uses another instruction set than the widest of this machine: for the comparison of instruction sets.
+    #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_level(&mut self, level: Level) {
         self.level = level;

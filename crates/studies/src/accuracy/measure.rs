@@ -1,11 +1,13 @@
 //! The errors of every kernel on the extreme problems: as plain numbers, and at every instruction set.
 
+use super::packed::{self, LinkDistance, NUMBERS};
 use super::problems::{Extreme, Range, Sample, samples};
 use continuum_testing::certificate::{certify, directions, shapes};
-use continuum_testing::kernels::{Input, KERNELS, LinkDistance, NUMBERS};
+use continuum_testing::kernels::{Input, KERNELS};
 use continuum_testing::precision::Precision;
 use fearless_simd::Level;
-use parry_continuum::distance::{DoubleDouble, Vec3, at_level};
+use parry_continuum::distance::laboratory::at_level;
+use parry_continuum::distance::{DoubleDouble, Vec3};
 
 /// The pairs of the tables, and which kernels answer them.
 pub const PAIRS: [(&str, &[usize]); 11] = [
@@ -190,7 +192,8 @@ pub fn range<T: Measured>(largest: i32) -> [i32; 2] {
 pub fn measure<T: Measured>(problems: &[Problem<T>], levels: &[(&'static str, Level)]) -> Measurement {
     let packed: Vec<_> = PACKED
         .map(|(kernel, flat)| {
-            let numbers: Vec<_> = problems.iter().map(|problem| problem.input.link_numbers(flat)).collect();
+            let numbers: Vec<_> =
+                problems.iter().map(|problem| packed::numbers(&problem.input, flat)).collect();
             let answers = levels.iter().map(|(_, level)| T::at_level(*level, &numbers));
             (kernel, answers.collect::<Vec<_>>())
         })

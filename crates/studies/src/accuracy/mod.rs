@@ -6,6 +6,7 @@ pub mod engines;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod measure;
+mod packed;
 pub mod problems;
 pub mod reference;
 pub mod tables;

@@ -5,7 +5,8 @@
 //! alone. Neither is as exact as the library, which takes the determinant from a cross product, scales the problem by a
 //! power of two and returns the closest points.
 
-use parry_continuum::distance::{Mask, Scalar, Vec3, point_triangle, segment_segment};
+use parry_continuum::distance::laboratory::Mask;
+use parry_continuum::distance::{Scalar, Vec3, point_triangle, segment_segment};
 
 /// One way to compute a distance from four points.
 pub trait Query {

@@ -9,7 +9,7 @@ use continuum_studies::long_table;
 use continuum_studies::models::models;
 use continuum_studies::quartic::QuarticAsPrinted;
 use parry_continuum::Chain;
-use parry_continuum::distance::{Convex, DiscSolver};
+use parry_continuum::distance::laboratory::{Convex, DiscSolver};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
