@@ -43,7 +43,8 @@ pub(super) enum Answer {
     },
 }
 
-/// Cases 1 and 2, for links whose coordinates are at most `extent`.
+/// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0: where an axis lies in the other
+/// link, no distance tells how deep they overlap.
 pub(super) fn touch(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,

@@ -48,10 +48,12 @@ impl LinkPair {
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
         let [first, second] = &self.links;
-        let overlap = match link_link::touch(first, second, self.extent, prediction) {
+        // An overlap is found first, then measured.
+        let overlap = match link_link::touch(first, second, self.extent, prediction.max(0.0)) {
             Answer::Apart => return Ok(None),
             Answer::Touch(touch) => {
-                return Ok(Some(self.report(pos12, touch.on_first, touch.normal, touch.dist)));
+                return Ok(Some(self.report(pos12, touch.on_first, touch.normal, touch.dist))
+                    .filter(|contact| contact.dist <= prediction));
             }
             Answer::Unknown { overlap } => overlap,
         };
