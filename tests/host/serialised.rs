@@ -59,7 +59,7 @@ fn what_no_constructor_makes_is_an_error() {
         refusal::<ModifiedCylinder>(link)
     };
     assert_eq!(with("radius", json!(0.25)), "");
-    assert!(with("radius", json!(-1.0)).contains("a radius must be finite, at least 0"));
+    assert!(with("radius", json!(-1.0)).contains("radius 0 is -1; `radius` must be finite, at least 0"));
     assert!(with("end", json!([0.0, 0.0, 0.0])).contains("length 0"));
     assert!(with("end", json!([1e200, 0.0, 0.0])).contains("beyond"));
     assert!(with("caps", json!(["Flat", "Square"])).contains("Square"));
@@ -75,7 +75,9 @@ fn what_no_constructor_makes_is_an_error() {
     };
     assert_eq!(with("radii", json!([0.5, 0.5])), "");
     assert!(with("radii", json!([0.5])).contains("2 radii, got 1"));
-    assert!(with("radii", json!([0.5, -0.4])).contains("radius 1 is -0.4"));
+    assert!(
+        with("radii", json!([0.5, -0.4])).contains("radius 1 is -0.4; `radii` must be finite, at least 0")
+    );
     assert!(with("points", json!([])).contains("at least 2 points"));
     assert!(with("points", json!([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])).contains("link 0"));
     assert!(with("caps", json!([])).contains("as many caps"));
