@@ -126,13 +126,13 @@ impl Meeting {
         }
     }
 
-    /// Case 3. Of others that are all but as close the nearest stands for them, with their distance.
+    /// Case 3. Of others that are all but as close the nearest stands for them, with their distance; the rest keep theirs.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > dist + SAME_POINT * self.extent {
             return self.add(on_first, dist, [feature::BARREL.into(); 2]);
         }
-        let enough = least.max(dist + ROUNDING * self.extent);
+        let enough = least.max(dist);
         for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
             point.dist = dist;
         }

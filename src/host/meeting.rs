@@ -82,12 +82,15 @@ impl<'a> Meeting<'a> {
     /// Adds the closest points, unless one of the others is all but as close: then the nearest of these stands for them, with
     /// their distance, so that a link at rest which trembles a little keeps its points and their names. No point is closer
     /// than they are, which one may seem to be that lies beside the triangle's edge.
+    ///
+    /// The others keep their distances, to the last bit. Hosts choose by distance which points to hold a body with: made equal,
+    /// the first would be chosen at every step, and what lies would be held on one side.
     pub fn add_closest(&mut self, distance: Real, on_link: Vector) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > distance + SAME_POINT * self.size {
             return self.add(on_link, distance, feature::BARREL.into(), PackedFeatureId::face(0));
         }
-        let enough = least.max(distance + self.rounding);
+        let enough = least.max(distance);
         for point in self.points.iter_mut().filter(|point| point.dist <= enough) {
             point.dist = distance;
         }

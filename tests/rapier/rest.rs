@@ -132,6 +132,33 @@ fn a_capsule_falls_like_parrys_capsule_and_a_cylinder_like_parrys_cylinder_or_be
     }
 }
 
+/// Whatever place it falls on: what lies is held evenly, so that it neither rolls nor slides away.
+#[test]
+fn a_rod_that_falls_flat_stays_where_it_falls() {
+    const STARTS: usize = 24;
+    let flat = attitudes()[1].1;
+    let fall = |shape: &SharedShape, ground: Ground, start: usize| {
+        let shift = 0.03 * Vector::new((1.7 * start as Real).sin(), 0.0, (2.3 * start as Real).cos());
+        let from = Vector::new(0.1, 2.0, -0.2) + shift;
+        let mut drop = Drop::new(world(1.0), ground.1(1.0), shape.clone(), Pose::from_parts(from, flat));
+        let steps = settle_unseen(&mut drop, 400).unwrap_or(400);
+        (steps, (drop.pose().translation - from.with_y(0.5)).length())
+    };
+    let peers = [SharedShape::capsule_y(1.0, 0.5), SharedShape::cylinder(1.0, 0.5)];
+    for ground in [FLAT[0], FLAT[2]] {
+        let latest = |shape: &SharedShape| (0..STARTS).map(|start| fall(shape, ground, start).0).max();
+        let latest_of_peers = peers.iter().filter_map(latest).max().unwrap_or(0);
+        for link in links() {
+            for start in 0..STARTS {
+                let (steps, way) = fall(&SharedShape::new(link), ground, start);
+                let context = format!("{:?} on a {}, start {start}", link.caps(), ground.0);
+                assert!(way < 5e-3, "{context} went {way}");
+                assert!(steps < latest_of_peers + 10, "{context}: {steps}, {latest_of_peers}");
+            }
+        }
+    }
+}
+
 /// As `settle`, for shapes that the crate does not measure.
 fn settle_unseen(drop: &mut Drop, most: usize) -> Option<usize> {
     (0..most).find(|_| {
