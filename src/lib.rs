@@ -64,22 +64,30 @@
 
 pub use parry3d_f64 as parry;
 
+mod answer;
 pub mod book;
 pub mod distance;
+mod engine;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod host;
+mod mesh;
+mod pair;
+mod pieces;
 pub mod proximity;
+mod query;
 mod robot;
+mod search;
+mod threads;
 
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
-pub use robot::{BendingMotion, BendingRates, BendingSection, LinearMotion, Motion, RigidMotion, Speed};
 pub use robot::{
-    Cap, Chain, ConstantCurvature, MatrixError, ModifiedCylinder, RobotError, Tube, TubeSection,
+    BendingMotion, BendingRates, BendingSection, Cap, Chain, ConstantCurvature, LinearMotion, MatrixError,
+    ModifiedCylinder, Motion, RigidMotion, RobotError, Speed, Tube, TubeSection, bending_speed,
+    pose_from_matrix, simplify, stations, verify_motion,
 };
-pub use robot::{bending_speed, pose_from_matrix, simplify, stations, verify_motion};
 
 /// Runs the code in the README.
 #[cfg(doctest)]

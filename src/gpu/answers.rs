@@ -6,7 +6,8 @@ use super::link::DeviceLink;
 use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
 use crate::Chain;
-use crate::proximity::{LinkProximity, Nearest, PlacedRobot, ProximityError};
+use crate::answer::{LinkProximity, ProximityError};
+use crate::pair::{Nearest, PlacedRobot};
 use parry3d_f64::math::{Pose, Real};
 
 impl GpuExhaustive {

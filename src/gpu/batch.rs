@@ -7,7 +7,7 @@ use super::opened::Gpu;
 use super::record::Record;
 use super::wgsl::Shader;
 use super::{GpuError, Precision};
-use crate::proximity::DeviceFailure;
+use crate::answer::DeviceFailure;
 use parry3d_f64::math::Real;
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};

@@ -4,7 +4,7 @@ use super::failures::{Failures, Watch};
 use super::record::Record;
 use super::wgsl::Shader;
 use super::{GpuError, Precision};
-use crate::proximity::DeviceFailure;
+use crate::answer::DeviceFailure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A GPU as it is named to users.

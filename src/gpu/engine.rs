@@ -9,10 +9,11 @@ use super::query::Query;
 use super::wgsl::CONVEX;
 use super::{GpuError, Precision};
 use crate::Chain;
-use crate::proximity::{
-    Contact, DeviceFailure, HasMesh, LinkProximity, Mesh, MeshError, PlacedLink, PlacedRobot, Proximity,
-    ProximityError, SearchFrame, check_bound, check_margin, contacts_by_all_triangles, pairs,
-};
+use crate::answer::{Contact, DeviceFailure, LinkProximity, MeshError, ProximityError};
+use crate::engine::{HasMesh, Proximity, pairs};
+use crate::mesh::Mesh;
+use crate::pair::{PlacedLink, PlacedRobot, SearchFrame, check_bound, check_margin};
+use crate::query::contacts::contacts_by_all_triangles;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::ops::Range;

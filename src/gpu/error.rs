@@ -1,4 +1,4 @@
-use crate::proximity::{DeviceFailure, MeshError};
+use crate::answer::{DeviceFailure, MeshError};
 use thiserror::Error;
 
 /// Why there is no engine on a GPU.

@@ -1,7 +1,7 @@
 //! What went wrong on a device. Drivers report at any time, from any thread, and do not say whose command it was: so
 //! everybody who uses the device hears of every failure.
 
-use crate::proximity::DeviceFailure;
+use crate::answer::DeviceFailure;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// From the gravest on: what follows from a graver failure tells less than that.

@@ -1,7 +1,9 @@
 //! Triangles measured on the CPU in double precision: the device's candidates, or all.
 
 use super::candidates::Candidate;
-use crate::proximity::{Best, Mesh, Nearest, PlacedLink, each};
+use crate::mesh::Mesh;
+use crate::pair::{Best, Nearest, PlacedLink};
+use crate::threads::each;
 use parry3d_f64::math::Real;
 
 /// The least distance that the device computed.

@@ -5,7 +5,9 @@ use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::proximity::{Mesh, SearchFrame, each};
+use crate::mesh::Mesh;
+use crate::pair::SearchFrame;
+use crate::threads::each;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Numbers of a triangle's sphere, and of its face.

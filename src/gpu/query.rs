@@ -16,7 +16,7 @@ use super::mesh::DeviceMesh;
 use super::opened::Opened;
 use super::plan::{Plan, Tuning};
 use super::record::Record;
-use crate::proximity::DeviceFailure;
+use crate::answer::DeviceFailure;
 use std::time::Duration;
 use wgpu::{Buffer, CommandEncoder, ComputePipeline};
 

@@ -1,6 +1,6 @@
 //! The closest triangle of a mesh, by the mesh's own bounding volume hierarchy.
 
-use crate::proximity::{Best, Nearest, PlacedLink};
+use crate::pair::{Best, Nearest, PlacedLink};
 use parry3d_f64::math::Real;
 use parry3d_f64::partitioning::BvhLeafCost;
 use parry3d_f64::shape::TriMesh;

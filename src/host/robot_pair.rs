@@ -7,7 +7,7 @@
 use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{Until, search};
 use super::range::in_range;
-use crate::proximity::{Nearest, PlacedLink};
+use crate::pair::{Nearest, PlacedLink};
 use crate::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};

@@ -8,7 +8,7 @@ const MODULES: [(&str, &str); 4] = [
     ("parry_continuum", "src/lib.rs"),
     ("parry_continuum::distance", "src/distance/mod.rs"),
     ("parry_continuum::gpu", "src/gpu/mod.rs"),
-    ("parry_continuum::proximity", "src/proximity/mod.rs"),
+    ("parry_continuum::proximity", "src/proximity.rs"),
 ];
 
 /// What a module's file shows: its public modules, items and re-exports, hidden ones left out.

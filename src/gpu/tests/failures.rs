@@ -2,12 +2,13 @@
 
 use super::{ball, gpu, robot};
 use crate::Chain;
+use crate::answer::{DeviceFailure, ProximityError};
+use crate::engine::{Exhaustive, Proximity};
 use crate::gpu::batch::{Batch, BatchKernel};
 use crate::gpu::device::Device;
 use crate::gpu::opened::{Gpu, Opened};
 use crate::gpu::wgsl::Shader;
 use crate::gpu::{GpuError, GpuExhaustive, Precision};
-use crate::proximity::{DeviceFailure, Exhaustive, Proximity, ProximityError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::sync::Arc;
 

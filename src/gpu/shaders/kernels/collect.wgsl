@@ -1,5 +1,5 @@
 // The candidates of each link, the triangles whose distance does not exceed the limit, discs included: what
-// Findings of proximity/exhaustive/scan.rs collect.
+// Findings of search/exhaustive/scan.rs collect.
 //
 // Second pass of two: only blocks and triangles whose lower bound survived the first are looked at, and only those
 // that a flat cap decides cost a disc. They come in any order; the host sorts them.

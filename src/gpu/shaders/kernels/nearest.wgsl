@@ -1,5 +1,5 @@
 // Every triangle against every link, the least bounds of each block of triangles and each link: the twin of Job::scan
-// in proximity/exhaustive/scan.rs.
+// in search/exhaustive/scan.rs.
 //
 // First pass of two (bounds; then the discs that survive): with culling a triangle that its sphere does not rule
 // out costs the distance from the axis and the cap's bounds. Without, every pair costs its full distance.

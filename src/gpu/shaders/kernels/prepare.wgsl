@@ -1,5 +1,5 @@
 // What is computed once per triangle, whenever the vertices move: the twin of prepare in
-// proximity/exhaustive/blocks.rs.
+// search/exhaustive/blocks.rs.
 
 @group(0) @binding(0) var<storage, read> vertices: array<real>;
 @group(0) @binding(1) var<storage, read> indices: array<u32>;

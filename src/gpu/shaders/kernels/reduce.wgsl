@@ -1,5 +1,5 @@
 // The limit of each link, from the least upper bound of all blocks: what exceeds it by more than rounding is farther. The
-// twin of SharedBound::shrink_to in proximity/exhaustive/scan.rs.
+// twin of SharedBound::shrink_to in search/exhaustive/scan.rs.
 
 var<workgroup> least: atomic<u32>;
 

@@ -1,5 +1,5 @@
 // A first limit for each link, from the spheres of a sample of the triangles: the twin of
-// Job::first_bounds in proximity/exhaustive/scan.rs.
+// Job::first_bounds in search/exhaustive/scan.rs.
 
 var<workgroup> least: atomic<u32>;
 

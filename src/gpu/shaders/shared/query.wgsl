@@ -1,6 +1,6 @@
 // What the kernels of a query share: the links of a round, the triangles of a part of the mesh, and bounds.
 //
-// Distances are counted from the axis, as in proximity/link_lanes.rs: a link's own and its radius. A bound on its way
+// Distances are counted from the axis, as in pair/link_lanes.rs: a link's own and its radius. A bound on its way
 // between workgroups is an f32 that is not negative, kept as its bits, which are ordered as the number is. So the
 // least one is found by integer arithmetic: whatever the order, the answer is the same.
 

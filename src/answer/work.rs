@@ -1,0 +1,25 @@
+//! What an answer has cost.
+
+/// How much an engine has computed since it was built, batches left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Work {
+    /// Nodes of the hierarchy whose up to 16 children were bounded; none in an exhaustive engine.
+    pub nodes: u64,
+    /// Pairs of link and triangle that were visited, 16 triangles at a time.
+    pub visited: u64,
+    /// Pairs for which the distance between axis and triangle was computed, a pack at a time.
+    pub axis_distances: u64,
+    /// Pairs that were measured in double precision, with the disc of a flat cap where it decides.
+    pub measured: u64,
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.visited += other.visited;
+        self.axis_distances += other.axis_distances;
+        self.measured += other.measured;
+    }
+}

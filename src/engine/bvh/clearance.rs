@@ -1,0 +1,205 @@
+//! Queries about tubes, as [`BvhSearch`] answers them.
+
+use super::search::{BvhSearch, Context, Memory};
+use crate::Tube;
+use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
+use crate::pair::{check_margin, check_not_negative};
+use crate::pieces::PlacedTube;
+use crate::query::clearance::{Place, TubeMemory, TubeSearch};
+use crate::search::hierarchy::MeshSearch;
+use parry3d_f64::math::{Pose, Real};
+
+impl BvhSearch {
+    /// The clearance of a tube, between bounds that are at most `tolerance` apart.
+    ///
+    /// `pose` is the tube's in the mesh's frame. The bounds hold for the tube as it was given, all rounding included:
+    /// `lower` <= clearance <= `upper`, and `upper` is realised by the points of the answer. With a tolerance of 0, which
+    /// suits straight pieces alone, they differ by rounding.
+    ///
+    /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
+    ///
+    /// # Errors
+    /// The tolerance is negative or NaN; the tube is empty, or its curve not finite somewhere; the pose is not finite or
+    /// moves it out of range; or the samples allow no answer as fine as that.
+    pub fn clearance(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        tolerance: Real,
+    ) -> Result<Clearance, ProximityError> {
+        check_not_negative("tolerance", tolerance)?;
+        self.context().clearance(tube, pose, tolerance)
+    }
+
+    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube for it, in the order of their
+    /// arc lengths: what the tolerance cost.
+    ///
+    /// Together the pieces are the whole tube, without gap or overlap: few and long far from the wall, short near it. The
+    /// least of their `lower` is that of the answer, unless it is the answer's `upper`. Once a common point with the mesh
+    /// is found, pieces stay as they are, and their `lower` is 0. `out` is cleared first.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
+    /// let mut pieces = Vec::new();
+    /// let found = search.clearance_pieces(&tube, &Pose::IDENTITY, 0.01, &mut pieces)?;
+    /// assert!(pieces.iter().all(|piece| piece.lower >= found.lower));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`clearance`](Self::clearance); `out` is then empty.
+    pub fn clearance_pieces(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        tolerance: Real,
+        out: &mut Vec<TubePiece>,
+    ) -> Result<Clearance, ProximityError> {
+        out.clear();
+        check_not_negative("tolerance", tolerance)?;
+        let answer = self.context().clearance_pieces(tube, pose, tolerance, out);
+        if answer.is_err() {
+            out.clear();
+        }
+        answer
+    }
+
+    /// Whether a tube keeps more than `margin` away from the mesh.
+    ///
+    /// `Clear` and `Touches` are proven. `Undecided` is the answer only where the clearance is within `resolution` of
+    /// the margin.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
+    /// use parry_continuum::proximity::{BvhSearch, Decision};
+    ///
+    /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
+    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
+    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Touches);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin or the resolution is negative or NaN, or as [`clearance`](Self::clearance).
+    pub fn tube_clears(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        check_margin(margin)?;
+        check_not_negative("resolution", resolution)?;
+        self.context().tube_clears(tube, pose, margin, resolution)
+    }
+
+    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets one entry per tube.
+    ///
+    /// # Errors
+    /// Those of the first tube that has one; `out` is then empty.
+    pub fn clearance_batch(
+        &mut self,
+        tubes: &[(&Tube, Pose)],
+        tolerance: Real,
+        out: &mut Vec<Clearance>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_not_negative("tolerance", tolerance)?;
+        self.batch(tubes, out, Clearance::unanswered, |context, (tube, pose), out| {
+            *out = context.clearance(tube, pose, tolerance)?;
+            Ok(())
+        })
+    }
+
+    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets one entry per tube.
+    ///
+    /// # Errors
+    /// Those of the first tube that has one; `out` is then empty.
+    pub fn tube_clears_batch(
+        &mut self,
+        tubes: &[(&Tube, Pose)],
+        margin: Real,
+        resolution: Real,
+        out: &mut Vec<Decision>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        check_not_negative("resolution", resolution)?;
+        self.batch(
+            tubes,
+            out,
+            || Decision::Undecided,
+            |context, (tube, pose), out| {
+                *out = context.tube_clears(tube, pose, margin, resolution)?;
+                Ok(())
+            },
+        )
+    }
+}
+
+impl<'a> Context<'a> {
+    fn clearance(self, tube: &'a Tube, pose: &'a Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let (answer, place) = search.clearance(tolerance, *last, |_, _, _| ())?;
+        *last = Some(place);
+        Ok(answer)
+    }
+
+    fn clearance_pieces(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+        tolerance: Real,
+        out: &mut Vec<TubePiece>,
+    ) -> Result<Clearance, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let placed = search.tube;
+        let (answer, place) = search.clearance(tolerance, *last, |piece, outer, lower| {
+            out.push(placed.report(piece, outer, lower));
+        })?;
+        *last = Some(place);
+        while let Some(piece) = search.pieces.pop() {
+            let outer = search.outer(&piece)?;
+            out.push(placed.report(&piece, &outer, 0.0));
+        }
+        out.sort_unstable_by(|a, b| {
+            let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
+            a.section.cmp(&b.section).then(from).then(to)
+        });
+        Ok(answer)
+    }
+
+    fn tube_clears(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        let (mut search, last) = self.tube_search(tube, pose)?;
+        let (decision, place) = search.clears(margin, resolution, *last)?;
+        *last = place.or(*last);
+        Ok(decision)
+    }
+
+    /// A search for the tube, and where the last one ended.
+    fn tube_search(
+        self,
+        tube: &'a Tube,
+        pose: &'a Pose,
+    ) -> Result<(TubeSearch<'a>, &'a mut Option<Place>), ProximityError> {
+        let Self { level, hierarchy, memory } = self;
+        let Memory { scratch, tube: TubeMemory { pieces, last }, .. } = memory;
+        let tube = PlacedTube::new(tube, pose, hierarchy.reach)?;
+        Ok((TubeSearch { search: MeshSearch { level, hierarchy, scratch }, tube, pieces }, last))
+    }
+}

@@ -1,0 +1,8 @@
+//! The engine that searches a hierarchy, one short file a question.
+
+mod clearance;
+mod motion;
+mod search;
+mod side;
+
+pub use search::BvhSearch;

@@ -1,0 +1,69 @@
+//! Inside or outside, as [`BvhSearch`] answers it.
+
+use super::search::BvhSearch;
+use crate::Chain;
+use crate::answer::{InsideAnswer, ProximityError, Side};
+use crate::engine::Proximity;
+use crate::pair::rigid_pose;
+use crate::query::side::Winding;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+impl BvhSearch {
+    /// On which side of the mesh a point in the mesh's frame is.
+    ///
+    /// `Inside` and `Outside` are proven: the error of the winding number is bounded, rounding included. In a closed mesh
+    /// the answer is [`Side::Undecided`] only for points that rounding cannot tell from points of a triangle, and for
+    /// those that are not finite. [`Side`] says what an open mesh means.
+    ///
+    /// The first question takes a moment, in which the hierarchy is prepared; so does the first after
+    /// [`set_vertices`](Proximity::set_vertices). Clones share what was prepared.
+    ///
+    /// ```
+    /// use parry_continuum::parry::{math::Vector, shape::{Ball, TriMesh}};
+    /// use parry_continuum::proximity::{BvhSearch, Side};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let search = BvhSearch::new(&TriMesh::new(vertices.clone(), triangles)?)?;
+    /// assert_eq!(search.side(Vector::X * 9.9), Side::Inside);
+    /// assert_eq!(search.side(Vector::X * 10.1), Side::Outside);
+    /// assert_eq!(search.side(vertices[0]), Side::Undecided);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn side(&self, point: Vector) -> Side {
+        let (mesh, tree, fields) = self.hierarchy().around();
+        Winding { mesh, tree, fields, point }.side()
+    }
+
+    /// Whether every link keeps more than `margin` from the mesh and the robot's base is inside.
+    ///
+    /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot that stands beside the anatomy.
+    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole. Through a hole of an
+    /// open mesh it may leave: there ask for the [`side`](Self::side) of every point that matters.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+    /// assert!(search.clears_inside(&robot, &Pose::IDENTITY, 2.0)?.holds());
+    /// let beside = search.clears_inside(&robot, &Pose::from_translation(Vector::X * 20.0), 2.0)?;
+    /// assert!(beside.clears && beside.base == Side::Outside);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
+    pub fn clears_inside(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+    ) -> Result<InsideAnswer, ProximityError> {
+        let clears = self.clears(robot, pose, margin)?;
+        let pose = rigid_pose(pose)?;
+        let base = robot.links().first().map_or(Side::Undecided, |link| self.side(pose * link.start()));
+        Ok(InsideAnswer { base, clears })
+    }
+}

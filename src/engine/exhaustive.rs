@@ -1,0 +1,294 @@
+//! Proximity by looking at every triangle.
+
+use super::proximity::{HasMesh, Proximity, pairs};
+use crate::Chain;
+use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
+use crate::mesh::Mesh;
+use crate::pair::{PlacedLink, PlacedRobot, check_bound, check_margin, rigid_pose};
+use crate::query::contacts::{LocalMinima, RobotContacts, Wall};
+use crate::search::exhaustive::{Aim, Kernels, Pass, Triangles};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
+use std::sync::Arc;
+
+/// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
+/// mesh leaves nothing to be built anew.
+///
+/// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured again in
+/// `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles are taken 2 to 16 at a
+/// time with the widest instructions of the machine, and (feature `parallel`) on all its cores. Where single precision
+/// is too coarse, because a triangle or the robot lies very far out, the search is in double precision whatever `T`.
+///
+/// Every triangle is visited, but most need no more than a look at the sphere around them.
+///
+/// A clone shares the mesh, until one of them moves it.
+pub struct Exhaustive<T: SearchPrecision> {
+    level: Level,
+    triangles: Arc<Triangles<T>>,
+    culling: bool,
+    work: Work,
+    pass: Pass<T>,
+    minima: LocalMinima,
+}
+
+/// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
+#[allow(private_bounds)] // sealed: nobody else implements it
+pub trait SearchPrecision: Kernels {}
+
+impl SearchPrecision for f32 {}
+impl SearchPrecision for f64 {}
+
+impl<T: SearchPrecision> Clone for Exhaustive<T> {
+    fn clone(&self) -> Self {
+        Self {
+            level: self.level,
+            triangles: Arc::clone(&self.triangles),
+            culling: self.culling,
+            work: Work::default(),
+            pass: Pass::default(),
+            minima: LocalMinima::default(),
+        }
+    }
+}
+
+impl<T: SearchPrecision> std::fmt::Debug for Exhaustive<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let triangles = self.triangles.mesh.len();
+        f.debug_struct("Exhaustive").field("triangles", &triangles).finish_non_exhaustive()
+    }
+}
+
+impl<T: SearchPrecision> Exhaustive<T> {
+    /// An engine for `mesh`, whose triangles are copied.
+    ///
+    /// # Errors
+    /// The mesh has no triangles, or a vertex is not finite or out of range.
+    pub fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::new(mesh)?))
+    }
+
+    /// An engine for triangles, each given by the positions of its corners among the vertices; both are copied. It spares
+    /// the hierarchy that a [`TriMesh`] builds for itself.
+    ///
+    /// # Errors
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
+    }
+
+    fn of(mesh: Mesh) -> Self {
+        let level = Level::new();
+        Self {
+            level,
+            triangles: Arc::new(Triangles::new(level, mesh)),
+            culling: true,
+            work: Work::default(),
+            pass: Pass::default(),
+            minima: LocalMinima::default(),
+        }
+    }
+
+    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless told otherwise.
+    ///
+    /// Without them every pair of link and triangle costs its full distance, discs included: the work of the
+    /// paper, for comparison with it.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
+    pub fn set_culling(&mut self, culling: bool) {
+        self.culling = culling;
+    }
+
+    /// Uses another instruction set than the widest of this machine: for the comparison of instruction sets.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
+    pub fn set_level(&mut self, level: Level) {
+        self.level = level;
+    }
+
+    /// How much was computed since the engine was built.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    fn run<'a>(
+        &mut self,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        aim: Aim,
+    ) -> Result<(), ProximityError> {
+        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim)?;
+        Ok(())
+    }
+
+    /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in the cache. `answer` gets
+    /// each with its place among all and among those of the last pass.
+    fn run_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        aim: Aim,
+        mut answer: impl FnMut(&Self, [usize; 2]),
+    ) -> Result<(), ProximityError> {
+        let mut first = 0;
+        while first < robots.len() {
+            let count = count_at_once(&robots[first..]);
+            self.run(pairs(&robots[first..first + count]), aim)?;
+            (0..count).for_each(|number| answer(self, [first + number, number]));
+            first += count;
+        }
+        Ok(())
+    }
+
+    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
+    fn least_within(&self, number: usize) -> Option<LinkProximity> {
+        let order = |a: &LinkProximity, b: &LinkProximity| {
+            a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
+        };
+        self.pass.answers(number).min_by(order)
+    }
+
+    fn least(&self, robot: &Chain, pose: &Pose, number: usize) -> LinkProximity {
+        self.least_within(number).unwrap_or_else(|| {
+            // Without a bound some triangle is always the nearest; this is any other.
+            let pose = rigid_pose(pose).unwrap_or(*pose); // as it was searched for
+            let link = PlacedLink::new(&robot.links()[0], &pose);
+            link.measure(0, self.triangles.mesh.corners(0)).report(0)
+        })
+    }
+}
+
+impl<T: SearchPrecision> HasMesh for Exhaustive<T> {
+    fn mesh(&self) -> &Mesh {
+        &self.triangles.mesh
+    }
+}
+
+/// So many links of a batch meet the mesh at once, or those of one robot: each thread keeps what it found for each.
+const LINKS_AT_ONCE: usize = 1 << 12;
+
+/// How many of the first robots, one at least, meet the mesh at once.
+fn count_at_once(robots: &[(&Chain, Pose)]) -> usize {
+    let mut links = 0;
+    let fits = |robot: &Chain| {
+        links += robot.links().len();
+        links <= LINKS_AT_ONCE
+    };
+    robots.iter().map(|(robot, _)| *robot).map(fits).take_while(|fits| *fits).count().max(1)
+}
+
+impl<T: SearchPrecision> Proximity for Exhaustive<T> {
+    fn per_link(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        self.run(std::iter::once((robot, pose)), Aim::EachLink)?;
+        out.extend(self.pass.answers(0));
+        Ok(())
+    }
+
+    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
+        self.run(std::iter::once((robot, pose)), Aim::Least(Real::INFINITY))?;
+        Ok(self.least(robot, pose, 0))
+    }
+
+    fn minimum_within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        check_bound(bound)?;
+        if bound < 0.0 {
+            // Nothing is asked for; robot and pose are looked at all the same.
+            return PlacedRobot::new(robot, pose).map(|_| None);
+        }
+        self.run(std::iter::once((robot, pose)), Aim::Least(bound))?;
+        Ok(self.least_within(0))
+    }
+
+    fn within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
+        let placed = PlacedRobot::new(robot, pose)?;
+        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), placed, margin, minima, out);
+        let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
+        while first < links {
+            let (robots, end) = (std::iter::once((robot, pose)), first + count);
+            *work += pass.run(level, culling, triangles, robots, first..end, Aim::Every(margin))?;
+            let Some(within) = pass.within() else {
+                count = count.div_ceil(2);
+                continue;
+            };
+            for pairs in within.chunk_by(|one, other| one.0 == other.0) {
+                let triangles = pairs.iter().map(|pair| pair.1);
+                contacts.add(first + pairs[0].0 as usize, |_, near| near.add_unknown(triangles));
+            }
+            first = end;
+        }
+        work.measured += contacts.finish();
+        Ok(())
+    }
+
+    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
+        check_margin(margin)?;
+        self.run(std::iter::once((robot, pose)), Aim::Within(margin))?;
+        Ok(self.pass.is_clear(0))
+    }
+
+    fn per_link_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Vec<LinkProximity>>,
+    ) -> Result<(), ProximityError> {
+        out.resize_with(robots.len(), Vec::new);
+        let answered = self.run_batch(robots, Aim::EachLink, |engine, [place, number]| {
+            out[place].clear();
+            out[place].extend(engine.pass.answers(number));
+        });
+        answered.inspect_err(|_| out.clear())
+    }
+
+    fn minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        let answered = self.run_batch(robots, Aim::Least(Real::INFINITY), |engine, [place, number]| {
+            let (robot, pose) = &robots[place];
+            out.push(engine.least(robot, pose, number));
+        });
+        answered.inspect_err(|_| out.clear())
+    }
+
+    fn clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<bool>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        let answered = self.run_batch(robots, Aim::Within(margin), |engine, [_, number]| {
+            out.push(engine.pass.is_clear(number));
+        });
+        answered.inspect_err(|_| out.clear())
+    }
+
+    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.triangles.mesh.check_moved(vertices)?;
+        let triangles = Arc::make_mut(&mut self.triangles);
+        triangles.mesh.set_vertices(vertices);
+        triangles.refill(self.level);
+        Ok(())
+    }
+}

@@ -1,0 +1,12 @@
+//! Who answers: the trait of all engines, and the engines.
+
+pub(crate) mod bvh;
+mod exhaustive;
+mod proximity;
+
+pub use bvh::BvhSearch;
+pub use exhaustive::{Exhaustive, SearchPrecision};
+pub use proximity::Proximity;
+pub(crate) use proximity::HasMesh;
+#[cfg(feature = "gpu")]
+pub(crate) use proximity::pairs;

@@ -1,0 +1,275 @@
+use crate::Chain;
+use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
+use crate::mesh::Mesh;
+use crate::pair::{contact, contacts, derivative};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// An engine that answers proximity queries between a robot and the mesh it was built for.
+///
+/// `pose` is the robot's in the mesh's frame, and answers are in that frame too. Distances are to the mesh's
+/// surface and unsigned: a link that touches nothing may be on either side of it. All engines give the same
+/// distances. Of triangles that are as close as one another, touching ones included, [`BvhSearch`](super::BvhSearch) and
+/// [`Exhaustive`](super::Exhaustive) name the lowest, and of links that share it the lowest, on any number of threads.
+///
+/// The batches take many robots, such as a planner's samples, and answer in their order on all cores.
+///
+/// A query that returns an error leaves `out` empty.
+///
+/// Only the engines of this crate are engines: the trait is sealed.
+#[allow(private_bounds)]
+pub trait Proximity: HasMesh {
+    /// The closest triangle of every link, in link order. `out` is cleared first.
+    ///
+    /// # Errors
+    /// The pose is not finite, or it moves a link out of range.
+    fn per_link(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError>;
+
+    /// The closest link and triangle of the whole robot.
+    ///
+    /// # Errors
+    /// The pose is not finite, or it moves a link out of range.
+    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError>;
+
+    /// The closest link and triangle, if they are at most `bound` apart: [`minimum`](Proximity::minimum) for less work
+    /// where nothing is as near. Several meshes are asked in turn, each for what is nearer than the last:
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity, ProximityError};
+    ///
+    /// let ball = |centre: Vector, radius: f64| -> Result<BvhSearch, Box<dyn std::error::Error>> {
+    ///     let (vertices, triangles) = Ball::new(radius).to_trimesh(64, 32);
+    ///     let vertices = vertices.into_iter().map(|vertex| vertex + centre).collect();
+    ///     Ok(BvhSearch::new(&TriMesh::new(vertices, triangles)?)?)
+    /// };
+    /// // A wall that keeps 0.5 mm, and a vessel that keeps 2 mm.
+    /// let mut anatomy = [(ball(Vector::ZERO, 10.0)?, 0.5), (ball(Vector::X * 6.0, 1.0)?, 2.0)];
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
+    ///
+    /// // The least room that is left, and where.
+    /// let (mut room, mut tightest) = (f64::INFINITY, None);
+    /// for (mesh, (search, margin)) in anatomy.iter_mut().enumerate() {
+    ///     if let Some(found) = search.minimum_within(&robot, &Pose::IDENTITY, room + *margin)? {
+    ///         room = found.distance - *margin;
+    ///         tightest = Some((mesh, found));
+    ///     }
+    /// }
+    /// assert_eq!(tightest.map(|(mesh, _)| mesh), Some(1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// A bound below zero asks for nothing: in the example above the room is below zero where a margin is violated, and
+    /// what must keep less away than that cannot be tighter.
+    ///
+    /// # Errors
+    /// The bound is NaN, the pose is not finite, or it moves a link out of range.
+    fn minimum_within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError>;
+
+    /// Whether the robot keeps more than `margin` away from the mesh: exactly `minimum().distance > margin`,
+    /// for less work.
+    ///
+    /// # Errors
+    /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
+    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError>;
+
+    /// Every contact at most `margin` away: where the distance between a link and the mesh has a local minimum, link by
+    /// link and nearest first. `out` is cleared first.
+    ///
+    /// A place of the mesh is a local minimum for a link if no way on the mesh leads from it to a nearer one without
+    /// first leading farther away. So a wall that bends towards the link is one contact, however many triangles it has,
+    /// and a link in a narrow lumen has one on each side; every closest point that [`per_link`](Proximity::per_link)
+    /// finds within the margin is among them, or another place as near on the same piece of wall. Where a piece of wall
+    /// is equally near as far as rounding can tell, it is one contact; and so is a connected piece of wall inside the
+    /// link, named by the triangle nearest to the axis. Triangles are joined where they have corners at the same place,
+    /// whether they share an index or not.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// // A bump below the robot and one above it.
+    /// let (ball, triangles) = Ball::new(1.0).to_trimesh(32, 16);
+    /// let vertices = [-3.0, 2.5].map(|z| ball.iter().map(move |v| v + Vector::Z * z)).into_iter().flatten();
+    /// let count = ball.len() as u32;
+    /// let other = triangles.iter().map(|corners| corners.map(|corner| corner + count));
+    /// let indices = triangles.iter().copied().chain(other).collect();
+    /// let mut search = BvhSearch::new(&TriMesh::new(vertices.collect(), indices)?)?;
+    /// let robot = Chain::from_centreline(&[-Vector::X, Vector::X], &[0.5])?;
+    /// let mut contacts = Vec::new();
+    /// search.within(&robot, &Pose::IDENTITY, 2.0, &mut contacts)?;
+    /// assert_eq!(contacts.len(), 2);
+    /// assert!(contacts[0].normal.is_some_and(|normal| (normal + Vector::Z).length() < 0.2));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
+    fn within(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError>;
+
+    /// [`Proximity::per_link`] for many robots. `out` gets one entry per robot; its inner vectors are used again.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    fn per_link_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Vec<LinkProximity>>,
+    ) -> Result<(), ProximityError>;
+
+    /// [`Proximity::minimum`] for many robots. `out` gets one entry per robot.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    fn minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError>;
+
+    /// [`Proximity::clears`] for many robots. `out` gets one entry per robot.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    fn clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<bool>,
+    ) -> Result<(), ProximityError>;
+
+    /// An answer with its normal, its place on the robot and the features that are nearest, of the mesh that the engine
+    /// has now. Give the same robot and pose as to the query.
+    ///
+    /// # Errors
+    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, or the answer
+    /// does not fit the two: it is about another robot, another pose, or the mesh has moved since. Rounding is allowed
+    /// for, 16 units in the last place of the largest coordinate and the extent of link and triangle.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, LinkFeature, Proximity, TriangleFeature};
+    ///
+    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
+    /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
+    /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
+    /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
+    /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
+    /// // Once the floor has moved the answer is about one that is no more.
+    /// search.set_vertices(&floor.map(|corner| corner - Vector::Z))?;
+    /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn contact(&self, robot: &Chain, pose: &Pose, answer: &LinkProximity) -> Result<Contact, ProximityError> {
+        contact(self.mesh(), robot, pose, answer)
+    }
+
+    /// [`contact`](Self::contact) of every answer, in order: in a fraction of the time, because they are computed a pack
+    /// at a time. `out` is cleared first.
+    ///
+    /// # Errors
+    /// Those of the first answer that has one; `out` is then empty.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let (mut answers, mut contacts) = (Vec::new(), Vec::new());
+    /// search.per_link(&robot, &Pose::IDENTITY, &mut answers)?;
+    /// search.contacts(&robot, &Pose::IDENTITY, &answers, &mut contacts)?;
+    /// assert_eq!(contacts[1], search.contact(&robot, &Pose::IDENTITY, &answers[1])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn contacts(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answers: &[LinkProximity],
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        contacts(self.mesh(), robot, pose, answers, out)
+    }
+
+    /// How an answer's distance changes with the ends of the link, its radius and the triangle's corners, of the mesh that
+    /// the engine has now; nothing where it has no derivative, because the axis meets the triangle, or a flat cap touches
+    /// it. Give the same robot and pose as to the query.
+    ///
+    /// # Errors
+    /// As [`contact`](Self::contact).
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]])?;
+    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::new(1.0, 0.0, 1.0)], &[0.5])?;
+    /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
+    /// let derivative = search.derivative(&robot, &Pose::IDENTITY, &closest)?.ok_or("no derivative")?;
+    /// assert_eq!((derivative.start, derivative.end, derivative.radius), (Vector::ZERO, -Vector::Z, -1.0));
+    /// assert_eq!(derivative.rate(Vector::X, 0.1 * Vector::Z), -0.1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn derivative(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answer: &LinkProximity,
+    ) -> Result<Option<Derivative>, ProximityError> {
+        derivative(self.mesh(), robot, pose, answer)
+    }
+
+    /// The mesh's vertices as the engine has them now.
+    fn vertices(&self) -> &[Vector] {
+        self.mesh().vertices()
+    }
+
+    /// The mesh's triangles, each as the positions of its corners among the [`vertices`](Self::vertices).
+    fn triangles(&self) -> &[[u32; 3]] {
+        self.mesh().indices()
+    }
+
+    /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about the mesh as it was, and
+    /// [`contact`](Self::contact) refuses those that no longer fit.
+    ///
+    /// # Errors
+    /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
+    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
+}
+
+/// An engine's mesh as it is now.
+pub(crate) trait HasMesh {
+    fn mesh(&self) -> &Mesh;
+}
+
+/// The robots of a batch, one by one.
+pub(crate) fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
+    robots.iter().map(|(robot, pose)| (*robot, pose))
+}

@@ -1,0 +1,12 @@
+//! The triangles as every engine keeps them.
+
+mod kept_mesh;
+mod shared_parts;
+mod triangle_block;
+
+pub(crate) use kept_mesh::Mesh;
+pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};
+pub(crate) use triangle_block::{
+    BLOCK, first_of_face, from_on, load, load_vertices, place_face, place_points, place_triangle, splat,
+    store,
+};

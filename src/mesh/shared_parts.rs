@@ -1,0 +1,282 @@
+//! The corners and edges of a mesh: which triangles have the same, at the same place.
+//!
+//! The triangles that have a corner or an edge stand in a ring around it, in which each names the next; around an edge
+//! there may be any number of them (Weiler's radial edge). So nothing is numbered but the corners, and that by their
+//! places alone: as long as those stay together that were, and none meets another, the rings stay as they are.
+
+use parry3d_f64::math::{Real, Vector};
+use std::iter::successors;
+
+/// The parts of a triangle: its three corners, then its edges from the first corner to the second, from the second to
+/// the third and from the third to the first.
+pub(crate) const PARTS: usize = 6;
+
+/// The part of a triangle that holds its nearest point if some of its corners have no share in it, by the bits of these
+/// corners.
+pub(crate) const PART_WITHOUT: [Option<u8>; 8] =
+    [None, Some(4), Some(5), Some(2), Some(3), Some(1), Some(0), None];
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// Which triangles share corners and edges.
+#[derive(Clone)]
+pub(crate) struct SharedParts {
+    /// For each vertex the first at the same place.
+    corners: Vec<u32>,
+    rings: Rings,
+}
+
+/// A part of a triangle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Part {
+    triangle: u32,
+    number: u8,
+}
+
+/// What is next around each part of a triangle.
+#[derive(Clone, Copy)]
+struct Next {
+    triangles: [u32; PARTS],
+    numbers: [u8; PARTS],
+}
+
+/// The rings of all triangles.
+#[derive(Clone)]
+struct Rings(Vec<Next>);
+
+impl SharedParts {
+    pub(crate) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
+        let corners = first_at_same_place(vertices);
+        let corner = |part: Part| corners[indices[part.triangle as usize][usize::from(part.number)] as usize];
+        let mut rings = Rings::of_one(indices.len() as u32);
+        // A part in the ring around each corner.
+        let mut around = vec![None; vertices.len()];
+        for triangle in 0..indices.len() as u32 {
+            for number in 0..3 {
+                let part = Part { triangle, number };
+                let around = &mut around[corner(part) as usize];
+                match *around {
+                    Some(first) => rings.join(first, part),
+                    None => *around = Some(part),
+                }
+            }
+        }
+        // For each corner the last one from which an edge led to it, and that edge.
+        let mut edges = vec![(NONE, Part { triangle: 0, number: 0 }); vertices.len()];
+        for (from, &first) in (0..).zip(&around) {
+            let mut next = first;
+            while let Some(part @ Part { triangle, number }) = next {
+                let [after, before] = [(number + 1) % 3, (number + 2) % 3];
+                for (end, edge) in [(after, number + 3), (before, before + 3)] {
+                    let to = corner(Part { triangle, number: end });
+                    // Each edge once: from its lower end, or where both are one from that at which it begins.
+                    if to < from || (to == from && end == before) {
+                        continue;
+                    }
+                    let edge = Part { triangle, number: edge };
+                    match &mut edges[to as usize] {
+                        (last, first) if *last == from => rings.join(*first, edge),
+                        none => *none = (from, edge),
+                    }
+                }
+                next = Some(rings.next(part)).filter(|next| Some(*next) != first);
+            }
+        }
+        Self { corners, rings }
+    }
+
+    /// Whether they are the same with the vertices at these places.
+    pub(crate) fn stay(&self, vertices: &[Vector]) -> bool {
+        first_at_same_place(vertices) == self.corners
+    }
+
+    /// The other triangles that have a part of a triangle.
+    #[inline(always)]
+    pub(crate) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
+        self.rings.others(Part { triangle, number: part as u8 }).map(|part| part.triangle)
+    }
+
+    /// All triangles that have a part of a triangle, itself first, and which of their parts that is.
+    pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
+        let own = Part { triangle, number: part as u8 };
+        let all = std::iter::once(own).chain(self.rings.others(own));
+        all.map(|part| (part.triangle, usize::from(part.number)))
+    }
+
+    /// Another triangle that has an edge of a triangle, and the corner that it has beyond the edge.
+    pub(crate) fn across(&self, triangle: u32, edge: usize) -> Option<(u32, usize)> {
+        let next = self.rings.next(Part { triangle, number: edge as u8 });
+        (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
+    }
+}
+
+impl Rings {
+    /// Each part in a ring of its own.
+    fn of_one(triangles: u32) -> Self {
+        let alone = |triangle| Next { triangles: [triangle; PARTS], numbers: [0, 1, 2, 3, 4, 5] };
+        Self((0..triangles).map(alone).collect())
+    }
+
+    #[inline(always)]
+    fn next(&self, Part { triangle, number }: Part) -> Part {
+        let next = &self.0[triangle as usize];
+        Part { triangle: next.triangles[usize::from(number)], number: next.numbers[usize::from(number)] }
+    }
+
+    /// The other parts of a ring.
+    #[inline(always)]
+    fn others(&self, own: Part) -> impl Iterator<Item = Part> {
+        let others = successors(Some(self.next(own)), |part| Some(self.next(*part)));
+        others.take_while(move |part| *part != own)
+    }
+
+    /// Makes one ring of the two that hold these parts.
+    fn join(&mut self, one: Part, other: Part) {
+        let (after_one, after_other) = (self.next(one), self.next(other));
+        self.set_next(one, after_other);
+        self.set_next(other, after_one);
+    }
+
+    fn set_next(&mut self, Part { triangle, number }: Part, to: Part) {
+        let next = &mut self.0[triangle as usize];
+        next.triangles[usize::from(number)] = to.triangle;
+        next.numbers[usize::from(number)] = to.number;
+    }
+}
+
+/// The ends of a triangle's part.
+#[inline(always)]
+pub(crate) fn ends_of([a, b, c]: [Vector; 3], part: usize) -> [Vector; 2] {
+    match part {
+        0 => [a, a],
+        1 => [b, b],
+        2 => [c, c],
+        3 => [a, b],
+        4 => [b, c],
+        _ => [c, a],
+    }
+}
+
+/// For each vertex the first at the same place.
+fn first_at_same_place(vertices: &[Vector]) -> Vec<u32> {
+    // Each first one stands at its hash or behind, where there is room, which is left at every second place.
+    let mut firsts = vec![NONE; (2 * vertices.len()).next_power_of_two()];
+    let last = firsts.len() - 1;
+    let find = |(vertex, &point): (u32, &Vector)| {
+        let place = place(point);
+        let mut at = hash(place) as usize & last;
+        loop {
+            let first = &mut firsts[at];
+            if *first == NONE {
+                *first = vertex;
+            }
+            if *first == vertex || self::place(vertices[*first as usize]) == place {
+                return *first;
+            }
+            at = (at + 1) & last;
+        }
+    };
+    (0..).zip(vertices).map(find).collect()
+}
+
+/// A place; 0 and -0 are the same.
+fn place(point: Vector) -> [u64; 3] {
+    (point + Vector::ZERO).to_array().map(Real::to_bits)
+}
+
+/// Nobody chooses places to collide.
+fn hash(place: [u64; 3]) -> u64 {
+    let mix = |hash: u64, bits: u64| {
+        let mixed = (hash ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        mixed ^ (mixed >> 32)
+    };
+    place.into_iter().fold(0, mix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::kept_mesh::Mesh;
+    use super::*;
+    use continuum_testing::Random;
+
+    /// A few triangles between a few points, some of which are at the same place; with edges of three triangles and more,
+    /// and triangles that have a corner twice.
+    fn soup(random: &mut Random) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        let places: Vec<_> = (0..6).map(|_| (random.point() * 2.0).round()).collect();
+        let vertices =
+            (0..12).map(|_| places[random.below(6) as usize] * [1.0, -1.0][random.below(2) as usize]);
+        let vertices = vertices.collect();
+        (vertices, (0..14).map(|_| [0; 3].map(|_| random.below(12))).collect())
+    }
+
+    #[test]
+    fn rings_hold_all_that_have_a_part() {
+        let (mut shared, mut several, mut twice) = (0, 0, 0);
+        for seed in 0..500 {
+            let (vertices, indices) = soup(&mut Random::new(seed));
+            let parts = SharedParts::new(&vertices, &indices);
+            let ends = |triangle: u32, part: usize| {
+                let [from, to] =
+                    ends_of(indices[triangle as usize].map(|vertex| vertices[vertex as usize]), part);
+                // An edge is the same in both directions, but not one without length and a corner.
+                (part < 3, [from, to])
+            };
+            let is_same = |one: (bool, [Vector; 2]), (is_corner, [from, to]): (bool, [Vector; 2])| {
+                one == (is_corner, [from, to]) || one == (is_corner, [to, from])
+            };
+            for triangle in 0..indices.len() as u32 {
+                for part in 0..PARTS {
+                    let mut found: Vec<_> = parts.others(triangle, part).collect();
+                    found.sort_unstable();
+                    let of_all =
+                        (0..indices.len() as u32).flat_map(|other| (0..PARTS).map(move |part| (other, part)));
+                    let same = of_all.filter(|&(other, part_there)| {
+                        (other, part_there) != (triangle, part)
+                            && is_same(ends(other, part_there), ends(triangle, part))
+                    });
+                    let expected: Vec<_> = same.map(|(other, _)| other).collect();
+                    assert_eq!(found, expected, "{seed}: part {part} of {triangle}");
+                    shared += usize::from(!found.is_empty());
+                    several += usize::from(part > 2 && found.len() > 1);
+                    twice += usize::from(found.contains(&triangle));
+                }
+            }
+        }
+        assert!(shared > 10_000 && several > 1000 && twice > 1000, "{shared} {several} {twice}");
+    }
+
+    /// Where vertices move together or apart, what triangles share is what it is at their new places.
+    #[test]
+    fn moved_vertices_meet_and_part() {
+        let (mut stayed, mut changed) = (0, 0);
+        for seed in 0..300 {
+            let random = &mut Random::new(seed);
+            let (vertices, indices) = soup(random);
+            let mut mesh = Mesh::of(vertices.clone(), indices.clone());
+            mesh.parts();
+            // Not asked for each time.
+            for turn in 0..3 {
+                let moved = match random.below(3) {
+                    0 => vertices.iter().map(|vertex| *vertex * 1.5 + Vector::X).collect(),
+                    1 => vertices.clone(),
+                    _ => soup(random).0,
+                };
+                mesh.set_vertices(&moved);
+                if turn == 1 {
+                    continue;
+                }
+                let new = SharedParts::new(&moved, &indices);
+                for triangle in 0..indices.len() as u32 {
+                    for part in 0..PARTS {
+                        let others = |parts: &SharedParts| parts.others(triangle, part).collect::<Vec<_>>();
+                        assert_eq!(others(mesh.parts()), others(&new), "{seed}: part {part} of {triangle}");
+                    }
+                }
+                let is_as_before = new.corners == SharedParts::new(&vertices, &indices).corners;
+                *if is_as_before { &mut stayed } else { &mut changed } += 1;
+            }
+        }
+        assert!(stayed > 100 && changed > 100, "{stayed} {changed}");
+    }
+}

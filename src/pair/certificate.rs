@@ -1,0 +1,283 @@
+//! Proofs of an answer, in double-double arithmetic.
+//!
+//! A point of the link and a point of the triangle bound their distance from above. A plane between the two bounds it
+//! from below: for a direction n of unit length, the least <n, x> over the link minus the largest over the triangle.
+//! Neither needs any trust in how the points and the plane were found; a bad choice makes the bounds wide, not wrong.
+//! Found they are by the narrow phase at twice the precision, so the rounding of n, which would spoil the lower bound
+//! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
+//! normals of the features (faces, edges, axis) are tried as well.
+
+use super::answered::{corners, link_of, placed_link};
+use super::checks::{check_ends, check_vertex, rigid_pose};
+use crate::answer::{Certificate, LinkProximity, ProximityError};
+use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
+use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
+
+impl Certificate {
+    /// Bounds on the distance between a link at a pose and a triangle.
+    ///
+    /// # Errors
+    /// The pose is not finite or moves the link out of range, or a vertex is not finite or out of range.
+    pub fn between(
+        link: &ModifiedCylinder,
+        pose: &Pose,
+        triangle: [Vector; 3],
+    ) -> Result<Self, ProximityError> {
+        for (vertex, point) in triangle.into_iter().enumerate() {
+            check_vertex(vertex, point)?;
+        }
+        Ok(CertifiedLink::new(link, pose, 0)?.bounds(triangle))
+    }
+}
+
+impl LinkProximity {
+    /// Bounds on the distance between this answer's link and triangle, which hold rigorously, rounding included.
+    ///
+    /// They lie within a few units in the last place of each other, or of the problem's extent where link and triangle
+    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query: a mesh of
+    /// your own, which need not be the engine's. Where
+    /// [`set_vertices`](crate::proximity::Proximity::set_vertices) moved that one, make it of
+    /// [`vertices`](crate::proximity::Proximity::vertices) and [`triangles`](super::Proximity::triangles).
+    ///
+    /// # Errors
+    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, a vertex of
+    /// the triangle is not finite or out of range, or the answer does not fit the two: it is about another robot, another
+    /// pose, or a mesh that has moved since.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.1)];
+    /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.5])?;
+    /// let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
+    /// let proof = closest.certify(&robot, &Pose::IDENTITY, &mesh)?;
+    /// assert!(proof.lower <= closest.distance && closest.distance <= proof.upper);
+    /// assert!(proof.upper - proof.lower < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn certify(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Certificate, ProximityError> {
+        let link = placed_link(self, robot, pose)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), self.triangle as usize)?;
+        self.check_fit(&link, corners)?;
+        Ok(self.certified(robot, pose)?.bounds(corners))
+    }
+
+    /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously: a proof that no
+    /// other triangle is nearer than `lower`.
+    ///
+    /// Every triangle is looked at, those near the link at twice the precision: it takes far longer than the query.
+    ///
+    /// # Errors
+    /// As for [`LinkProximity::certify`], for any vertex in use.
+    pub fn certify_among_all(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        mesh: &TriMesh,
+    ) -> Result<Certificate, ProximityError> {
+        let own = self.certify(robot, pose, mesh)?;
+        let link = self.certified(robot, pose)?;
+        let mut all = own;
+        for triangle in 0..mesh.indices().len() {
+            let triangle = corners(mesh.vertices(), mesh.indices(), triangle)?;
+            if link.at_least(triangle) < own.lower {
+                let other = link.bounds(triangle);
+                all.lower = all.lower.min(other.lower);
+                all.upper = all.upper.min(other.upper);
+            }
+        }
+        Ok(all)
+    }
+
+    fn certified(&self, robot: &Chain, pose: &Pose) -> Result<CertifiedLink, ProximityError> {
+        CertifiedLink::new(link_of(self, robot)?, pose, self.link as usize)
+    }
+}
+
+type Number = DoubleDouble;
+type Point = Vec3<DoubleDouble>;
+
+/// What rounding can do to any bound here, where no coordinate exceeds 2: a hundred operations, each wrong by 2^-102 of
+/// numbers below 16, and what falls below the range.
+const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
+
+/// A link in the mesh's frame.
+struct CertifiedLink {
+    start: Vector,
+    end: Vector,
+    radius: Real,
+    flat: [bool; 2],
+}
+
+impl CertifiedLink {
+    /// `number` is the link's position in its chain.
+    fn new(link: &ModifiedCylinder, pose: &Pose, number: usize) -> Result<Self, ProximityError> {
+        let link = link.transformed(&rigid_pose(pose)?);
+        let (start, end) = (link.start(), link.end());
+        check_ends(number, [start, end])?;
+        Ok(Self { start, end, radius: link.radius(), flat: link.flat() })
+    }
+
+    /// The power of two that brings link and triangle near one.
+    fn unit(&self, [a, b, c]: [Vector; 3]) -> Real {
+        largest([self.start, self.end, a, b, c]).max(self.radius).power_of_two_to_unity()
+    }
+
+    /// A lower bound by a sphere around the triangle, in plain f64.
+    fn at_least(&self, triangle: [Vector; 3]) -> Real {
+        let [a, b, c] = triangle;
+        let unit = self.unit(triangle);
+        let [start, end, a, b, c] = [self.start, self.end, a, b, c].map(|point| point * unit);
+        // Any centre serves.
+        let centre = a * 0.5 + (b * 0.25 + c * 0.25);
+        let sphere = (a - centre).length().max((b - centre).length()).max((c - centre).length());
+        let away = distance_to_segment(centre, start, end);
+        // All numbers are below 8, and each is the work of a few roundings.
+        (away - sphere - self.radius * unit - 64.0 * Real::EPSILON) / unit
+    }
+
+    fn bounds(&self, triangle: [Vector; 3]) -> Certificate {
+        // From the link's start every coordinate is an exact double-double, and the largest is brought near one. What is
+        // small beside far coordinates must not vanish first, so these are never made smaller.
+        let [a, b, c] = triangle;
+        let coarse = self.unit(triangle).max(1.0);
+        let start = self.start * coarse;
+        let offset = |p: Vector| p * coarse - start;
+        let radius = self.radius * coarse;
+        let extent = largest([self.end, a, b, c].map(offset)).max(radius);
+        if extent == 0.0 {
+            return Certificate { lower: 0.0, upper: 0.0 }; // one point
+        }
+        let fine = extent.power_of_two_to_unity();
+        let local = |p: Vector| {
+            let [x, y, z] = (p * coarse).to_array();
+            let exact = |x: Real, from: Real| (Number::from(x) - from.into()) * fine.into();
+            Vec3::new(exact(x, start.x), exact(y, start.y), exact(z, start.z))
+        };
+        let end = local(self.end);
+        let pair = Pair {
+            triangle: triangle.map(local),
+            end,
+            axis: end.normalised(),
+            radius: Number::from(radius) * fine.into(),
+            flat: self.flat,
+        };
+        let (lower, upper) = pair.bounds();
+        // Outwards by one number, for the roundings to f64 and out of the scale.
+        let back = |bound: Number| bound.rounded() / fine / coarse;
+        Certificate { lower: back(lower).next_down().max(0.0), upper: back(upper).next_up() }
+    }
+}
+
+/// The largest magnitude of a coordinate.
+fn largest<const N: usize>(points: [Vector; N]) -> Real {
+    points.iter().map(|point| point.abs().max_element()).fold(0.0, Real::max)
+}
+
+/// A link from the origin and a triangle, in coordinates up to 2.
+struct Pair {
+    triangle: [Point; 3],
+    end: Point,
+    axis: Point,
+    radius: Number,
+    flat: [bool; 2],
+}
+
+impl Pair {
+    fn bounds(&self) -> (Number, Number) {
+        let zero = Number::ZERO;
+        let origin = Vec3::new(zero, zero, zero);
+        let closest = triangle_modified_cylinder(self.triangle, origin, self.end, self.radius, self.flat);
+        let between = (closest.point1 - closest.point2).norm();
+        let off = self.triangle_to(closest.point1) + self.link_to(closest.point2);
+        // Where two cases of the narrow phase tie, the direction of another candidate may be the better one.
+        let discs = [origin, self.end].map(|rim| triangle_disc(self.triangle, rim, self.axis, self.radius));
+        let lower = [closest, discs[0], discs[1]]
+            .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
+            .into_iter()
+            .fold(zero, Scalar::max);
+        let upper = between + off;
+        // A difference of points that nearly touch is less precise than the directions of what they lie on.
+        let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
+        let lower = if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
+        (lower - SLACK.into(), upper + SLACK.into())
+    }
+
+    /// How far the planes keep link and triangle apart whose normals are those of features: the face, the axis and an
+    /// edge, an edge and an end, the axis and a vertex.
+    fn apart_by_features(&self) -> impl Iterator<Item = Number> {
+        let [a, b, c] = self.triangle;
+        let across = |direction: Point, from: Point| {
+            let unit = direction.normalised();
+            from - unit * unit.dot(from)
+        };
+        let edges = [(a, b), (b, c), (c, a)].into_iter().flat_map(move |(from, to)| {
+            let edge = to - from;
+            [self.axis.cross(edge), across(edge, from), across(edge, from - self.end)]
+        });
+        let vertices = self.triangle.map(|vertex| across(self.axis, vertex));
+        let all = edges.chain(vertices).chain([(b - a).cross(c - a)]).map(Vec3::normalised);
+        all.flat_map(|direction| [self.apart(direction), self.apart(-direction)])
+    }
+
+    /// How far the plane with the normal `direction`, from triangle to link, keeps them apart.
+    fn apart(&self, direction: Point) -> Number {
+        let [a, b, c] = self.triangle.map(|vertex| vertex.dot(direction));
+        let across = (direction - self.axis * direction.dot(self.axis)).norm() * self.radius;
+        let lowest = |height: Number, inward: Number, flat: bool| {
+            // A round cap shows its ball to directions that come from beyond its end, else only its rim.
+            height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
+        };
+        let along = direction.dot(self.axis);
+        let start = lowest(Number::ZERO, along, self.flat[0]);
+        let end = lowest(self.end.dot(direction), -along, self.flat[1]);
+        start.min(end) - a.max(b).max(c)
+    }
+
+    /// At most this far from a point of the triangle.
+    fn triangle_to(&self, point: Point) -> Number {
+        let [a, b, c] = self.triangle;
+        let on_edge = |from: Point, to: Point| {
+            let edge = to - from;
+            let squared = edge.norm_squared();
+            let t = edge.dot(point - from).max(Number::ZERO).min(squared).over(squared);
+            (point - from - edge * t).norm()
+        };
+        let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
+        // Weights that are not negative make a point of the triangle, whatever their rounding.
+        let normal = (b - a).cross(c - a);
+        let area = |p: Point, q: Point| normal.dot((p - point).cross(q - point)).max(Number::ZERO);
+        let (u, v, w) = (area(b, c), area(c, a), area(a, b));
+        let sum = u + v + w;
+        if sum.le(Number::ZERO) {
+            return edges;
+        }
+        let inside = a * u.over(sum) + b * v.over(sum) + c * w.over(sum);
+        edges.min((point - inside).norm())
+    }
+
+    /// At most this far from a point of the link.
+    fn link_to(&self, point: Point) -> Number {
+        let zero = Number::ZERO;
+        let (above, below) = ((point - self.end).dot(self.axis), -point.dot(self.axis));
+        let radial = (point - self.axis * point.dot(self.axis)).norm();
+        let beside = (radial - self.radius).max(zero);
+        let (beyond, from, flat) = if zero.lt(above) {
+            (above, point - self.end, self.flat[1])
+        } else {
+            (below, point, self.flat[0])
+        };
+        if !zero.lt(beyond) {
+            beside
+        } else if flat {
+            (beyond * beyond + beside * beside).sqrt()
+        } else {
+            (from.norm() - self.radius).max(zero)
+        }
+    }
+}

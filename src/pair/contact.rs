@@ -1,0 +1,91 @@
+//! An answer with its normal and its place on the robot.
+
+use super::answered::{corners, placed_link, transformed_link};
+use super::contacts_together::{Place, try_add_contacts};
+use super::nearest_features::NearestFeatures;
+use super::placed::{Nearest, PlacedLink};
+use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError};
+use crate::mesh::Mesh;
+use crate::robot::{Chain, length};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// An answer about this mesh as a contact.
+///
+/// # Errors
+/// Those of [`Proximity::contact`](crate::proximity::Proximity::contact).
+pub(crate) fn contact(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<Contact, ProximityError> {
+    let (link, corners) = near(mesh, robot, pose, answer)?;
+    let (length, before) = (length(link.along()), robot.length_before(answer.link as usize));
+    Ok(contact_of(answer, length, before, &NearestFeatures::of(&link, corners)))
+}
+
+/// Answers about this mesh as contacts.
+///
+/// # Errors
+/// Those of [`Proximity::contacts`](crate::proximity::Proximity::contacts).
+pub(crate) fn contacts(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answers: &[LinkProximity],
+    out: &mut Vec<Contact>,
+) -> Result<(), ProximityError> {
+    out.clear();
+    let place = |answer: &LinkProximity| {
+        let link = transformed_link(answer, robot, pose)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+        let before = robot.length_before(answer.link as usize);
+        let ends = [link.start(), link.end()];
+        Ok(Place { ends, radius: link.radius(), flat: link.flat(), corners, before })
+    };
+    let check = |answer: &LinkProximity, place: &Place, measured: &Nearest| {
+        answer.check_fit_of(measured, &place.link(), place.corners)
+    };
+    try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
+}
+
+/// The link and the corners of the triangle that an answer is about, which it fits.
+///
+/// # Errors
+/// They do not exist, the pose is not finite or moves the link out of range, or the answer does not fit.
+pub(crate) fn near(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<(PlacedLink, [Vector; 3]), ProximityError> {
+    let link = placed_link(answer, robot, pose)?;
+    let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+    answer.check_fit(&link, corners)?;
+    Ok((link, corners))
+}
+
+/// The contact of an answer about a link of the given length. `before` is that of the links before it.
+pub(crate) fn contact_of(
+    answer: &LinkProximity,
+    length: Real,
+    before: Real,
+    found: &NearestFeatures,
+) -> Contact {
+    let LinkProximity { link, triangle, distance, on_robot, on_mesh } = *answer;
+    Contact {
+        link,
+        fraction: found.fraction,
+        arc_length: before + found.fraction * length,
+        triangle,
+        feature: ContactFeature { link: found.link, triangle: found.triangle },
+        distance,
+        depth: Some(if distance > 0.0 { distance } else { found.depth.min(0.0) }),
+        normal: found.normal,
+        on_robot,
+        on_mesh,
+        lever: found.lever,
+        kink: found.kink,
+    }
+}

@@ -1,0 +1,57 @@
+//! How a distance changes with the points that link and triangle are made of; the formulas are those of [`Derivative`].
+
+use super::contact::near;
+use super::nearest_features::{NearPair, NearestFeatures};
+use crate::answer::{Derivative, LinkProximity, ProximityError};
+use crate::distance::{DoubleDouble, Scalar, Vec3};
+use crate::mesh::Mesh;
+use crate::robot::Chain;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// How the distance, or depth, of an answer about this mesh changes.
+///
+/// # Errors
+/// Those of [`Proximity::derivative`](crate::proximity::Proximity::derivative).
+pub(crate) fn derivative(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<Option<Derivative>, ProximityError> {
+    let (link, corners) = near(mesh, robot, pose, answer)?;
+    let (nearest, exact) = (NearPair::of(&link, corners), NearPair::exactly(&link, corners));
+    let found = if nearest.parts.asks_way_out || exact.parts.asks_way_out {
+        nearest.parting().derivative(|number| number)
+    } else {
+        exact.derivative(DoubleDouble::rounded)
+    };
+    // One place decides what is a kink.
+    let kink = NearestFeatures::of(&link, corners).kink;
+    Ok(found.map(|found| Derivative { kink, ..found }))
+}
+
+impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
+    fn derivative(&self, round: impl Fn(T) -> Real) -> Option<Derivative> {
+        let (link, parts) = (&self.link, &self.parts);
+        let one = link.radius.one();
+        if !parts.has_normal {
+            return None;
+        }
+        let rounded = |v: Vec3<T>| Vector::new(round(v.x), round(v.y), round(v.z));
+        let normal = parts.normal;
+        let (mut start, mut end) = (normal * (one - parts.fraction), normal * parts.fraction);
+        let mut radius = -one;
+        if parts.at_flat_cap {
+            let turn = parts.lever * normal.dot(link.axis).over(link.end.norm());
+            (start, end) = (start + turn, end - turn);
+            radius = -normal.cross(link.axis).norm();
+        }
+        Some(Derivative {
+            start: rounded(start),
+            end: rounded(end),
+            radius: round(radius),
+            vertices: self.weights().map(|weight| rounded(-normal * weight)),
+            kink: self.kink,
+        })
+    }
+}

@@ -1,0 +1,425 @@
+//! Which features of a link and a triangle are nearest, and the normal between them.
+//!
+//! Let q be the axis point nearest to the triangle, p the triangle's point there and F their distance. Beside the link
+//! and beyond a round cap the link's closest point lies on the way from q to p, one radius from q: the normal from wall
+//! to robot is (q - p) / F. It has a meaning where the two overlap as well: no way out is shorter, as long as a flat cap is
+//! no nearer along the axis than the overlap is deep (see `distance/depth/foot.rs`). Beyond a flat cap the closest points x
+//! of the link and y of the triangle are those of the cap's disc, and the normal is (x - y) / |x - y|.
+//!
+//! One text for `f64`, packs of it and numbers of twice its digits. The difference of two points that are g apart turns by about
+//! 4 u / g, for numbers near one; below a gap of 2^-8 that is too much, and the pair is done again with 32 digits.
+//!
+//! # Where there is no such gap
+//! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and once more when it is seen
+//! from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther apart or nearer than they should be, and what is
+//! computed of them errs by less than 9 u more. A gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however
+//! many digits, is that of the rounding. There, and where the two overlap and a flat cap is near, the features tell:
+//! see `distance/depth/way_out.rs`.
+//!
+//! # Kinks
+//! With the normal n fixed, let the triangle's foremost part be where <n, .> is greatest, and the link's where it is
+//! least. The distance of two convex sets, and where they overlap the way out along n, has a derivative along every motion
+//! if only one pair of points realises it (Danskin's theorem), and more than one pair do only if both foremost parts are
+//! more than a point and lie, seen along n, over each other by more than a point:
+//!
+//! - the link's is a line of its side, n being perpendicular to the axis; the triangle's its face, or an edge parallel
+//!   to the axis;
+//! - the link's is a flat cap, n being parallel to the axis; the triangle's an edge or its face.
+//!
+//! Rounding cannot tell a point that is farther by less than 64 u. Over a line of length l that is tilted by an angle a
+//! against a plane the distance rises by l sin a; between two lines at an angle a, F apart, by (l sin a)^2 / (2 F). What is
+//! no longer than that is a point: a cap without a radius has nothing that could be nearer than its centre.
+//!
+//! The corners of a triangle without area can move against one another: it counts as a kink too.
+
+use super::placed::{PlacedLink, place_exactly};
+use crate::answer::{LinkFeature, TriangleFeature};
+use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
+use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding cannot tell, of numbers near one.
+const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// A normal from a shorter gap is computed again with more digits.
+const SHORT: Real = 1.0 / 256.0;
+
+/// Farther than any point where numbers are near one.
+const FAR: Real = 16.0;
+
+/// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each of their ends.
+const OVER_EACH_OTHER: Real = 16.0 * TIE;
+
+/// What there is to tell of a link and a triangle, directions in the mesh's frame and lengths in its unit.
+pub(crate) struct NearestFeatures {
+    pub link: LinkFeature,
+    pub triangle: TriangleFeature,
+    /// Where on the axis, from 0 to 1.
+    pub fraction: Real,
+    /// The unit vector from triangle to link.
+    pub normal: Option<Vector>,
+    /// Minus the length of the least translation that separates the two, where they overlap.
+    pub depth: Real,
+    /// From the axis point to the link's closest point.
+    pub lever: Vector,
+    pub kink: bool,
+}
+
+impl NearestFeatures {
+    /// Of a link and a triangle in the mesh's frame.
+    pub(crate) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
+        let near = NearPair::of(link, corners);
+        let unit = link.pair(corners).unit;
+        if near.parts.asks_way_out {
+            return near.parting().features(unit, |number| number);
+        }
+        if !near.parts.needs_digits(&near.triangle, &near.face, &near.link) {
+            return near.features(unit, |number| number);
+        }
+        let exact = NearPair::exactly(link, corners);
+        if exact.parts.asks_way_out {
+            return near.parting().features(unit, |number| number);
+        }
+        let depth = near.parts.depth * unit;
+        Self { depth, ..exact.features(unit, DoubleDouble::rounded) }
+    }
+}
+
+/// Which parts of a link and a triangle are nearest, in coordinates from the link's start and near one.
+#[derive(Clone, Copy)]
+pub(crate) struct NearestParts<T: Scalar> {
+    /// Whether it is the cap at the start, or else the one at the end. The side where it is neither.
+    pub caps: [T::Mask; 2],
+    /// Which corner it is, the first of them; where it is none, which edge. The face where it is neither.
+    pub corners: [T::Mask; 3],
+    pub edges: [T::Mask; 3],
+    /// Where on the axis, from 0 to 1.
+    pub fraction: T,
+    /// The triangle's closest point.
+    pub on_triangle: Vec3<T>,
+    /// The unit vector from triangle to link, where there is one.
+    pub normal: Vec3<T>,
+    pub has_normal: T::Mask,
+    /// F - r; where there is a way out, minus its length.
+    pub depth: T,
+    /// From the axis point to the link's closest point.
+    pub lever: Vec3<T>,
+    /// What the normal spans.
+    pub gap: T,
+    /// Whether the closest point is one of a flat cap.
+    pub at_flat_cap: T::Mask,
+    /// Whether the features tell more than these points (see the head of this file).
+    pub asks_way_out: T::Mask,
+}
+
+impl<T: Scalar> NearestParts<T> {
+    /// `closest` are the closest points where a flat cap decides.
+    #[inline(always)]
+    pub(crate) fn new(
+        triangle: &[Vec3<T>; 3],
+        link: &Link<T>,
+        axial: &Axial<T>,
+        closest: &Closest<T>,
+    ) -> Self {
+        let (zero, one) = (axial.s.zero(), axial.s.one());
+        let (at_flat_cap, [_, at_end]) = (axial.beyond_flat_cap(), axial.at_flat);
+        let (centre, _) = axial.cap(link);
+        let from_cap = closest.point2 - closest.point1;
+        let from_axis = link.end * axial.s - axial.on_triangle;
+        let apart = Vec3::select(at_flat_cap, from_cap, from_axis);
+        let (gap, depth) = (apart.norm(), axial.axis_squared.sqrt() - link.radius);
+        let rounding = gap.lit(ROUNDING);
+        // How far a flat end is along the axis; farther than everything where there is none.
+        let (length, far) = (link.end.dot(link.axis), gap.lit(FAR));
+        let to_start = link.flat[0].select(axial.s * length, far);
+        let to_end = link.flat[1].select((one - axial.s) * length, far);
+        // Rounding of the ends of a short axis turns a wide cap.
+        let turn = one.max(link.radius.over(length));
+        let is_capsule = !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
+        let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
+        let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
+        let normal = apart.normalised();
+        let from_side = Vec3::select(has_normal, normal * -gap.min(link.radius), Vec3::zero(zero));
+        let on_triangle = Vec3::select(at_flat_cap, closest.point1, axial.on_triangle);
+        let [a, b, c] = *triangle;
+        Self {
+            caps: [
+                (at_flat_cap & !at_end) | (!at_flat_cap & axial.s.le(zero)),
+                at_end | (!at_flat_cap & one.le(axial.s)),
+            ],
+            corners: [is_at(on_triangle, a), is_at(on_triangle, b), is_at(on_triangle, c)],
+            edges: [is_on(on_triangle, a, b), is_on(on_triangle, b, c), is_on(on_triangle, c, a)],
+            fraction: at_flat_cap.select(at_end.select(one, zero), axial.s),
+            on_triangle,
+            normal,
+            has_normal,
+            depth,
+            lever: Vec3::select(at_flat_cap, closest.point2 - centre, from_side),
+            gap,
+            at_flat_cap,
+            asks_way_out,
+        }
+    }
+
+    /// Whether more than these numbers tell is needed: the features, or more digits.
+    #[inline(always)]
+    pub(crate) fn needs_closer_look(
+        &self,
+        triangle: &[Vec3<T>; 3],
+        face: &Face<T>,
+        link: &Link<T>,
+    ) -> T::Mask {
+        self.asks_way_out | self.needs_digits(triangle, face, link)
+    }
+
+    /// Where the gap is too short for these digits, or [`NearPair::is_kink`] must be asked with more. A kink needs two
+    /// corners that are foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside
+    /// a link also the third corner or an edge along it. Or a triangle without area.
+    ///
+    /// Points of the triangle whose distances F differ by rounding, at most 9 u, may take each other's place: the way to
+    /// them turns by no more than sqrt(2 * 9 u / F), as the rest of the triangle does not come nearer. So a point at most
+    /// 2 sqrt(3) away rises by less than sqrt(216 u / F), and of two points one by twice as much more than the other:
+    /// sqrt(864 u / F). That is more than the 28 u / F by which the rounding of the points turns the normal.
+    #[inline(always)]
+    fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
+        let tie = (self.gap.lit(1024.0 * T::UNIT_ROUNDOFF)).over(self.gap).sqrt();
+        let [a, b, c] = *triangle;
+        let [a_is_foremost, b_is_foremost, c_is_foremost] = are_foremost(triangle, self.normal, tie);
+        let [ab, bc] = [a_is_foremost & b_is_foremost, b_is_foremost & c_is_foremost];
+        let ca = c_is_foremost & a_is_foremost;
+        let is_level = self.normal.dot(link.end).abs().le(tie);
+        let edge = Vec3::select(ab, b - a, Vec3::select(bc, c - b, a - c));
+        let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap, tie));
+        let faces_cap = rise_over_cap(self.normal, link).le(tie);
+        let may_be_kink = (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
+        self.gap.lt(self.gap.lit(SHORT)) | may_be_kink | !has_area(face)
+    }
+}
+
+/// Whether a point is a corner, as far as rounding can tell. (Functions, because a closure may escape inlining.)
+#[inline(always)]
+fn is_at<T: Scalar>(point: Vec3<T>, corner: Vec3<T>) -> T::Mask {
+    (point - corner).largest().le(point.x.lit(TIE))
+}
+
+/// Whether a point lies on an edge, as far as rounding can tell.
+#[inline(always)]
+fn is_on<T: Scalar>(point: Vec3<T>, start: Vec3<T>, end: Vec3<T>) -> T::Mask {
+    let (edge, from) = (end - start, point - start);
+    from.along(edge, -share_of(from, edge)).largest().le(point.x.lit(TIE))
+}
+
+/// Where on an edge, from 0 to 1, the foot of a point lies that is seen from the edge's start.
+#[inline(always)]
+fn share_of<T: Scalar>(from: Vec3<T>, edge: Vec3<T>) -> T {
+    from.dot(edge).over(edge.norm_squared()).max(from.x.zero()).min(from.x.one())
+}
+
+/// Which corners are foremost along a normal, as far as rounding can tell.
+#[inline(always)]
+fn are_foremost<T: Scalar>([a, b, c]: &[Vec3<T>; 3], normal: Vec3<T>, tie: T) -> [T::Mask; 3] {
+    let [a, b, c] = [normal.dot(*a), normal.dot(*b), normal.dot(*c)];
+    let top = a.max(b).max(c) - tie;
+    [top.le(a), top.le(b), top.le(c)]
+}
+
+/// By how much a cap's rim rises over a plane with this normal: less what rounding does to the ends of a short axis, which
+/// turns a wide cap.
+#[inline(always)]
+fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
+    let across = normal.along(link.axis, -normal.dot(link.axis)).norm();
+    let one = across.one();
+    let turn = link.radius.over(link.end.dot(link.axis)).max(one);
+    across * link.radius * one.over(turn)
+}
+
+/// A link and a triangle, and what is nearest of them.
+pub(crate) struct NearPair<T: Scalar> {
+    pub link: Link<T>,
+    pub parts: NearestParts<T>,
+    pub kink: bool,
+    face: Face<T>,
+    triangle: [Vec3<T>; 3],
+}
+
+impl NearPair<DoubleDouble> {
+    /// With about 32 digits.
+    pub(crate) fn exactly(link: &PlacedLink, corners: [Vector; 3]) -> Self {
+        let (triangle, link) = place_exactly(link, corners);
+        let (pair, apart) = Self::new(triangle, link);
+        Self { kink: pair.is_kink(pair.parts.normal, apart, pair.parts.at_flat_cap), ..pair }
+    }
+}
+
+impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
+    /// Of which no kink is known, and how far the axis is from the triangle.
+    fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, T) {
+        let face = Face::new(triangle);
+        let axial = Axial::new(&link, &face);
+        let closest =
+            if axial.beyond_flat_cap() { axial.with_caps(&link, &face) } else { axial.without_caps(&link) };
+        let parts = NearestParts::new(&triangle, &link, &axial, &closest);
+        let apart = if parts.at_flat_cap { axial.axis_squared.sqrt() } else { parts.gap };
+        (Self { link, parts, kink: false, face, triangle }, apart)
+    }
+
+    /// The same with `f64`, in the mesh's frame, where 1 is `unit`.
+    fn features(&self, unit: Real, rounded: impl Fn(T) -> Real) -> NearestFeatures {
+        let Self { parts, kink, .. } = self;
+        let vector = |v: Vec3<T>| Vec3::new(rounded(v.x), rounded(v.y), rounded(v.z));
+        NearestFeatures {
+            link: link_feature(parts.caps),
+            triangle: triangle_feature(parts.corners, parts.edges),
+            fraction: rounded(parts.fraction),
+            normal: parts.has_normal.then(|| vector(parts.normal).into()),
+            depth: rounded(parts.depth) * unit,
+            lever: (vector(parts.lever) * unit).into(),
+            kink: *kink,
+        }
+    }
+
+    /// The triangle's closest point, as a mean of its corners.
+    pub(crate) fn weights(&self) -> [T; 3] {
+        let (point, corners) = (self.parts.on_triangle, &self.triangle);
+        let (zero, one) = (point.x.zero(), point.x.one());
+        let mut weights = [zero; 3];
+        match triangle_feature(self.parts.corners, self.parts.edges) {
+            TriangleFeature::Vertex(corner) => weights[usize::from(corner)] = one,
+            TriangleFeature::Edge(corner) => {
+                let corner = usize::from(corner);
+                let next = (corner + 1) % 3;
+                let share = share_of(point - corners[corner], corners[next] - corners[corner]);
+                weights[corner] = one - share;
+                weights[next] = share;
+            }
+            TriangleFeature::Face => {
+                let foot = self.face.project(point);
+                // The face's first vertex is another than the triangle's; the order is the same.
+                let first = (0..3).find(|&corner| corners[corner] == self.face.vertices[0]).unwrap_or(0);
+                weights[first] = one - foot.alpha - foot.beta;
+                weights[(first + 1) % 3] = foot.alpha;
+                weights[(first + 2) % 3] = foot.beta;
+            }
+        }
+        weights
+    }
+
+    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle to link and the axis
+    /// `apart` from the triangle.
+    fn is_kink(&self, normal: Vec3<T>, apart: T, at_flat_cap: bool) -> bool {
+        if !has_area(&self.face) {
+            return true;
+        }
+        let (link, [a, b, c]) = (&self.link, self.triangle);
+        let tie = apart.lit(TIE);
+        let foremost = match are_foremost(&self.triangle, normal, tie) {
+            [true, true, true] => [a, b, c],
+            [true, true, _] => [a, b, b],
+            [_, true, true] => [b, c, c],
+            [true, _, true] => [c, a, a],
+            _ => return false,
+        };
+        if at_flat_cap && tie.lt(link.radius) && rise_over_cap(normal, link).le(tie) {
+            let centre = if self.parts.caps[1] { link.end } else { Vec3::zero(tie) };
+            let offset = point_triangle(centre, foremost).point2 - centre;
+            let radial = offset.along(link.axis, -offset.dot(link.axis)).norm();
+            return (radial + apart.lit(OVER_EACH_OTHER)).lt(link.radius);
+        }
+        let length = link.end.dot(link.axis);
+        if length.le(tie) || tie.lt(normal.dot(link.end).abs()) {
+            return false;
+        }
+        let [a, b, c] = foremost;
+        let shares = |[from, to]: [Vec3<T>; 2]| {
+            let (start, end) = (from.dot(link.axis), to.dot(link.axis));
+            let shared = length.min(start.max(end)) - apart.zero().max(start.min(end));
+            is_along(to - from, link, apart, tie) && apart.lit(OVER_EACH_OTHER).lt(shared)
+        };
+        // One beside the face may be as near to an edge.
+        [[a, b], [b, c], [c, a]].into_iter().any(shares)
+            || (b != c && apart.lit(OVER_EACH_OTHER).lt(self.above_face() * length))
+    }
+
+    /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges counts.
+    fn above_face(&self) -> T {
+        let (end, across) = (self.link.end, self.face.across);
+        let [a, b, c] = self.face.vertices;
+        let (mut from, mut to) = (end.x.zero(), end.x.one());
+        for [start, other] in [[a, b], [b, c], [c, a]] {
+            let inwards = across.cross(other - start);
+            let (height, rise) = (-inwards.dot(start) + inwards.norm() * end.x.lit(TIE), inwards.dot(end));
+            if end.x.zero().lt(rise) {
+                from = from.max(-height.over(rise));
+            } else if rise.lt(end.x.zero()) {
+                to = to.min(height.over(-rise));
+            } else if height.lt(end.x.zero()) {
+                return end.x.zero();
+            }
+        }
+        (to - from).max(end.x.zero())
+    }
+}
+
+impl NearPair<Real> {
+    /// Of which no kink is known.
+    pub(crate) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
+        let pair = link.pair(corners);
+        Self::new(pair.triangle, pair.link).0
+    }
+
+    /// The same on the way out of the triangle, or where a gap is none.
+    pub(crate) fn parting(mut self) -> Self {
+        let [a, b, c] = self.triangle;
+        let way = WayOut::new(&LinkTriangle::new(self.link, [a, b, c].map(Vector::from)));
+        let (normal, on_triangle) = (Vec3::from(-way.normal), Vec3::from(way.on_triangle));
+        self.parts = NearestParts {
+            caps: [way.fraction <= 0.0, way.fraction >= 1.0],
+            corners: self.triangle.map(|corner| is_at(on_triangle, corner)),
+            edges: [[a, b], [b, c], [c, a]].map(|[from, to]| is_on(on_triangle, from, to)),
+            fraction: way.fraction,
+            on_triangle,
+            normal,
+            has_normal: way.has_side,
+            depth: way.gap,
+            lever: way.lever.into(),
+            gap: way.gap.abs(),
+            at_flat_cap: way.at_flat_cap,
+            asks_way_out: true,
+        };
+        let apart = way.gap.abs().max((way.gap + self.link.radius).abs());
+        self.kink = !way.is_alone || self.is_kink(normal, apart, way.at_flat_cap);
+        self
+    }
+}
+
+/// Whether the triangle has an area, so that only one mean of its corners is the closest point.
+#[inline(always)]
+fn has_area<T: Scalar>(face: &Face<T>) -> T::Mask {
+    let longest = face.vertices[2] - face.vertices[1];
+    (longest.norm_squared() * longest.x.lit(TIE)).lt(face.across.norm())
+}
+
+/// The part of a link by what [`NearestParts`] tells of its caps.
+pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
+    match (start, end) {
+        (true, _) => LinkFeature::StartCap,
+        (_, true) => LinkFeature::EndCap,
+        _ => LinkFeature::Side,
+    }
+}
+
+/// The part of a triangle by what [`NearestParts`] tells of its corners and edges.
+pub(crate) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> TriangleFeature {
+    let first = |parts: [bool; 3]| (0..).zip(parts).find(|(_, is_nearest)| *is_nearest).map(|(part, _)| part);
+    let corner = first(corners).map(TriangleFeature::Vertex);
+    corner.or(first(edges).map(TriangleFeature::Edge)).unwrap_or(TriangleFeature::Face)
+}
+
+/// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can tell.
+#[inline(always)]
+fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T, tie: T) -> T::Mask {
+    let sine = edge.cross(link.axis).norm().over(edge.norm());
+    let rise = edge.norm().min(link.end.norm()) * sine;
+    // Where nothing is between them, what the edge leads away by is what it is away.
+    rise.le(tie) | (rise * rise).le(tie * apart * apart.lit(2.0))
+}

@@ -1,0 +1,111 @@
+//! The tube in the mesh's frame.
+
+use super::piece::Piece;
+use crate::answer::ProximityError;
+use crate::distance::Scalar;
+use crate::pair::{PlacedLink, rigid_pose};
+use crate::robot::{COORDINATE_LIMIT, Face, Section, Tube};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it falls below the range of
+/// numbers, so a length by 2^-536; and no centreline adds up as many as would make 2^-500 of it.
+const LEAST_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
+
+/// A tube at a pose in the frame of a mesh.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedTube<'a> {
+    pub(crate) tube: &'a Tube,
+    /// Its rotation is of unit length.
+    pub(crate) pose: Pose,
+    /// What rounding can do to any length that is computed here or measured.
+    ///
+    /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and the mesh's. A measured
+    /// distance errs by 16 u for each unit of extent, which is at most 2 reach; a placed point by less than 16 u reach;
+    /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them. Beside it stands what
+    /// lengths lose whose squares vanish.
+    pub(crate) slack: Real,
+    /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
+    is_moving: bool,
+}
+
+impl<'a> PlacedTube<'a> {
+    /// # Errors
+    /// The tube has no section, or the pose is not finite or not rigid, or moves it out of range.
+    pub(crate) fn new(tube: &'a Tube, pose: &Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
+        let pose = rigid_pose(pose)?;
+        let radius = tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
+        // A rotation keeps lengths, and a length is at most twice the largest coordinate.
+        let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
+        if reach > COORDINATE_LIMIT {
+            return Err(ProximityError::TubeOutOfRange { limit: COORDINATE_LIMIT });
+        }
+        if tube.sections().is_empty() {
+            return Err(ProximityError::EmptyTube);
+        }
+        let slack = 128.0 * Real::UNIT_ROUNDOFF * (reach + mesh_reach) + LEAST_LENGTH;
+        Ok(Self { tube, pose, slack, is_moving: false })
+    }
+
+    /// The same shape as a moment of a motion, to which bodies at flat ends have to be prepared.
+    pub(crate) fn moving(self) -> Self {
+        Self { is_moving: true, ..self }
+    }
+
+    /// The flat ends of a section that bodies may end with.
+    pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
+        section.faces.map(|face| face.filter(|face| face.lasting.is_safe() || !self.is_moving))
+    }
+
+    /// Whether a piece has a flat end that bodies take for round.
+    pub(crate) fn may_open(&self, piece: &Piece) -> bool {
+        let section = self.section(piece.section);
+        let count = |faces: [Option<Face>; 2]| {
+            [piece.from == section.first, piece.to == section.last]
+                .into_iter()
+                .zip(faces)
+                .filter(|(is_there, face)| *is_there && face.is_some())
+                .count()
+        };
+        count(section.faces) > count(self.faces(section))
+    }
+
+    pub(crate) fn sections(&self) -> &'a [Section] {
+        self.tube.sections()
+    }
+
+    pub(crate) fn section(&self, number: u32) -> &'a Section {
+        &self.tube.sections()[number as usize]
+    }
+
+    /// A point of the centreline in the mesh's frame.
+    pub(crate) fn point(&self, section: &Section, tick: u32) -> Vector {
+        self.pose * self.tube.point(section, tick)
+    }
+
+    pub(crate) fn slack(&self) -> Real {
+        self.slack
+    }
+
+    /// The radius of a piece.
+    pub(crate) fn radius(&self, piece: &Piece) -> Real {
+        self.section(piece.section).radius
+    }
+
+    /// A point of the centreline, or one between two samples nearby.
+    pub(crate) fn place_at(&self, section: u32, arc: Real) -> Vector {
+        let section = self.section(section);
+        self.point(section, self.tube.tick(section, arc))
+    }
+
+    /// The line between the ends of a section, and their arc lengths.
+    pub(crate) fn chord(&self, section: u32) -> (PlacedLink, [Real; 2]) {
+        let section = self.section(section);
+        let ends = [section.first, section.last].map(|tick| self.point(section, tick));
+        (PlacedLink::between(ends[0], ends[1], 0.0, [false; 2]), [section.start, section.end])
+    }
+
+    /// A flat end in the mesh's frame.
+    pub(crate) fn face(&self, face: &Face) -> Face {
+        Face { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
+    }
+}

@@ -1,0 +1,111 @@
+//! How near a point of the mesh is to the tube at most.
+//!
+//! Let s be where a section's centreline is nearest to x. Inside the section x - c(s) is perpendicular to the tangent, so
+//! x is in the plane of the disc at s and |x - c(s)| - r away from it, or in it. The same holds at a round end, for its
+//! ball, and at a flat end of whose plane x is not ahead: there s is an end only if x is in its plane. And as s is the
+//! nearest place, any point q of the centreline will do as a bound: x is at most |x - q| - r away.
+//!
+//! What remains is an x ahead of a flat face whose centre is the nearest place. Then, and whenever it is nearer, the
+//! face itself tells: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
+//! than the face's centre, that centre is not the nearest place.
+//!
+//! Where the centreline leads back to x, though, the discs around q may be nearer than the face, even if the face's centre is
+//! nearer than q. Then some place between the two is farther from x than q. From that place on, the rest of the section
+//! has no such face, and all of the above holds for it.
+//!
+//! A ball at a round end is cut off by the section's own face, should it stick out of that. So where both are near, x
+//! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.
+//!
+//! q is known to the deviation of the curve from its samples, and a face's normal to its tilt, which moves a rim by r
+//! times that.
+
+use super::placed_tube::PlacedTube;
+use crate::robot::{Section, length};
+use parry3d_f64::math::{Real, Vector};
+
+/// How many places between a face and a place are tried, each half as far from the latter as the one before.
+const MOST_TRIED: u32 = 6;
+
+/// A point of the tube near a point of the mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Witness {
+    /// The tube is at most this far from the point of the mesh.
+    pub upper: Real,
+    pub arc: Real,
+    pub on_robot: Vector,
+}
+
+impl PlacedTube<'_> {
+    /// How near `x` is to a section at most, looking from an arc length nearby.
+    pub(crate) fn witness(&self, number: u32, arc: Real, x: Vector) -> Witness {
+        let section = self.section(number);
+        let rounding = self.tube.error() + self.slack;
+        let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
+        let [a, b] = foot.between.map(|point| self.pose * point);
+        let place = a + (b - a) * foot.share;
+        let way = place - x;
+        let away = way.length();
+        let reach = away + section.deviation + rounding;
+        let mut best = Witness { upper: Real::INFINITY, arc: foot.arc, on_robot: x };
+        let mut is_beside = true;
+        for (end, face) in section.faces.iter().enumerate() {
+            let Some(face) = face else { continue };
+            let face = self.face(face);
+            let offset = x - face.centre;
+            let ahead = offset.dot(face.outward);
+            let from_centre = offset.length();
+            let is_behind = ahead + from_centre * face.tilt + rounding <= 0.0;
+            let crowded = self.distance_to_crowded_end(section, 1 - end, x);
+            if is_behind || reach < from_centre.min(crowded) - rounding {
+                continue;
+            }
+            let face_arc = if end == 0 { section.start } else { section.end };
+            if reach < crowded - rounding
+                && self.rises_between(section, [foot.arc, face_arc], x, reach + rounding)
+            {
+                continue;
+            }
+            is_beside = false;
+            let across = offset - face.outward * ahead;
+            let size = across.length();
+            let upper = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
+                + section.radius * face.tilt
+                + rounding;
+            if upper < best.upper {
+                let share = if size > section.radius { section.radius / size } else { 1.0 };
+                best = Witness { upper, arc: face_arc, on_robot: face.centre + across * share };
+            }
+        }
+        if is_beside {
+            let upper = (reach - section.radius).max(0.0);
+            let on_robot = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
+            best = Witness { upper, arc: foot.arc, on_robot };
+        }
+        best
+    }
+
+    /// Whether the centreline is seen to be farther from `x` than `least` somewhere between two arc lengths, near the
+    /// first if not farther on.
+    fn rises_between(&self, section: &Section, [from, to]: [Real; 2], x: Vector, least: Real) -> bool {
+        let mut step = 0.5 * (to - from);
+        for _ in 0..MOST_TRIED {
+            let tick = self.tube.tick(section, from + step);
+            let arc = self.tube.arc(section, tick);
+            let is_between = from.min(to) < arc && arc < from.max(to);
+            if is_between && (self.point(section, tick) - x).length() > least {
+                return true;
+            }
+            step *= 0.5;
+        }
+        false
+    }
+
+    /// How far a round end is from `x`, if its ball may stick out of the face at the section's other end.
+    fn distance_to_crowded_end(&self, section: &Section, end: usize, x: Vector) -> Real {
+        if section.faces[end].is_some() || section.end - section.start > section.room() {
+            return Real::INFINITY;
+        }
+        let tick = if end == 0 { section.first } else { section.last };
+        (self.point(section, tick) - x).length()
+    }
+}

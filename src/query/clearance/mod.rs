@@ -1,0 +1,5 @@
+//! The clearance of a tube, between bounds.
+
+mod tube_search;
+
+pub(crate) use tube_search::{Found, Place, TubeMemory, TubeSearch};

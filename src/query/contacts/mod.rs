@@ -1,0 +1,17 @@
+//! Every place where a link is near the mesh: the local minima of the distance.
+
+mod across;
+mod feet;
+mod gathering;
+mod local_minima;
+mod long_rings;
+mod near_triangle;
+mod slopes;
+mod wall_pieces;
+
+pub(crate) use across::Across;
+pub(crate) use gathering::Gathering;
+#[cfg(feature = "gpu")]
+pub(crate) use local_minima::contacts_by_all_triangles;
+pub(crate) use local_minima::{LocalMinima, RobotContacts, Wall};
+pub(crate) use near_triangle::NearTriangles;

@@ -1,0 +1,273 @@
+//! The queries of a motion: whether a margin is kept all the way, or until when.
+//!
+//! An interval of time is judged by its middle shape. Points of a piece that move at V or slower are within tau V of
+//! where they are at the middle, tau being half of the interval; so if a body around the piece, as it is then, keeps more
+//! than margin + tau V away, the piece keeps the margin during the whole interval. Its points then are those of the same
+//! shares of its section: what bodies hold of them, besides the discs and the balls of the moment, is told in
+//! `tube::outer` and in `moment`. Pieces that fail are looked at again in what is left of the interval on either side: a
+//! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
+//! fails, and not the motion, the piece is halved instead, in the same shape.
+//!
+//! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
+//! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
+//! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
+
+use super::moment::{Moment, Verdict, Waiting};
+use crate::answer::{FirstContact, MotionAnswer, ProximityError};
+use crate::distance::Scalar;
+use crate::pieces::{Piece, PlacedTube};
+use crate::query::clearance::{Found, TubeSearch};
+use crate::robot::{Motion, Sections, Tube};
+use crate::search::hierarchy::MeshSearch;
+use parry3d_f64::math::{Pose, Real};
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// Memory of a query, used again by the next.
+#[derive(Clone)]
+pub(crate) struct MotionMemory {
+    tube: Tube,
+    sections: Sections,
+    /// Pieces that wait for their turn in the present shape, the next one last.
+    pieces: Vec<Waiting>,
+    /// What `TubeSearch` keeps pieces in.
+    begun: Vec<Piece>,
+    /// Those that failed, one interval's after another's.
+    failed: Vec<Waiting>,
+    intervals: VecDeque<Interval>,
+}
+
+impl Default for MotionMemory {
+    fn default() -> Self {
+        Self {
+            tube: Tube::empty(),
+            sections: Sections::default(),
+            pieces: Vec::new(),
+            begun: Vec::new(),
+            failed: Vec::new(),
+            intervals: VecDeque::new(),
+        }
+    }
+}
+
+/// An interval of time and what has to be proven in it.
+#[derive(Clone, Debug)]
+struct Interval {
+    times: [Real; 2],
+    /// Which of the failed pieces.
+    pieces: Range<usize>,
+}
+
+impl Interval {
+    fn middle(&self) -> Real {
+        0.5 * self.times[0] + 0.5 * self.times[1]
+    }
+}
+
+/// A motion on its way through a mesh.
+pub(crate) struct MotionSearch<'a, M> {
+    pub search: MeshSearch<'a>,
+    pub memory: &'a mut MotionMemory,
+    pub motion: &'a M,
+    pub margin: Real,
+    pub resolution: Real,
+    /// How many shapes were looked at.
+    pub shapes: u64,
+    /// The triangle that was found last.
+    pub last: Option<u32>,
+}
+
+/// How many shapes are looked at after one that is above the margin by no more than the resolution. A contact that is
+/// deeper than that, or a proof, shows sooner as a rule; and what stays that near for long would be divided into
+/// thousands of intervals.
+const PATIENCE: u64 = 256;
+
+/// What the middle shape of an interval tells.
+struct Seen {
+    /// A place where it is at most the margin away.
+    contact: Option<Found>,
+    /// Whether that place moves by no more than the resolution.
+    is_fine: bool,
+    /// Whether a piece is too near to the margin for the resolution.
+    is_undecided: bool,
+    /// Whether the shape is above the margin by no more than the resolution.
+    is_near: bool,
+    /// Which pieces failed, and for how long before and after the shape they do not.
+    failed: Range<usize>,
+    still: Real,
+}
+
+impl<M: Motion> MotionSearch<'_, M> {
+    /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
+    pub(crate) fn clears(&mut self) -> Result<MotionAnswer, ProximityError> {
+        let mut undecided = None::<[Real; 2]>;
+        // An interval with a shape near the margin, and how many shapes there may be in all then.
+        let mut near = None::<([Real; 2], u64)>;
+        self.begin();
+        while let Some(interval) = self.memory.intervals.pop_front() {
+            if let Some((near, most)) = near
+                && self.shapes >= most
+            {
+                let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
+                let first = left.chain(undecided).fold(near, |first, times| {
+                    if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
+                });
+                return Ok(MotionAnswer::Undecided { interval: first });
+            }
+            let seen = self.examine(&interval)?;
+            if seen.is_near && near.is_none() {
+                near = Some((interval.times, self.shapes + PATIENCE));
+            }
+            if let Some(found) = seen.contact {
+                let t = interval.middle();
+                let Found { place, witness, on_mesh } = found;
+                return Ok(MotionAnswer::Contact {
+                    t,
+                    upper: witness.upper,
+                    arc_length: witness.arc,
+                    section: place.section,
+                    triangle: place.triangle,
+                    on_robot: witness.on_robot,
+                    on_mesh,
+                });
+            }
+            if seen.is_undecided {
+                let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
+                undecided = if is_first { Some(interval.times) } else { undecided };
+            }
+            self.memory.intervals.extend(halves(&interval, &seen).into_iter().flatten());
+        }
+        Ok(undecided.map_or(MotionAnswer::Clear, |interval| MotionAnswer::Undecided { interval }))
+    }
+
+    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter.
+    pub(crate) fn first_contact(&mut self) -> Result<FirstContact, ProximityError> {
+        let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
+        let mut clear_until = 1.0;
+        self.begin();
+        while let Some(interval) = self.memory.intervals.pop_back() {
+            let seen = self.examine(&interval)?;
+            if seen.is_undecided {
+                undecided = undecided.or(Some(interval.times));
+            }
+            if let Some(found) = seen.contact {
+                let t = interval.middle();
+                contact = Some((t, found));
+                clear_until = if seen.is_fine { interval.times[0] } else { t };
+                self.memory.intervals.clear();
+                if !seen.is_fine {
+                    let before = Interval { times: [interval.times[0], t], pieces: seen.failed };
+                    self.memory.intervals.push_back(before);
+                }
+                continue;
+            }
+            self.memory.intervals.extend(halves(&interval, &seen).into_iter().rev().flatten());
+        }
+        let Some((t, Found { place, witness, on_mesh })) = contact else {
+            return Ok(undecided.map_or(FirstContact::Never, |interval| FirstContact::Undecided { interval }));
+        };
+        Ok(FirstContact::Within {
+            clear_until: undecided.map_or(clear_until, |interval| interval[0].min(clear_until)),
+            t,
+            upper: witness.upper,
+            arc_length: witness.arc,
+            section: place.section,
+            triangle: place.triangle,
+            on_robot: witness.on_robot,
+            on_mesh,
+        })
+    }
+
+    fn begin(&mut self) {
+        let MotionMemory { sections, intervals, failed, .. } = &mut *self.memory;
+        sections.clear();
+        intervals.clear();
+        failed.clear();
+        // The first shape tells its pieces.
+        intervals.push_back(Interval { times: [0.0, 1.0], pieces: 0..0 });
+    }
+
+    /// Fills the tube with the shape at `t`.
+    fn shape(&mut self, t: Real) -> Result<Pose, ProximityError> {
+        let MotionMemory { tube, sections, .. } = &mut *self.memory;
+        // Only what this shape states counts.
+        tube.forget_error();
+        let pose = self.motion.shape(t, tube)?;
+        sections.check(t, tube)?;
+        self.shapes += 1;
+        Ok(pose)
+    }
+
+    /// Judges an interval by its middle shape.
+    fn examine(&mut self, interval: &Interval) -> Result<Seen, ProximityError> {
+        let t = interval.middle();
+        let is_first = self.shapes == 0;
+        let pose = self.shape(t)?;
+        let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let (motion, times) = (self.motion, interval.times);
+        let opening = self.memory.tube.hold_faces(|section, end| {
+            // A speed that is not finite or NaN holds nothing; it is refused below.
+            half * motion.speed(section, [end as Real; 2], times).point
+        });
+        let MotionMemory { tube, pieces, begun, failed, .. } = &mut *self.memory;
+        let tube = PlacedTube::new(tube, &pose, self.search.hierarchy.reach)?.moving();
+        let MeshSearch { level, hierarchy, .. } = self.search;
+        let search = MeshSearch { level, hierarchy, scratch: &mut *self.search.scratch };
+        let mut search = TubeSearch { search, tube, pieces: begun };
+        // Below that, rounding decides.
+        search.check_resolved(32.0 * tube.slack(), ("resolution", self.resolution))?;
+        pieces.clear();
+        if is_first {
+            search.begin(self.margin.max(self.resolution));
+            pieces.extend(
+                search
+                    .pieces
+                    .iter()
+                    .map(|piece| Waiting { section: piece.section, shares: tube.shares(piece) }),
+            );
+        } else {
+            pieces.extend_from_slice(&failed[interval.pieces.clone()]);
+        }
+
+        let first = failed.len();
+        let mut seen = Seen {
+            contact: None,
+            is_fine: false,
+            is_undecided: false,
+            is_near: false,
+            failed: first..first,
+            still: Real::INFINITY,
+        };
+        let (margin, resolution) = (self.margin, self.resolution);
+        let moment = Moment { motion, times, half, margin, resolution, opening };
+        while let Some(waiting) = pieces.pop() {
+            match moment.judge(&mut search, &waiting, &mut self.last)? {
+                Verdict::Keeps => {}
+                Verdict::Part(halves) => pieces.extend(waiting.halves(&tube, halves)),
+                Verdict::Undecided => seen.is_undecided = true,
+                Verdict::Fails { still, is_near } => {
+                    seen.still = seen.still.min(still);
+                    seen.is_near |= is_near;
+                    failed.push(waiting);
+                }
+                Verdict::Contact { found, is_fine } => {
+                    (seen.contact, seen.is_fine, seen.still) = (Some(found), is_fine, 0.0);
+                    failed.push(waiting);
+                    failed.append(pieces);
+                    break;
+                }
+            }
+        }
+        seen.failed = first..failed.len();
+        Ok(seen)
+    }
+}
+
+/// What is left of an interval before and after its middle shape.
+fn halves(interval: &Interval, seen: &Seen) -> [Option<Interval>; 2] {
+    let (t, pieces) = (interval.middle(), &seen.failed);
+    let half = |times: [Real; 2]| {
+        (!pieces.is_empty() && times[0] < times[1]).then(|| Interval { times, pieces: pieces.clone() })
+    };
+    [half([interval.times[0], t - seen.still]), half([t + seen.still, interval.times[1]])]
+}

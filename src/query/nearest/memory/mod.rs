@@ -1,0 +1,7 @@
+//! What a query leaves for the next one about a robot that has moved a little.
+
+mod kept_distances;
+mod outline;
+mod widening;
+
+pub(crate) use kept_distances::KeptDistances;

@@ -1,0 +1,86 @@
+//! The solid angle of a mesh from a point, through its hierarchy: far nodes at once, near triangles one by one.
+
+use super::SolidAngle;
+use super::far_field::FarField;
+use super::solid_angle::solid_angle;
+use crate::answer::Side;
+use crate::distance::Scalar;
+use crate::distance::lanes::Lane;
+use crate::mesh::Mesh;
+use crate::search::hierarchy::{Child, WideBvh};
+use crate::threads::each;
+use parry3d_f64::math::{Real, Vector};
+
+/// How much each node may be off, in steradians, at one attempt after the other.
+const ATTEMPTS: [Real; 4] = [0.1, 0.02, 0.004, 0.0005];
+
+/// What all nodes and leaves of a hierarchy are from far away.
+#[derive(Clone)]
+pub(crate) struct FarFields {
+    /// Brings the mesh to size one.
+    scale: Real,
+    nodes: Vec<FarField>,
+    leaves: Vec<FarField>,
+}
+
+impl FarFields {
+    pub(crate) fn new<E: Lane>(tree: &WideBvh<E>, mesh: &Mesh) -> Self {
+        let [low, high] = mesh.bounds();
+        let scale = (high - low).max_element().power_of_two_to_unity();
+        let of = |child: Child| {
+            FarField::new(scale, tree.triangles_below(child).map(|triangle| mesh.corners(triangle)))
+        };
+        let mut nodes = vec![FarField::default(); tree.nodes.len()];
+        let mut leaves = vec![FarField::default(); tree.leaves.len()];
+        each(&mut nodes, |node, field| *field = of(Child::Node(node as u32)));
+        each(&mut leaves, |leaf, field| *field = of(Child::Leaf(leaf as u32)));
+        Self { scale, nodes, leaves }
+    }
+
+    fn of(&self, child: Child) -> &FarField {
+        match child {
+            Child::Node(node) => &self.nodes[node as usize],
+            Child::Leaf(leaf) => &self.leaves[leaf as usize],
+        }
+    }
+}
+
+/// A mesh around a point.
+pub(crate) struct Winding<'a, E> {
+    pub mesh: &'a Mesh,
+    pub tree: &'a WideBvh<E>,
+    pub fields: &'a FarFields,
+    pub point: Vector,
+}
+
+impl<E: Lane> Winding<'_, E> {
+    /// The side on which the point is.
+    pub(crate) fn side(&self) -> Side {
+        if !self.point.is_finite() {
+            return Side::Undecided;
+        }
+        let attempt = |error| {
+            let mut sum = SolidAngle::default();
+            self.add(Child::Node(0), error, &mut sum);
+            sum.side()
+        };
+        ATTEMPTS.into_iter().find_map(attempt).unwrap_or(Side::Undecided)
+    }
+
+    /// Adds what is below `child`, every node of which may be off by `error`.
+    fn add(&self, child: Child, error: Real, sum: &mut SolidAngle) {
+        let from_afar = self.fields.of(child).solid_angle(self.fields.scale, self.point);
+        if from_afar.error() <= error {
+            *sum += from_afar;
+            return;
+        }
+        match child {
+            Child::Node(node) => {
+                self.tree.nodes[node as usize].children().for_each(|child| self.add(child, error, sum));
+            }
+            Child::Leaf(_) => self.tree.triangles_below(child).for_each(|triangle| {
+                *sum += solid_angle(self.mesh.corners(triangle), self.point);
+            }),
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Search that looks at every triangle.
+
+mod blocks;
+mod kernels;
+mod pass;
+mod scan;
+
+pub(crate) use kernels::Kernels;
+pub(crate) use pass::{Aim, Pass, Triangles};

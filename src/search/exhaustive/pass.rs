@@ -1,0 +1,233 @@
+//! One pass over all triangles for the links of one robot or many.
+
+use super::blocks::Blocks;
+use super::kernels::Kernels;
+use super::scan::{Findings, Job, JobLink, SharedBound};
+use crate::Chain;
+use crate::answer::{LinkProximity, ProximityError, Work};
+use crate::distance::Scalar;
+use crate::mesh::Mesh;
+use crate::pair::{Nearest, PlacedRobot, SearchLink};
+use crate::threads::{Lazy, each, threads};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real};
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A mesh in the precision of the search.
+#[derive(Clone)]
+pub(crate) struct Triangles<T> {
+    pub mesh: Mesh,
+    blocks: Blocks<T>,
+    /// For links that single precision does not resolve, filled when the first of them comes.
+    double: Lazy<Blocks<f64>>,
+}
+
+impl<T: Kernels> Triangles<T> {
+    pub(crate) fn new(level: Level, mesh: Mesh) -> Self {
+        let blocks = Blocks::new(&mesh, |faces, spheres| T::prepare(level, faces, spheres));
+        Self { mesh, blocks, double: Lazy::new() }
+    }
+
+    fn double(&self, level: Level) -> &Blocks<f64> {
+        self.double
+            .get_or_build(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
+    }
+
+    /// Takes over that the vertices of the mesh have moved.
+    pub(crate) fn refill(&mut self, level: Level) {
+        self.blocks.refill(&self.mesh, |faces, spheres| T::prepare(level, faces, spheres));
+        if let Some(double) = self.double.get_mut() {
+            double.refill(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres));
+        }
+    }
+}
+
+/// What a pass looks for.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Aim {
+    /// The nearest triangle of every link.
+    EachLink,
+    /// The nearest triangle of all links of a robot together, if it is at most so far away.
+    Least(Real),
+    /// Any triangle at most so far away, for each robot.
+    Within(Real),
+    /// Every triangle that may be at most so far away, for each link.
+    Every(Real),
+}
+
+impl Aim {
+    fn bound(self) -> Real {
+        match self {
+            Self::EachLink => Real::INFINITY,
+            Self::Least(bound) | Self::Within(bound) | Self::Every(bound) => bound,
+        }
+    }
+}
+
+/// The links of a pass and what it found, in memory that is used again.
+pub(crate) struct Pass<T> {
+    links: Vec<JobLink<T>>,
+    /// Links that the precision `T` does not resolve.
+    double: Vec<JobLink<f64>>,
+    /// The links of each robot.
+    robots: Vec<Range<usize>>,
+    bounds: Vec<SharedBound>,
+    /// One for each thread; the first has what all have found.
+    findings: Vec<Findings>,
+    /// Whether there may be more than was kept of what is within the bound.
+    is_full: bool,
+}
+
+impl<T> Default for Pass<T> {
+    fn default() -> Self {
+        Self {
+            links: Vec::new(),
+            double: Vec::new(),
+            robots: Vec::new(),
+            bounds: Vec::new(),
+            findings: Vec::new(),
+            is_full: false,
+        }
+    }
+}
+
+impl<T: Kernels> Pass<T> {
+    /// Looks at all triangles, for some links of each robot.
+    ///
+    /// # Errors
+    /// Those of the first robot that has one.
+    pub(crate) fn run<'a>(
+        &mut self,
+        level: Level,
+        culling: bool,
+        triangles: &Triangles<T>,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        links: Range<usize>,
+        aim: Aim,
+    ) -> Result<Work, ProximityError> {
+        let links = self.place(level, triangles, robots, links, aim)?;
+        let Self { links: resolved, double, bounds, findings, robots, is_full } = self;
+        bounds.clear();
+        bounds.resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || {
+            SharedBound::new(aim.bound())
+        });
+        findings.resize_with(threads_for(links * triangles.mesh.len()), Findings::default);
+        for findings in &mut *findings {
+            findings.work = Work::default();
+            findings.within.clear();
+            findings.nearest.clear();
+            findings.nearest.resize(links, None);
+        }
+        let mesh = &triangles.mesh;
+        let stop_at_first = matches!(aim, Aim::Within(_));
+        // A single link has all that it is near to, or nothing could be told of it.
+        let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
+        let every = matches!(aim, Aim::Every(_)).then_some(most);
+        let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
+        scan(level, culling, &job, findings);
+        if !double.is_empty() {
+            let blocks = triangles.double(level);
+            let job = Job { mesh, blocks, links: double, bounds, stop_at_first, every };
+            scan(level, culling, &job, findings);
+        }
+        *is_full = findings.iter().any(|findings| findings.within.len() >= most);
+        let (first, others) = findings.split_at_mut(1);
+        for other in others {
+            first[0].merge(other);
+        }
+        Ok(first[0].work)
+    }
+
+    /// Sorts the robots' links by the precision that resolves them, and counts them.
+    fn place<'a>(
+        &mut self,
+        level: Level,
+        triangles: &Triangles<T>,
+        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        of_each: Range<usize>,
+        aim: Aim,
+    ) -> Result<usize, ProximityError> {
+        let Self { links, double, robots: ranges, .. } = self;
+        links.clear();
+        double.clear();
+        ranges.clear();
+        let frame = &triangles.blocks.frame;
+        let is_double = T::UNIT_ROUNDOFF <= f64::UNIT_ROUNDOFF;
+        let mut place = 0;
+        for (number, (robot, pose)) in robots.enumerate() {
+            let first = place;
+            let robot = PlacedRobot::new(robot, pose)?;
+            for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
+                let bound = if aim == Aim::EachLink { place } else { number };
+                let searched = SearchLink::new(&link, frame);
+                if is_double || searched.as_ref().is_some_and(|searched| frame.resolves(searched)) {
+                    links.push(JobLink { link, searched, place, bound });
+                } else {
+                    let searched = SearchLink::new(&link, &triangles.double(level).frame);
+                    double.push(JobLink { link, searched, place, bound });
+                }
+                place += 1;
+            }
+            ranges.push(first..place);
+        }
+        Ok(place)
+    }
+
+    /// What the last pass found for a link.
+    fn found(&self, place: usize) -> Option<Nearest> {
+        self.findings[0].nearest[place]
+    }
+
+    /// The nearest triangle of each link of a robot.
+    pub(crate) fn answers(&self, robot: usize) -> impl Iterator<Item = LinkProximity> {
+        let places = self.robots[robot].clone();
+        // Without a bound some triangle is always the nearest.
+        places.enumerate().filter_map(|(link, place)| Some(self.found(place)?.report(link)))
+    }
+
+    /// The triangles that may be within the bound of the last pass, link by link and each once. None if there may be too
+    /// many to be kept at once: fewer links will have fewer, and a single one always gets its own.
+    pub(crate) fn within(&mut self) -> Option<&[(u32, u32)]> {
+        let within = &mut self.findings[0].within;
+        within.sort_unstable();
+        Some(&**within).filter(|_| !self.is_full)
+    }
+
+    /// Whether nothing was found for a robot.
+    pub(crate) fn is_clear(&self, robot: usize) -> bool {
+        self.robots[robot].clone().all(|place| self.found(place).is_none())
+    }
+}
+
+/// So many pairs of a link and a triangle within its bound are kept at once, unless they are all of one link.
+const PAIRS_AT_ONCE: usize = 1 << 20;
+
+/// Fewer pairs than this are not worth a second thread.
+const PAIRS_PER_THREAD: usize = 1 << 17;
+
+/// How many threads are worth while.
+fn threads_for(pairs: usize) -> usize {
+    threads().min(1 + pairs / PAIRS_PER_THREAD)
+}
+
+/// Has every thread take the next chunk until there is none.
+fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [Findings]) {
+    if culling && !job.stop_at_first && job.every.is_none() {
+        E::first_bounds(level, job);
+    }
+    let next = AtomicUsize::new(0);
+    each(findings, |_, findings| {
+        loop {
+            let chunk = next.fetch_add(1, Ordering::Relaxed);
+            if chunk >= job.chunks() {
+                break;
+            }
+            if culling {
+                E::scan(level, job, chunk, findings);
+            } else {
+                E::scan_every_pair(level, job, chunk, findings);
+            }
+        }
+    });
+}

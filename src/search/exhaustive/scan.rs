@@ -1,0 +1,243 @@
+//! Every triangle against every link: the loop of exhaustive search.
+
+use super::blocks::Blocks;
+use crate::answer::Work;
+use crate::distance::Scalar;
+use crate::distance::lanes::{Lane, Pack};
+use crate::mesh::{BLOCK, Mesh};
+use crate::pair::{Best, LinkLanes, Nearest, PlacedLink, SearchLink};
+use parry3d_f64::math::Real;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+
+/// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest cache.
+const CHUNK: usize = 64;
+
+/// One block in so many gives a first bound.
+const STRIDE: usize = 16;
+
+/// What one query asks of the mesh.
+pub(crate) struct Job<'a, E> {
+    pub mesh: &'a Mesh,
+    pub blocks: &'a Blocks<E>,
+    pub links: &'a [JobLink<E>],
+    pub bounds: &'a [SharedBound],
+    /// Any triangle within the bound will do.
+    pub stop_at_first: bool,
+    /// Every triangle that may be within the bound is wanted; of each thread so many at the most.
+    pub every: Option<usize>,
+}
+
+/// A link that a job is about.
+pub(crate) struct JobLink<E> {
+    pub link: PlacedLink,
+    /// How it looks in the precision of the search, if that reaches so far.
+    pub searched: Option<SearchLink<E>>,
+    /// Its place among the findings.
+    pub place: usize,
+    /// The number of its bound; links whose nearest is wanted together share one.
+    pub bound: usize,
+}
+
+/// What a triangle must not be farther than, a distance that only shrinks; or that nothing more is wanted. Seen by all
+/// threads.
+///
+/// Numbers that are not negative are ordered as their bits, to which one is added: 0 is the end.
+pub(crate) struct SharedBound {
+    distance: AtomicU64,
+    /// The lowest triangle that touches: of those that touch, only lower ones are still wanted, or for another link the
+    /// same.
+    touching: AtomicU32,
+}
+
+impl SharedBound {
+    pub(crate) fn new(distance: Real) -> Self {
+        let distance = AtomicU64::new(distance.abs().to_bits() + 1);
+        Self { distance, touching: AtomicU32::new(u32::MAX) }
+    }
+
+    fn get(&self) -> Option<Real> {
+        self.distance.load(Ordering::Relaxed).checked_sub(1).map(Real::from_bits)
+    }
+
+    fn shrink_to(&self, distance: Real) {
+        self.distance.fetch_min(distance.abs().to_bits() + 1, Ordering::Relaxed);
+    }
+
+    fn touching(&self) -> u32 {
+        self.touching.load(Ordering::Relaxed)
+    }
+
+    /// Takes over that a triangle touches.
+    fn touch(&self, triangle: u32) {
+        self.touching.fetch_min(triangle, Ordering::Relaxed);
+        self.shrink_to(0.0);
+    }
+
+    fn end(&self) {
+        self.distance.store(0, Ordering::Relaxed);
+    }
+}
+
+/// What one thread has found.
+#[derive(Default)]
+pub(crate) struct Findings {
+    /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
+    pub nearest: Vec<Option<Nearest>>,
+    /// Where every triangle is wanted, each link's place and each triangle that may be within its bound.
+    pub within: Vec<(u32, u32)>,
+    pub work: Work,
+}
+
+impl Findings {
+    /// Takes over what another thread found.
+    pub(crate) fn merge(&mut self, other: &Findings) {
+        self.work += other.work;
+        self.within.extend(&other.within);
+        for (mine, theirs) in self.nearest.iter_mut().zip(&other.nearest) {
+            let mut best = Best::resume(Real::INFINITY, *mine);
+            if theirs.is_some_and(|theirs| best.take(theirs)) {
+                *mine = *theirs;
+            }
+        }
+    }
+}
+
+impl<E: Lane> Job<'_, E> {
+    /// How many chunks there are.
+    pub(crate) fn chunks(&self) -> usize {
+        self.blocks.len().div_ceil(CHUNK)
+    }
+
+    /// For each link, a bound from every so many of the spheres: without it, an order in which the triangles come
+    /// nearer and nearer would have them all measured.
+    #[inline(always)]
+    pub(crate) fn first_bounds<L: Pack<Element = E>>(&self, token: L::Token) {
+        for link in self.links {
+            let Some(searched) = &link.searched else { continue };
+            let lanes = LinkLanes::<L>::new(token, searched);
+            let mut reach = L::splat(token, E::round(Real::INFINITY));
+            for block in (0..self.blocks.len()).step_by(STRIDE) {
+                for lane in (0..BLOCK).step_by(L::LANES) {
+                    let (centre, radius) = self.blocks.spheres::<L>(token, block, lane);
+                    reach = reach.min(lanes.reach_of_spheres(centre, radius));
+                }
+            }
+            let mut reaches = [E::round(Real::INFINITY); BLOCK];
+            reach.store(&mut reaches);
+            let least = reaches.into_iter().fold(E::round(Real::INFINITY), Scalar::min);
+            self.bounds[link.bound].shrink_to(searched.bound_within(least));
+        }
+    }
+
+    /// All links against one chunk of the mesh. With `CULLING` cheap, exact bounds spare what they can; without it every
+    /// pair costs its full distance, discs included.
+    #[inline(always)]
+    pub(crate) fn scan<L: Pack<Element = E>, const CULLING: bool>(
+        &self,
+        token: L::Token,
+        chunk: usize,
+        findings: &mut Findings,
+    ) {
+        let blocks = chunk * CHUNK..self.blocks.len().min((chunk + 1) * CHUNK);
+        for link in self.links {
+            let shared = &self.bounds[link.bound];
+            let Some(bound) = shared.get() else { continue };
+            let touching = shared.touching();
+            if blocks.start * BLOCK > touching as usize {
+                continue;
+            }
+            let best = Best::resume(bound, findings.nearest[link.place]);
+            let best = best.touching_below(touching.saturating_add(1));
+            let Findings { within, work, .. } = &mut *findings;
+            let mut turn = Turn { job: self, link: &link.link, place: link.place, best, within, work };
+            match &link.searched {
+                Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
+                None => turn.measure_all(blocks.clone()),
+            }
+            let best = turn.best;
+            findings.nearest[link.place] = best.nearest();
+            if self.stop_at_first && best.nearest().is_some() {
+                shared.end();
+            } else if let Some(nearest) = best.nearest().filter(|nearest| nearest.distance <= 0.0) {
+                shared.touch(nearest.triangle);
+            } else {
+                shared.shrink_to(best.bound());
+            }
+        }
+    }
+}
+
+/// One link's turn with a chunk.
+struct Turn<'a, E> {
+    job: &'a Job<'a, E>,
+    link: &'a PlacedLink,
+    place: usize,
+    best: Best,
+    within: &'a mut Vec<(u32, u32)>,
+    work: &'a mut Work,
+}
+
+impl<E: Lane> Turn<'_, E> {
+    #[inline(always)]
+    fn scan<L: Pack<Element = E>, const CULLING: bool>(
+        &mut self,
+        token: L::Token,
+        searched: &SearchLink<E>,
+        blocks: Range<usize>,
+    ) {
+        let triangles = self.job.blocks;
+        let lanes = LinkLanes::<L>::new(token, searched);
+        let mut limit = L::splat(token, searched.axis_limit(self.best.bound()));
+        let radius = L::splat(token, searched.radius);
+        self.work.visited += (blocks.len() * BLOCK) as u64;
+        for block in blocks {
+            for lane in (0..BLOCK).step_by(L::LANES) {
+                if CULLING {
+                    let (centre, radius) = triangles.spheres::<L>(token, block, lane);
+                    if lanes.meets_spheres(centre, radius, limit) == 0 {
+                        continue;
+                    }
+                }
+                self.work.axis_distances += L::LANES as u64;
+                let face = triangles.faces::<L>(token, block, lane);
+                let mut nearer = if CULLING {
+                    lanes.may_be_nearer(&face, limit).nearer
+                } else {
+                    L::bits((lanes.distances(&face) + radius).lt(limit))
+                };
+                while nearer != 0 {
+                    let triangle = block * BLOCK + lane + nearer.trailing_zeros() as usize;
+                    nearer &= nearer - 1;
+                    if self.measure(triangle) {
+                        limit = L::splat(token, searched.axis_limit(self.best.bound()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The scan of a link that is too far out for the precision of the search.
+    fn measure_all(&mut self, blocks: Range<usize>) {
+        self.work.visited += (blocks.len() * BLOCK) as u64;
+        for triangle in blocks.start * BLOCK..blocks.end * BLOCK {
+            self.measure(triangle);
+        }
+    }
+
+    /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest so far.
+    #[inline(never)] // the same code whatever the instruction set
+    fn measure(&mut self, triangle: usize) -> bool {
+        if triangle >= self.job.mesh.len().min(self.best.wanted_below() as usize) {
+            return false;
+        }
+        if let Some(most) = self.job.every {
+            if self.within.len() < most {
+                self.within.push((self.place as u32, triangle as u32));
+            }
+            return false;
+        }
+        self.work.measured += 1;
+        self.best.measure(self.link, triangle as u32, self.job.mesh.corners(triangle as u32))
+    }
+}

@@ -1,0 +1,13 @@
+//! Search through a hierarchy 16 children wide, a pack of them at a time.
+
+mod bound;
+mod build;
+mod candidates;
+mod fit;
+mod mesh_search;
+mod node;
+mod traverse;
+
+pub(crate) use build::WideBvh;
+pub(crate) use mesh_search::{Hierarchy, KeepsAway, MeshSearch, Scratch};
+pub(crate) use node::{Child, WIDTH};

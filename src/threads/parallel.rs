@@ -1,0 +1,150 @@
+//! The same work for many items, on all cores (feature `parallel`). Nothing else in the crate uses a pool of threads.
+
+use crate::answer::ProximityError;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+use std::cell::Cell;
+
+thread_local! {
+    /// Whether this thread does something alone.
+    static IS_ALONE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Does something on this thread alone: nothing in here waits for other threads of the pool, or takes up their tasks.
+pub(crate) fn alone<T>(work: impl FnOnce() -> T) -> T {
+    /// Puts back what was before, after a panic too.
+    struct Before(bool);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            IS_ALONE.set(self.0);
+        }
+    }
+    let _before = Before(IS_ALONE.replace(true));
+    work()
+}
+
+/// How many threads could work.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    if !IS_ALONE.get() {
+        return rayon::current_num_threads();
+    }
+    1
+}
+
+/// Does `work` on every item, which it gets with its place. An item should be worth some microseconds.
+pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
+    // To wake another thread for one item would take longer than the item.
+    #[cfg(feature = "parallel")]
+    if items.len() > 1 && !IS_ALONE.get() {
+        return items.par_iter_mut().enumerate().for_each(|(place, item)| work(place, item));
+    }
+    items.iter_mut().enumerate().for_each(|(place, item)| work(place, item));
+}
+
+/// Does two things, on two cores if it is worth it.
+#[cfg(feature = "parallel")]
+pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    if is_worth_it && !IS_ALONE.get() {
+        rayon::join(one, other);
+    } else {
+        one();
+        other();
+    }
+}
+
+/// Does two things.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
+    one();
+    other();
+}
+
+/// Answers questions in shares, each share with a memory of its own.
+///
+/// # Errors
+/// Those of `answer` for the first share, in order, that has one.
+pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
+    questions: &[Q],
+    answers: &mut [A],
+    memories: &mut Vec<M>,
+    answer: impl Fn(&mut M, &[Q], &mut [A]) -> Result<(), ProximityError> + Sync + Send,
+) -> Result<(), ProximityError> {
+    #[cfg(feature = "parallel")]
+    if !IS_ALONE.get() {
+        // A few shares for each thread, because questions differ in the time they take.
+        let share = questions.len().div_ceil(4 * threads()).max(1);
+        memories.resize_with(questions.len().div_ceil(share), M::default);
+        let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
+        let results =
+            shares.zip(memories).map(|((questions, answers), memory)| answer(memory, questions, answers));
+        // Of two errors the left one, which is that of earlier questions.
+        return results.reduce(|| Ok(()), Result::and);
+    }
+    memories.resize_with(1, M::default);
+    memories.iter_mut().try_for_each(|memory| answer(memory, questions, answers))
+}
+
+#[cfg(all(test, feature = "parallel"))]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+    use std::sync::Mutex;
+    use std::thread::{self, ThreadId};
+    use std::time::Duration;
+
+    /// The threads on which items are done, each of which takes a while.
+    fn threads_of_each() -> HashSet<ThreadId> {
+        let seen = Mutex::new(HashSet::new());
+        each(&mut [(); 64], |_, ()| {
+            thread::sleep(Duration::from_millis(1));
+            seen.lock().unwrap().insert(thread::current().id());
+        });
+        seen.into_inner().unwrap()
+    }
+
+    fn threads_of_both() -> [ThreadId; 2] {
+        let mut ids = [thread::current().id(); 2];
+        let [one, other] = &mut ids;
+        let note = |id: &mut ThreadId| {
+            thread::sleep(Duration::from_millis(20));
+            *id = thread::current().id();
+        };
+        both(true, || note(one), || note(other));
+        ids
+    }
+
+    fn threads_of_shares() -> HashSet<ThreadId> {
+        let (mut answers, mut memories) = ([None; 64], Vec::<()>::new());
+        let answered = in_shares(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
+            thread::sleep(Duration::from_millis(1));
+            answers.fill(Some(thread::current().id()));
+            Ok(())
+        });
+        assert!(answered.is_ok());
+        answers.into_iter().flatten().collect()
+    }
+
+    /// A task of a pool that does something alone has no helpers, and takes up no other task meanwhile. That holds until
+    /// it is done, and when it fails.
+    #[test]
+    fn who_is_alone_stays_on_one_thread() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();
+        pool.install(|| {
+            let own = thread::current().id();
+            alone(|| {
+                alone(|| ());
+                assert_eq!(threads(), 1);
+                assert_eq!(threads_of_each(), HashSet::from([own]));
+                assert_eq!(threads_of_both(), [own; 2]);
+                assert_eq!(threads_of_shares(), HashSet::from([own]));
+            });
+            let failed = std::panic::catch_unwind(|| alone(|| panic!("meant")));
+            assert!(failed.is_err());
+            assert_eq!(threads(), 16);
+            assert!(threads_of_each().len() > 1 && threads_of_shares().len() > 1);
+            let [one, other] = threads_of_both();
+            assert!(one != other);
+        });
+    }
+}
