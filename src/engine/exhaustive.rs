@@ -1,11 +1,12 @@
 //! Proximity by looking at every triangle.
 
 use super::proximity::{HasMesh, Proximity, pairs};
-use crate::Chain;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::mesh::Mesh;
-use crate::pair::{PlacedLink, PlacedRobot, check_bound, check_margin, rigid_pose};
+use crate::pair::{PlacedLink, PlacedRobot, rigid_pose};
 use crate::query::contacts::{LocalMinima, RobotContacts, Wall};
+use crate::query::{check_bound, check_margin};
+use crate::robot::Chain;
 use crate::search::exhaustive::{Aim, Kernels, Pass, Triangles};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};

@@ -6,7 +6,7 @@ mod proximity;
 
 pub use bvh::BvhSearch;
 pub use exhaustive::{Exhaustive, SearchPrecision};
-pub use proximity::Proximity;
 pub(crate) use proximity::HasMesh;
+pub use proximity::Proximity;
 #[cfg(feature = "gpu")]
 pub(crate) use proximity::pairs;

@@ -1,7 +1,7 @@
-use crate::Chain;
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
 use crate::pair::{contact, contacts, derivative};
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// An engine that answers proximity queries between a robot and the mesh it was built for.

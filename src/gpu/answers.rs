@@ -5,9 +5,9 @@ use super::candidates::Candidate;
 use super::link::DeviceLink;
 use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
-use crate::Chain;
 use crate::answer::{LinkProximity, ProximityError};
 use crate::pair::{Nearest, PlacedRobot};
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
 impl GpuExhaustive {

@@ -2,7 +2,8 @@ use super::Precision;
 use super::layout::{FAR, LinkRecord};
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::pair::{PlacedLink, SearchFrame, SearchLink};
+use crate::mesh::SearchFrame;
+use crate::pair::{PlacedLink, SearchLink};
 use parry3d_f64::math::Real;
 
 /// Shaders pass bounds on in single precision, so that links farther out are none for double precision either.

@@ -5,8 +5,7 @@ use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::mesh::Mesh;
-use crate::pair::SearchFrame;
+use crate::mesh::{Mesh, SearchFrame};
 use crate::threads::each;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 

@@ -11,9 +11,9 @@
 //! 3. The axis is normalised by its own power of two, so that a short link seen from far away keeps its
 //!    direction.
 
-use crate::ModifiedCylinder;
 use crate::distance::Scalar;
 pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
 /// The power of two that brings `x` near one, and its inverse.

@@ -11,7 +11,7 @@
 //! [`joint`](super::joint)).
 
 use crate::robot::length;
-use crate::{Chain, ModifiedCylinder};
+use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Pose, Real, Vector};

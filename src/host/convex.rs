@@ -11,7 +11,7 @@
 
 use super::axial::{perpendicular, unit};
 use super::range::largest;
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, QueryDispatcher, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap};

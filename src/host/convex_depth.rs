@@ -8,8 +8,8 @@
 
 use super::axial::{perpendicular, unit, unit_across};
 use super::convex::ConvexPair;
-use crate::ModifiedCylinder;
 use crate::distance::depth::across_rim;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{Contact, PointQuery, QueryDispatcher};
 use parry3d_f64::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};

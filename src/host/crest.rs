@@ -12,7 +12,7 @@
 use super::feature::{self, SAME_POINT};
 use super::footing::{self, centre, leans_round, outward};
 use super::meeting::Meeting;
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 

@@ -1,7 +1,7 @@
 //! The pieces of a link's surface: their names, as every query reports them, and their normals.
 
 use super::axial::{AxialFrame, unit, unit_across};
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{FeatureId, PackedFeatureId};
 

@@ -2,8 +2,8 @@
 //! `distance/depth/foot.rs`.
 
 use super::axial::axis_or_x;
-use crate::ModifiedCylinder;
 use crate::distance::depth::to_flat;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
 /// A point of a link's axis.

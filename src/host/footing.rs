@@ -8,7 +8,7 @@
 
 use super::axial::{perpendicular, unit_across};
 use super::feature::{self, crest_end};
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 

@@ -14,7 +14,7 @@
 //! than their caps.
 
 use super::feature::SAME_POINT;
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{ContactManifold, PointQuery};
 

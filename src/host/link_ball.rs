@@ -8,7 +8,7 @@ use super::meeting::ROUNDING;
 use super::point::nearest;
 use super::range::in_range;
 use super::{axial, feature};
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
 use parry3d_f64::shape::Shape;

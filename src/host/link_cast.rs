@@ -22,7 +22,7 @@ use super::link_triangle::{self, LinkTriangle};
 use super::range::in_range;
 use super::robot_pair::links_of;
 use super::straight_cast::iterated_contact;
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap, Triangle};

@@ -7,7 +7,7 @@
 use super::axial::unit;
 use super::feature::{self, SAME_POINT};
 use super::footing;
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape, SupportMap};

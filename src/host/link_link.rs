@@ -12,9 +12,9 @@
 use super::axial::unit;
 use super::foot::Foot;
 use super::link_triangle::closest;
-use crate::ModifiedCylinder;
 use crate::distance::depth::{Body, LinkLink};
 use crate::distance::{Vec3, segment_segment};
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
 /// What rounding can do to a distance, as a share of the largest coordinate.

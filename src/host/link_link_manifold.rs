@@ -12,7 +12,7 @@ use super::link_link::{self, Answer};
 use super::link_pair::LinkPair;
 use super::meeting::{Meeting as OneSided, ROUNDING};
 use super::{footing, rim};
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact};
 use parry3d_f64::shape::{PackedFeatureId, Shape};

@@ -6,7 +6,7 @@
 
 use super::convex::ConvexPair;
 use super::link_link::{self, Answer};
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{Contact, QueryDispatcher, Unsupported};
 use parry3d_f64::shape::{Shape, TypedShape};

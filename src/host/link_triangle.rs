@@ -22,7 +22,7 @@ use super::foot::Foot;
 pub(super) use crate::distance::depth::face_normal;
 use crate::distance::depth::{self, ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, triangle_modified_cylinder};
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, Triangle};

@@ -25,7 +25,7 @@ use super::{
     joint, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, range,
     robot_mesh_manifold,
 };
-use crate::Chain;
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{self, NormalConstraints};
 use parry3d_f64::query::{

@@ -20,7 +20,7 @@
 //! shorter of the two turns is taken.
 
 use super::axial::axis_or_x;
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Real, Rotation, Vector};
 use std::f64::consts::PI;

@@ -6,7 +6,7 @@
 
 use super::feature::{self, SAME_POINT};
 use super::link_triangle::face_normal;
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 

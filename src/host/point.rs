@@ -17,7 +17,7 @@
 
 use super::axial::{AxialFrame, perpendicular, unit, unit_across};
 use super::feature;
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{PointProjection, PointQuery};
 use parry3d_f64::shape::FeatureId;

@@ -23,7 +23,7 @@
 
 use super::axial::{AxialFrame, perpendicular, power_of_two, unit, unit_across};
 use super::feature;
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d_f64::shape::FeatureId;

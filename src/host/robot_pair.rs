@@ -8,7 +8,7 @@ use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{Until, search};
 use super::range::in_range;
 use crate::pair::{Nearest, PlacedLink};
-use crate::{Chain, ModifiedCylinder};
+use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
 use parry3d_f64::shape::{Shape, TriMesh, Triangle};

@@ -6,7 +6,7 @@
 //! equal: `c = l (l + 2 r) / (2 (l + r))`, which lies between the ends.
 
 use super::{feature, mass};
-use crate::{Cap, ModifiedCylinder};
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Pose, Real, Vector};

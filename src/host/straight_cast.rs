@@ -20,8 +20,8 @@
 use super::axial::unit;
 use super::link_triangle::{self, LinkContact, LinkTriangle};
 use super::range::{in_range, largest};
-use crate::ModifiedCylinder;
 use crate::robot::COORDINATE_LIMIT;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported,

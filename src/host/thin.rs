@@ -9,7 +9,7 @@
 
 use super::range::LEAST_SHARE;
 use super::robot_pair::links_of;
-use crate::ModifiedCylinder;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};
 

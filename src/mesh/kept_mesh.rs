@@ -1,8 +1,8 @@
 //! A mesh as every engine keeps it.
 
+use super::checks::{check_triangles, check_vertices};
 use super::shared_parts::SharedParts;
 use crate::answer::MeshError;
-use crate::pair::{check_triangles, check_vertices};
 use crate::threads::{Lazy, each};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;

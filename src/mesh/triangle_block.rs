@@ -3,7 +3,7 @@
 use super::kept_mesh::Mesh;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Vec3};
-use crate::pair::SearchFrame;
+use crate::mesh::SearchFrame;
 use parry3d_f64::math::Vector;
 
 /// How many triangles stand together: the widest pack, so that any narrower one divides it.

@@ -1,8 +1,9 @@
 //! The link and the triangle that an answer is about, as they are now.
 
-use super::checks::{check_ends, check_triangle, check_vertex, rigid_pose};
-use super::placed::PlacedLink;
+use super::checks::{check_ends, rigid_pose};
+use super::placed_link::PlacedLink;
 use crate::answer::{LinkProximity, ProximityError};
+use crate::mesh::{check_triangle, check_vertex};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Vector};
 

@@ -8,9 +8,10 @@
 //! normals of the features (faces, edges, axis) are tried as well.
 
 use super::answered::{corners, link_of, placed_link};
-use super::checks::{check_ends, check_vertex, rigid_pose};
+use super::checks::{check_ends, rigid_pose};
 use crate::answer::{Certificate, LinkProximity, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
+use crate::mesh::check_vertex;
 use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;

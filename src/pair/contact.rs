@@ -2,8 +2,9 @@
 
 use super::answered::{corners, placed_link, transformed_link};
 use super::contacts_together::{Place, try_add_contacts};
+use super::nearest::Nearest;
 use super::nearest_features::NearestFeatures;
-use super::placed::{Nearest, PlacedLink};
+use super::placed_link::PlacedLink;
 use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError};
 use crate::mesh::Mesh;
 use crate::robot::{Chain, length};

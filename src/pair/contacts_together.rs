@@ -1,9 +1,10 @@
 //! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on every instruction set.
 
 use super::contact::contact_of;
+use super::nearest::Nearest;
 use super::nearest_features::{NearestFeatures, NearestParts, link_feature, triangle_feature};
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
-use super::placed::{Nearest, PlacedLink};
+use super::placed_link::PlacedLink;
 use crate::answer::{Contact, LinkProximity};
 use crate::distance::lanes::Pack;
 use crate::distance::{Unfused, dispatch};

@@ -1,6 +1,7 @@
 //! Whether an answer is about a link and a triangle as they are now. The mesh may have moved since, or it may be another.
 
-use super::placed::{Nearest, PlacedLink};
+use super::nearest::Nearest;
+use super::placed_link::PlacedLink;
 use crate::answer::{LinkProximity, ProximityError};
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};

@@ -1,6 +1,6 @@
 //! One link against a pack of triangles, in the precision of the search: which of them may be nearer than a bound.
 
-use super::search_frame::SearchLink;
+use super::search_link::SearchLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
 use crate::mesh::splat;

@@ -1,8 +1,11 @@
 //! Several triangles against one link in double precision, a pack at a time: the bits are those of
 //! [`PlacedLink::measure`], on every instruction set.
 
+use super::best::Best;
+use super::coordinates::Pair;
+use super::nearest::Nearest;
 use super::pair_lanes::{PairLanes, PlacedLanes, Rows, TOGETHER, put_corners, store};
-use super::placed::{Best, Nearest, Pair, PlacedLink};
+use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Closest, Unfused, Vec3, dispatch};
 use crate::mesh::{Mesh, splat};
@@ -133,7 +136,7 @@ fn closest<L: Pack<Element = f64>>(
 mod tests {
     use super::*;
     use crate::distance::lanes::tests::levels;
-    use crate::{Cap, ModifiedCylinder};
+    use crate::robot::{Cap, ModifiedCylinder};
     use parry3d_f64::math::{Pose, Vector};
 
     /// Numbers in [-1, 1), many of them on a coarse lattice, where ties and parallels are common.

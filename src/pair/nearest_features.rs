@@ -32,7 +32,8 @@
 //!
 //! The corners of a triangle without area can move against one another: it counts as a kink too.
 
-use super::placed::{PlacedLink, place_exactly};
+use super::coordinates::place_exactly;
+use super::placed_link::PlacedLink;
 use crate::answer::{LinkFeature, TriangleFeature};
 use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
 use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle};

@@ -1,5 +1,5 @@
 //! Pairs of links and triangles in double precision, a pack at a time, each in coordinates of its own: those of
-//! [`PlacedLink::pair`](super::placed::PlacedLink::pair), with the same bits on every instruction set.
+//! [`PlacedLink::pair`](super::PlacedLink::pair), with the same bits on every instruction set.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
@@ -121,7 +121,7 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
     }
 }
 
-/// Links in the mesh's frame, as [`PlacedLink`](super::placed::PlacedLink).
+/// Links in the mesh's frame, as [`PlacedLink`](super::PlacedLink).
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedLanes<L: Scalar> {
     pub start: Vec3<L>,

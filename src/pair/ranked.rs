@@ -1,8 +1,9 @@
 //! The triangles near a robot's links in the order in which pieces of the wall appear: measured in double precision, a
 //! pack at a time.
 
+use super::nearest::Nearest;
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
-use super::placed::{Nearest, PlacedLink};
+use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Scalar, Unfused, dispatch};
 use crate::mesh::Mesh;

@@ -5,3 +5,7 @@ pub(crate) mod contacts;
 pub(crate) mod motion;
 pub(crate) mod nearest;
 pub(crate) mod side;
+
+mod checks;
+
+pub(crate) use checks::{check_bound, check_margin, check_not_negative};

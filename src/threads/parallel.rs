@@ -1,6 +1,5 @@
 //! The same work for many items, on all cores (feature `parallel`). Nothing else in the crate uses a pool of threads.
 
-use crate::answer::ProximityError;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use std::cell::Cell;
@@ -64,12 +63,12 @@ pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
 ///
 /// # Errors
 /// Those of `answer` for the first share, in order, that has one.
-pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
+pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send, E: Send>(
     questions: &[Q],
     answers: &mut [A],
     memories: &mut Vec<M>,
-    answer: impl Fn(&mut M, &[Q], &mut [A]) -> Result<(), ProximityError> + Sync + Send,
-) -> Result<(), ProximityError> {
+    answer: impl Fn(&mut M, &[Q], &mut [A]) -> Result<(), E> + Sync + Send,
+) -> Result<(), E> {
     #[cfg(feature = "parallel")]
     if !IS_ALONE.get() {
         // A few shares for each thread, because questions differ in the time they take.

@@ -1,11 +1,11 @@
 //! Queries about tubes, as [`BvhSearch`] answers them.
 
 use super::search::{BvhSearch, Context, Memory};
-use crate::Tube;
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
-use crate::pair::{check_margin, check_not_negative};
 use crate::pieces::PlacedTube;
 use crate::query::clearance::{Place, TubeMemory, TubeSearch};
+use crate::query::{check_margin, check_not_negative};
+use crate::robot::Tube;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Pose, Real};
 
@@ -197,7 +197,8 @@ impl<'a> Context<'a> {
         tube: &'a Tube,
         pose: &'a Pose,
     ) -> Result<(TubeSearch<'a>, &'a mut Option<Place>), ProximityError> {
-        let Self { level, hierarchy, memory } = self;
+        let Self { level, mesh, memory } = self;
+        let hierarchy = &mesh.hierarchy;
         let Memory { scratch, tube: TubeMemory { pieces, last }, .. } = memory;
         let tube = PlacedTube::new(tube, pose, hierarchy.reach)?;
         Ok((TubeSearch { search: MeshSearch { level, hierarchy, scratch }, tube, pieces }, last))

@@ -2,6 +2,7 @@
 
 mod clearance;
 mod motion;
+mod prepared_mesh;
 mod search;
 mod side;
 

@@ -2,8 +2,8 @@
 
 use super::search::{BvhSearch, Context, Memory};
 use crate::answer::{FirstContact, MotionAnswer, ProximityError};
-use crate::pair::{check_margin, check_not_negative};
 use crate::query::motion::MotionSearch;
+use crate::query::{check_margin, check_not_negative};
 use crate::robot::Motion;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::Real;
@@ -96,9 +96,9 @@ impl BvhSearch {
     ) -> Result<MotionSearch<'a, M>, ProximityError> {
         check_margin(margin)?;
         check_not_negative("resolution", resolution)?;
-        let Context { level, hierarchy, memory } = self.context();
+        let Context { level, mesh, memory } = self.context();
         let Memory { scratch, motion: memory, .. } = memory;
-        let search = MeshSearch { level, hierarchy, scratch };
+        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
         Ok(MotionSearch { search, memory, motion, margin, resolution, shapes: 0, last: None })
     }
 }

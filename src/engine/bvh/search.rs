@@ -1,16 +1,19 @@
 //! Proximity by a bounding volume hierarchy.
 
-use crate::Chain;
+use super::prepared_mesh::PreparedMesh;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::engine::{HasMesh, Proximity};
 use crate::mesh::Mesh;
-use crate::pair::{PlacedRobot, check_bound, check_margin};
+use crate::pair::PlacedRobot;
 use crate::query::clearance::TubeMemory;
-use crate::query::contacts::LocalMinima;
+use crate::query::contacts::{ContactSearch, LocalMinima};
 use crate::query::motion::MotionMemory;
-use crate::query::nearest::memory::KeptDistances;
-use crate::query::nearest::{FewEach, MinimumSearch, OfLink, RobotSearch};
-use crate::search::hierarchy::{Hierarchy, MeshSearch, Scratch};
+use crate::query::nearest::{
+    ClearsMemory, ClearsSearch, MinimumMemory, OfLink, PerLinkMemory, minimum_within, per_link,
+};
+use crate::query::{check_bound, check_margin};
+use crate::robot::Chain;
+use crate::search::hierarchy::{MeshSearch, Scratch};
 use crate::threads::in_shares;
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -28,9 +31,8 @@ use std::sync::Arc;
 /// The engine remembers its last answers, which bound the next query: any robot and pose may follow, and small motions
 /// are answered fastest. [`BvhSearch::forget`] drops them.
 ///
-/// Once some tens of robots did not keep away from the mesh, as is common for a planner, the engine notes roughly which
-/// space lies on which side of the wall, so that [`clears`](Proximity::clears) looks first where a robot passes through it.
-/// That takes milliseconds once, 30 for a million triangles, and at most 300 kB.
+/// Some questions need more of the mesh than the hierarchy: it is built when the first of them is asked, or all of it by
+/// [`prepare`](Self::prepare), so that no question has to wait for it.
 ///
 /// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread costs nothing. Where
 /// [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others keep theirs.
@@ -52,59 +54,50 @@ use std::sync::Arc;
 /// ```
 pub struct BvhSearch {
     level: Level,
-    hierarchy: Arc<Hierarchy>,
+    mesh: Arc<PreparedMesh>,
     memory: Memory,
     /// One for each share of a batch.
     batch: Vec<Memory>,
 }
 
-/// What one query leaves for the next.
+/// What one query leaves for the next, a field for each question.
 #[derive(Clone, Default)]
-pub(crate) struct Memory {
+pub(super) struct Memory {
     pub scratch: Scratch,
+    pub per_link: PerLinkMemory,
+    pub minimum: MinimumMemory,
+    pub clears: ClearsMemory,
+    pub contacts: LocalMinima,
     pub tube: TubeMemory,
     pub motion: MotionMemory,
-    minima: LocalMinima,
-    few: FewEach,
-    /// The closest triangle of each link at the last query.
-    last: Vec<u32>,
-    /// The closest link and its triangle at the last query for the minimum.
-    last_minimum: Option<(usize, u32)>,
-    /// What the links kept when it was last asked for the minimum, and whether they keep away.
-    kept_by_minimum: KeptDistances,
-    kept_by_clears: KeptDistances,
 }
 
 impl Memory {
-    pub(crate) fn forget(&mut self) {
-        self.forget_distances();
+    fn forget(&mut self) {
+        self.per_link.forget();
+        self.minimum.forget();
+        self.clears.forget();
         self.tube.forget();
-        self.scratch.forget();
-        self.last.clear();
-        self.last_minimum = None;
     }
 
     /// Forgets what only holds as long as the mesh is still.
     fn forget_distances(&mut self) {
-        self.kept_by_minimum.forget();
-        self.kept_by_clears.forget();
+        self.minimum.forget_distances();
+        self.clears.forget_distances();
     }
 }
 
 impl Clone for BvhSearch {
     fn clone(&self) -> Self {
-        Self {
-            level: self.level,
-            hierarchy: Arc::clone(&self.hierarchy),
-            memory: Memory::default(),
-            batch: Vec::new(),
-        }
+        Self { level: self.level, mesh: Arc::clone(&self.mesh), memory: Memory::default(), batch: Vec::new() }
     }
 }
 
 impl std::fmt::Debug for BvhSearch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BvhSearch").field("triangles", &self.hierarchy.mesh.len()).finish_non_exhaustive()
+        f.debug_struct("BvhSearch")
+            .field("triangles", &self.mesh.hierarchy.mesh.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -145,8 +138,32 @@ impl BvhSearch {
 
     fn of(mesh: Mesh) -> Self {
         let level = Level::new();
-        let hierarchy = Arc::new(Hierarchy::new(level, mesh));
-        Self { level, hierarchy, memory: Memory::default(), batch: Vec::new() }
+        let mesh = Arc::new(PreparedMesh::new(level, mesh));
+        Self { level, mesh, memory: Memory::default(), batch: Vec::new() }
+    }
+
+    /// Builds all that a question would build when it is first asked, so that none has to wait; clones share it. Call it
+    /// after [`set_vertices`](Proximity::set_vertices) too: what depends on where the vertices are is built anew.
+    ///
+    /// | question | what it needs beside the hierarchy |
+    /// |---|---|
+    /// | [`clears`](Proximity::clears) | roughly which space lies on which side of the wall |
+    /// | [`within`](Proximity::within) | which triangles share corners and edges |
+    /// | [`side`](Self::side) | what each part of the mesh is from far away |
+    /// | any, about a robot so far away that single precision does not resolve it | a second hierarchy, in double precision |
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity, Side}};
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// search.prepare();
+    /// assert_eq!(search.side(Vector::X), Side::Inside); // at once
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn prepare(&self) {
+        self.mesh.prepare(self.level);
     }
 
     /// Forgets the last answers, so that the next query starts without bounds.
@@ -163,7 +180,7 @@ impl BvhSearch {
     ///
     /// # Errors
     /// Those of the first robot that has one; `out` is then empty.
-    pub(crate) fn batch<R: Sync, T: Send>(
+    pub(super) fn batch<R: Sync, T: Send>(
         &mut self,
         robots: &[R],
         out: &mut Vec<T>,
@@ -171,117 +188,98 @@ impl BvhSearch {
         answer: impl Fn(Context, &R, &mut T) -> Result<(), ProximityError> + Sync + Send,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), unanswered);
-        let (level, hierarchy) = (self.level, &*self.hierarchy);
+        let (level, mesh) = (self.level, &*self.mesh);
         let result = in_shares(robots, out, &mut self.batch, |memory, robots, out| {
             memory.forget();
             let mut pairs = robots.iter().zip(out);
-            pairs.try_for_each(|(robot, out)| answer(Context { level, hierarchy, memory }, robot, out))
+            pairs.try_for_each(|(robot, out)| answer(Context { level, mesh, memory }, robot, out))
         });
         result.inspect_err(|_| out.clear())
     }
 
-    pub(crate) fn hierarchy(&self) -> &Hierarchy {
-        &self.hierarchy
+    pub(super) fn prepared(&self) -> &PreparedMesh {
+        &self.mesh
     }
 
-    pub(crate) fn context(&mut self) -> Context<'_> {
-        Context { level: self.level, hierarchy: &self.hierarchy, memory: &mut self.memory }
-    }
-
-    fn query<'a>(&'a mut self, robot: &'a Chain, pose: &'a Pose) -> Result<Query<'a>, ProximityError> {
-        Query::new(self.context(), robot, pose)
+    pub(super) fn context(&mut self) -> Context<'_> {
+        Context { level: self.level, mesh: &self.mesh, memory: &mut self.memory }
     }
 }
 
 /// What a query asks through: the mesh, and what the last one left.
-pub(crate) struct Context<'a> {
+pub(super) struct Context<'a> {
     pub level: Level,
-    pub hierarchy: &'a Hierarchy,
+    pub mesh: &'a PreparedMesh,
     pub memory: &'a mut Memory,
 }
 
-/// One robot asked about.
-struct Query<'a> {
-    context: Context<'a>,
-    robot: PlacedRobot<'a>,
-}
-
-impl<'a> Query<'a> {
-    fn new(context: Context<'a>, robot: &'a Chain, pose: &'a Pose) -> Result<Self, ProximityError> {
-        Ok(Self { context, robot: PlacedRobot::new(robot, pose)? })
+impl Context<'_> {
+    fn per_link(
+        self,
+        robot: &Chain,
+        pose: &Pose,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let Self { level, mesh, memory } = self;
+        let Memory { scratch, per_link: memory, .. } = memory;
+        per_link(MeshSearch { level, hierarchy: &mesh.hierarchy, scratch }, robot, memory, out);
+        Ok(())
     }
 
-    fn per_link(&mut self, out: &mut Vec<LinkProximity>) {
-        out.clear();
-        let Context { level, hierarchy, ref mut memory } = self.context;
-        let Memory { scratch, few, last, .. } = &mut **memory;
-        let search = MeshSearch { level, hierarchy, scratch };
-        RobotSearch { search, robot: self.robot }.per_link(last, few, out);
-        last.clear();
-        last.extend(out.iter().map(|answer| answer.triangle));
+    fn minimum(self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let mesh = &self.mesh.hierarchy.mesh;
+        // Where no search tells the nearest, any triangle is as near.
+        let found = self.nearest_link(robot, Real::INFINITY);
+        let (link, nearest) = found.unwrap_or_else(|| (0, robot.link(0).measure(0, mesh.corners(0))));
+        Ok(nearest.report(link))
     }
 
-    fn minimum(&mut self) -> LinkProximity {
-        let found = self.nearest_link(Real::INFINITY);
-        let (link, nearest) = found.unwrap_or_else(|| {
-            let first = self.robot.link(0);
-            (0, self.search().search.any(&first))
-        });
-        nearest.report(link)
+    fn minimum_within(
+        self,
+        robot: &Chain,
+        pose: &Pose,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let found = if bound < 0.0 { None } else { self.nearest_link(robot, bound) };
+        Ok(found.map(|(link, nearest)| nearest.report(link)))
     }
 
-    fn minimum_within(&mut self, bound: Real) -> Option<LinkProximity> {
-        self.nearest_link(bound).map(|(link, nearest)| nearest.report(link))
+    fn nearest_link(self, robot: PlacedRobot, bound: Real) -> Option<OfLink> {
+        let Self { level, mesh, memory } = self;
+        let Memory { scratch, minimum: memory, .. } = memory;
+        minimum_within(MeshSearch { level, hierarchy: &mesh.hierarchy, scratch }, robot, memory, bound)
     }
 
-    fn nearest_link(&mut self, bound: Real) -> Option<OfLink> {
-        let Context { level, hierarchy, ref mut memory } = self.context;
-        let Memory { scratch, last_minimum, kept_by_minimum, .. } = &mut **memory;
-        let search = MeshSearch { level, hierarchy, scratch };
-        let found = MinimumSearch::within(bound, search, self.robot, kept_by_minimum).nearest(*last_minimum);
-        if let Some((link, nearest)) = found {
-            *last_minimum = Some((link, nearest.triangle));
-        }
-        found
+    fn clears(self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let Self { level, mesh, memory } = self;
+        let Memory { scratch, clears: memory, .. } = memory;
+        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
+        Ok(ClearsSearch { search, sides: mesh.sides(), robot, memory }.clears(margin))
     }
 
-    fn clears(&mut self, margin: Real) -> bool {
-        let (robot, reach) = (self.robot, self.context.hierarchy.reach);
-        let kept = &mut self.context.memory.kept_by_clears;
-        if kept.all_keep(robot, margin) {
-            return true;
-        }
-        if let Some(wider) = kept.wider(robot, margin, Real::INFINITY, reach) {
-            let known = self.search().clears(margin + wider);
-            let kept = &mut self.context.memory.kept_by_clears;
-            if let Some(known) = known {
-                kept.keep_all(robot, margin + wider, known, reach);
-                return true;
-            }
-            kept.miss();
-        }
-        self.search().clears(margin).is_some()
-    }
-
-    fn within(&mut self, margin: Real, out: &mut Vec<Contact>) {
-        let Context { level, hierarchy, ref mut memory } = self.context;
-        let Memory { scratch, minima, .. } = &mut **memory;
-        let search = MeshSearch { level, hierarchy, scratch };
-        RobotSearch { search, robot: self.robot }.within(margin, minima, out);
-    }
-
-    fn search(&mut self) -> RobotSearch<'_> {
-        let Context { level, hierarchy, ref mut memory } = self.context;
-        RobotSearch {
-            search: MeshSearch { level, hierarchy, scratch: &mut memory.scratch },
-            robot: self.robot,
-        }
+    fn within(
+        self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let Self { level, mesh, memory } = self;
+        let Memory { scratch, contacts: minima, .. } = memory;
+        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
+        ContactSearch { search, across: mesh.across() }.within(robot, margin, minima, out);
+        Ok(())
     }
 }
 
 impl HasMesh for BvhSearch {
     fn mesh(&self) -> &Mesh {
-        &self.hierarchy.mesh
+        &self.mesh.hierarchy.mesh
     }
 }
 
@@ -293,12 +291,11 @@ impl Proximity for BvhSearch {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        self.query(robot, pose)?.per_link(out);
-        Ok(())
+        self.context().per_link(robot, pose, out)
     }
 
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        Ok(self.query(robot, pose)?.minimum())
+        self.context().minimum(robot, pose)
     }
 
     fn minimum_within(
@@ -308,13 +305,12 @@ impl Proximity for BvhSearch {
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
         check_bound(bound)?;
-        let mut query = self.query(robot, pose)?;
-        Ok(if bound < 0.0 { None } else { query.minimum_within(bound) })
+        self.context().minimum_within(robot, pose, bound)
     }
 
     fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
         check_margin(margin)?;
-        Ok(self.query(robot, pose)?.clears(margin))
+        self.context().clears(robot, pose, margin)
     }
 
     fn within(
@@ -326,8 +322,7 @@ impl Proximity for BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        self.query(robot, pose)?.within(margin, out);
-        Ok(())
+        self.context().within(robot, pose, margin, out)
     }
 
     fn per_link_batch(
@@ -335,10 +330,7 @@ impl Proximity for BvhSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Vec<LinkProximity>>,
     ) -> Result<(), ProximityError> {
-        self.batch(robots, out, Vec::new, |context, (robot, pose), out| {
-            Query::new(context, robot, pose)?.per_link(out);
-            Ok(())
-        })
+        self.batch(robots, out, Vec::new, |context, (robot, pose), out| context.per_link(robot, pose, out))
     }
 
     fn minimum_batch(
@@ -347,7 +339,7 @@ impl Proximity for BvhSearch {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         self.batch(robots, out, LinkProximity::unanswered, |context, (robot, pose), out| {
-            *out = Query::new(context, robot, pose)?.minimum();
+            *out = context.minimum(robot, pose)?;
             Ok(())
         })
     }
@@ -365,17 +357,15 @@ impl Proximity for BvhSearch {
             out,
             || false,
             |context, (robot, pose), out| {
-                *out = Query::new(context, robot, pose)?.clears(margin);
+                *out = context.clears(robot, pose, margin)?;
                 Ok(())
             },
         )
     }
 
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.hierarchy.mesh.check_moved(vertices)?;
-        let hierarchy = Arc::make_mut(&mut self.hierarchy);
-        hierarchy.mesh.set_vertices(vertices);
-        hierarchy.refit(self.level);
+        self.mesh.hierarchy.mesh.check_moved(vertices)?;
+        Arc::make_mut(&mut self.mesh).set_vertices(self.level, vertices);
         // It spoke of the mesh as it was.
         self.memory.forget_distances();
         Ok(())

@@ -1,11 +1,11 @@
 //! Inside or outside, as [`BvhSearch`] answers it.
 
 use super::search::BvhSearch;
-use crate::Chain;
 use crate::answer::{InsideAnswer, ProximityError, Side};
 use crate::engine::Proximity;
 use crate::pair::rigid_pose;
 use crate::query::side::Winding;
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 impl BvhSearch {
@@ -30,8 +30,10 @@ impl BvhSearch {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn side(&self, point: Vector) -> Side {
-        let (mesh, tree, fields) = self.hierarchy().around();
-        Winding { mesh, tree, fields, point }.side()
+        let prepared = self.prepared();
+        let hierarchy = &prepared.hierarchy;
+        let (mesh, tree) = (&hierarchy.mesh, hierarchy.single());
+        Winding { mesh, tree, fields: prepared.far_fields(), point }.side()
     }
 
     /// Whether every link keeps more than `margin` from the mesh and the robot's base is inside.

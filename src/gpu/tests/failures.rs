@@ -1,7 +1,6 @@
 //! Devices that fail, and drivers that do not do as they are told.
 
 use super::{ball, gpu, robot};
-use crate::Chain;
 use crate::answer::{DeviceFailure, ProximityError};
 use crate::engine::{Exhaustive, Proximity};
 use crate::gpu::batch::{Batch, BatchKernel};
@@ -9,6 +8,7 @@ use crate::gpu::device::Device;
 use crate::gpu::opened::{Gpu, Opened};
 use crate::gpu::wgsl::Shader;
 use crate::gpu::{GpuError, GpuExhaustive, Precision};
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::sync::Arc;
 

@@ -28,6 +28,13 @@ impl<E: Lane> Across<E> {
         self.0.iter_mut().for_each(|leaf| *leaf = Lazy::new());
     }
 
+    /// Finds those of all leaves.
+    pub(crate) fn prepare(&self, tree: &WideBvh<E>, mesh: &Mesh) {
+        for leaf in 0..self.0.len() as u32 {
+            self.of(leaf, tree, mesh);
+        }
+    }
+
     /// Those of a leaf, in the frame of the search.
     pub(crate) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &Corners<E> {
         self.0[leaf as usize].get_or_build(|| {

@@ -121,10 +121,10 @@ mod tests {
     use crate::distance::lanes::Lane;
     use crate::distance::lanes::tests::levels;
     use crate::mesh::{
-        BLOCK, Mesh, PART_WITHOUT, ends_of, first_of_face, from_on, load_vertices, place_face,
+        BLOCK, Mesh, PART_WITHOUT, SearchFrame, ends_of, first_of_face, from_on, load_vertices, place_face,
     };
-    use crate::pair::{PlacedLink, SearchFrame, SearchLink};
-    use crate::{Cap, ModifiedCylinder};
+    use crate::pair::{PlacedLink, SearchLink};
+    use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};

@@ -8,11 +8,41 @@ use crate::distance::dispatch;
 use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::{BLOCK, Mesh, first_of_face, load_vertices};
 use crate::pair::{LinkLanes, SearchLink};
-use crate::search::hierarchy::WideBvh;
+use crate::search::hierarchy::{Traversal, WideBvh};
 use fearless_simd::Level;
+use parry3d_f64::math::Real;
+
+/// Adds to `found` every triangle that may be at most `bound` from the link. `across` tells which lie on a slope; it is for
+/// single precision.
+pub(super) fn gather<E: Lane>(
+    mut traversal: Traversal<E>,
+    searched: &SearchLink<E>,
+    bound: Real,
+    across: Option<&Across<E>>,
+    found: &mut NearTriangles,
+) {
+    let limit = searched.axis_limit(bound);
+    let mut gathering = Gathering::new(traversal.level, searched, across, found);
+    dispatch!(traversal.level, simd => visit::<E, E::Pack<_>>(simd, &mut traversal, searched, limit, &mut gathering));
+    traversal.work.axis_distances += gathering.finish(limit);
+}
+
+#[inline(always)]
+fn visit<E: Lane, L: Pack<Element = E>>(
+    token: L::Token,
+    traversal: &mut Traversal<E>,
+    searched: &SearchLink<E>,
+    limit: E,
+    gathering: &mut Gathering<E>,
+) {
+    let (tree, mesh) = (traversal.tree, traversal.mesh);
+    traversal.visit_leaves(token, searched, limit, |lanes: &LinkLanes<L>, leaf| {
+        gathering.add(token, lanes, tree, leaf, mesh, limit);
+    });
+}
 
 /// Where triangles are gathered.
-pub(crate) struct Gathering<'a, E> {
+struct Gathering<'a, E> {
     level: Level,
     searched: &'a SearchLink<E>,
     /// Tells which lie on a slope.

@@ -6,12 +6,12 @@ mod gathering;
 mod local_minima;
 mod long_rings;
 mod near_triangle;
+mod search;
 mod slopes;
 mod wall_pieces;
 
 pub(crate) use across::Across;
-pub(crate) use gathering::Gathering;
 #[cfg(feature = "gpu")]
 pub(crate) use local_minima::contacts_by_all_triangles;
 pub(crate) use local_minima::{LocalMinima, RobotContacts, Wall};
-pub(crate) use near_triangle::NearTriangles;
+pub(crate) use search::ContactSearch;

@@ -182,9 +182,9 @@ mod tests {
     use crate::distance::lanes::Lane;
     use crate::distance::lanes::tests::levels;
     use crate::distance::{Scalar, dispatch};
-    use crate::mesh::{BLOCK, Mesh, ends_of, load_vertices, place_points, place_triangle};
-    use crate::pair::{PlacedLink, SearchFrame, SearchLink};
-    use crate::{Cap, ModifiedCylinder};
+    use crate::mesh::{BLOCK, Mesh, SearchFrame, ends_of, load_vertices, place_points, place_triangle};
+    use crate::pair::{PlacedLink, SearchLink};
+    use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};

@@ -66,7 +66,7 @@ impl FewEach {
 mod tests {
     use super::*;
     use crate::distance::lanes::tests::levels;
-    use crate::{Cap, ModifiedCylinder};
+    use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
     use parry3d_f64::math::Pose;
 

@@ -176,7 +176,8 @@ impl<E: Lane> JointSearch<'_, E> {
     fn place(&mut self, place: u32) -> Option<()> {
         let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[place as usize]);
         let frame = &self.tree.frame;
-        let searched = SearchLink::between(ends, radius, flat, frame).filter(|link| frame.resolves(link))?;
+        let searched =
+            SearchLink::between(ends, radius, flat, frame).filter(|link| link.is_resolved(frame))?;
         self.pairs.runs[place as usize] = Run {
             query: self.pairs.query,
             size: searched.length + searched.radius + searched.radius,

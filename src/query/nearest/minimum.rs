@@ -16,8 +16,44 @@ use std::ops::Range;
 /// A link of the robot and its nearest triangle.
 pub(crate) type OfLink = (usize, Nearest);
 
+/// What a query for the minimum leaves for the next.
+#[derive(Clone, Default)]
+pub(crate) struct MinimumMemory {
+    /// The closest link and its triangle at the last query.
+    last: Option<(usize, u32)>,
+    /// What the links kept.
+    kept: KeptDistances,
+}
+
+impl MinimumMemory {
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+        self.forget_distances();
+    }
+
+    /// Forgets what only holds as long as the mesh is still.
+    pub(crate) fn forget_distances(&mut self) {
+        self.kept.forget();
+    }
+}
+
+/// The closest link of a robot and its nearest triangle, if they are at most `bound` apart.
+pub(crate) fn minimum_within(
+    search: MeshSearch,
+    robot: PlacedRobot,
+    memory: &mut MinimumMemory,
+    bound: Real,
+) -> Option<OfLink> {
+    let MinimumMemory { last, kept } = memory;
+    let found = MinimumSearch::within(bound, search, robot, kept).nearest(*last);
+    if let Some((link, nearest)) = found {
+        *last = Some((link, nearest.triangle));
+    }
+    found
+}
+
 /// A search for the closest link that is at most so far away.
-pub(crate) struct MinimumSearch<'a> {
+struct MinimumSearch<'a> {
     search: MeshSearch<'a>,
     robot: PlacedRobot<'a>,
     kept: &'a mut KeptDistances,
@@ -28,7 +64,7 @@ pub(crate) struct MinimumSearch<'a> {
 }
 
 impl<'a> MinimumSearch<'a> {
-    pub(crate) fn within(
+    fn within(
         bound: Real,
         search: MeshSearch<'a>,
         robot: PlacedRobot<'a>,
@@ -38,7 +74,7 @@ impl<'a> MinimumSearch<'a> {
     }
 
     /// The closest link and triangle, if there are any. `last` are those to start with.
-    pub(crate) fn nearest(mut self, last: Option<(usize, u32)>) -> Option<OfLink> {
+    fn nearest(mut self, last: Option<(usize, u32)>) -> Option<OfLink> {
         let before = self.visited();
         self.find(last);
         self.kept.judge_cost(self.visited() - before, self.robot.links().len());

@@ -1,14 +1,15 @@
 //! The nearest triangle of every link, of the robot, and whether a margin is kept.
 
+mod clears;
 mod few_each;
 mod joint;
-pub(crate) mod memory;
+mod keeps_away;
+mod memory;
 mod minimum;
-mod robot_search;
+mod per_link;
 mod rough_sides;
 
-pub(crate) use few_each::FewEach;
-pub(crate) use joint::{JointSearch, Pairs};
-pub(crate) use minimum::{MinimumSearch, OfLink};
-pub(crate) use robot_search::RobotSearch;
+pub(crate) use clears::{ClearsMemory, ClearsSearch};
+pub(crate) use minimum::{MinimumMemory, OfLink, minimum_within};
+pub(crate) use per_link::{PerLinkMemory, per_link};
 pub(crate) use rough_sides::RoughSides;

@@ -200,7 +200,7 @@ fn centroids(triangle @ [a, b, c]: [Vector; 3], count: usize) -> impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Chain;
+    use crate::robot::Chain;
     use parry3d_f64::math::Pose;
     use parry3d_f64::shape::Ball;
 

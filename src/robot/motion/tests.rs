@@ -1,7 +1,7 @@
 //! Stated speeds against dense sampling, between any two shares and any two times.
 
 use super::{BendingMotion, LinearMotion, Motion, RigidMotion};
-use crate::BendingSection;
+use crate::robot::BendingSection;
 use crate::robot::Tube;
 use continuum_testing::Random;
 use parry3d_f64::math::{Real, Vector};

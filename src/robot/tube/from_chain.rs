@@ -7,7 +7,7 @@ use super::section::{Face, Section};
 use crate::robot::algorithm_1;
 use crate::robot::modified_cylinder::has_direction;
 use crate::robot::scale::{direction, length};
-use crate::{Cap, Chain};
+use crate::robot::{Cap, Chain};
 use parry3d_f64::math::{Real, Vector};
 
 /// Each link is a section of its own, with the link's caps. Queries have no error but rounding, so any tolerance will do.

@@ -2,8 +2,7 @@
 
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
-use crate::mesh::{BLOCK, Mesh, load, load_vertices, place_triangle, store};
-use crate::pair::SearchFrame;
+use crate::mesh::{BLOCK, Mesh, SearchFrame, load, load_vertices, place_triangle, store};
 use crate::threads::each;
 
 /// Rows of a block that bound its triangles: a sphere's centre and radius.

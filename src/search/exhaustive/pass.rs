@@ -3,11 +3,11 @@
 use super::blocks::Blocks;
 use super::kernels::Kernels;
 use super::scan::{Findings, Job, JobLink, SharedBound};
-use crate::Chain;
 use crate::answer::{LinkProximity, ProximityError, Work};
 use crate::distance::Scalar;
 use crate::mesh::Mesh;
 use crate::pair::{Nearest, PlacedRobot, SearchLink};
+use crate::robot::Chain;
 use crate::threads::{Lazy, each, threads};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
@@ -161,7 +161,7 @@ impl<T: Kernels> Pass<T> {
             for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
                 let bound = if aim == Aim::EachLink { place } else { number };
                 let searched = SearchLink::new(&link, frame);
-                if is_double || searched.as_ref().is_some_and(|searched| frame.resolves(searched)) {
+                if is_double || searched.as_ref().is_some_and(|searched| searched.is_resolved(frame)) {
                     links.push(JobLink { link, searched, place, bound });
                 } else {
                     let searched = SearchLink::new(&link, &triangles.double(level).frame);

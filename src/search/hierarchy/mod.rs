@@ -4,10 +4,13 @@ mod bound;
 mod build;
 mod candidates;
 mod fit;
+mod hierarchies;
 mod mesh_search;
 mod node;
 mod traverse;
 
 pub(crate) use build::WideBvh;
-pub(crate) use mesh_search::{Hierarchy, KeepsAway, MeshSearch, Scratch};
+pub(crate) use hierarchies::{Hierarchy, Searched};
+pub(crate) use mesh_search::{MeshSearch, Scratch};
 pub(crate) use node::{Child, WIDTH};
+pub(crate) use traverse::Traversal;

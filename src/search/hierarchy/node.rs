@@ -4,8 +4,7 @@ use super::bound::{BOUND_ROWS, NodeBound, NodeBounds};
 #[cfg(test)]
 use crate::distance::Vec3;
 use crate::distance::lanes::{Lane, Pack};
-use crate::mesh::{BLOCK, Mesh, load, place_face};
-use crate::pair::SearchFrame;
+use crate::mesh::{BLOCK, Mesh, SearchFrame, load, place_face};
 use std::ops::Range;
 
 /// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.

@@ -15,7 +15,6 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::mesh::{BLOCK, Mesh, load_vertices};
 use crate::pair::{Best, LinkLanes, PlacedLink, SearchLink, TOGETHER};
-use crate::query::contacts::{Across, Gathering, NearTriangles};
 use fearless_simd::Level;
 
 /// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
@@ -173,29 +172,14 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Aim::Any(true))
     }
 
-    /// Adds to `found` every triangle that may be at most `bound` from the link. `across` tells which lie on a slope; it
-    /// is for single precision.
-    pub(crate) fn within(
-        &mut self,
-        searched: &SearchLink<E>,
-        bound: f64,
-        across: Option<&Across<E>>,
-        found: &mut NearTriangles,
-    ) {
-        let limit = searched.axis_limit(bound);
-        let mut gathering = Gathering::new(self.level, searched, across, found);
-        dispatch!(self.level, simd => self.gather::<E::Pack<_>>(simd, searched, limit, &mut gathering));
-        self.work.axis_distances += gathering.finish(limit);
-    }
-
-    /// Meets every leaf that may hold a triangle within the limit, in the order in which they come.
+    /// Hands over every leaf that may hold a triangle within the limit, in the order in which they come.
     #[inline(always)]
-    fn gather<L: Pack<Element = E>>(
+    pub(crate) fn visit_leaves<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         searched: &SearchLink<E>,
         limit: E,
-        gathering: &mut Gathering<E>,
+        mut visit: impl FnMut(&LinkLanes<L>, u32),
     ) {
         let lanes = LinkLanes::<L>::new(token, searched);
         let squared_limit = searched.squared_limit_of_bounds(limit);
@@ -213,7 +197,7 @@ impl<E: Lane> Traversal<'_, E> {
                     Child::Node(node) => waiting.push(node),
                     Child::Leaf(leaf) => {
                         self.work.visited += BLOCK as u64;
-                        gathering.add(token, &lanes, self.tree, leaf, self.mesh, limit);
+                        visit(&lanes, leaf);
                     }
                 }
             }

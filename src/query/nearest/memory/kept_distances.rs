@@ -8,7 +8,7 @@
 use super::outline::{Origin, Outline, ROUNDING};
 use super::widening::Widening;
 use crate::pair::PlacedRobot;
-use crate::search::hierarchy::KeepsAway;
+use crate::query::nearest::keeps_away::KeepsAway;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 

@@ -1,0 +1,67 @@
+//! The coordinates in which a link and a triangle are measured.
+//!
+//! Each pair of link and triangle is measured in coordinates of its own, from the link's start and multiplied by the
+//! power of two that brings the largest of them near one. So neither far parts of the scene nor its place nor its unit
+//! play a part in the rounding, and nothing overflows or vanishes. Distances and bounds outside of a pair are plain
+//! ones, in the unit of the mesh.
+
+use super::nearest::Nearest;
+use super::placed_link::PlacedLink;
+use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2.
+pub(super) const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+
+/// A link and a triangle in coordinates of their own.
+pub(crate) struct Pair {
+    pub triangle: [Vec3<Real>; 3],
+    pub link: Link<Real>,
+    /// What 1 is in the mesh's unit.
+    pub unit: Real,
+}
+
+impl Pair {
+    /// A lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
+    pub(super) fn at_least(&self) -> Real {
+        let [a, b, c] = self.triangle;
+        let centre = (a + b + c) * (1.0 / 3.0);
+        let normal = offset_from_axis(&self.link, centre);
+        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
+        beyond.over(normal.norm()) - self.link.radius - SLACK
+    }
+
+    /// An answer in the mesh's frame, in which the pair's origin is `start` and 1 is `unit`.
+    pub(crate) fn report(unit: Real, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
+        let place = |point: Vec3<Real>| start + Vector::from(point) * unit;
+        let (distance, on_mesh) = (closest.distance * unit, place(closest.point1));
+        // One common point where they touch: rounding may have put the two apart.
+        let on_robot = if distance > 0.0 { place(closest.point2) } else { on_mesh };
+        Nearest { triangle, distance, on_robot, on_mesh }
+    }
+}
+
+/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is rounded but the
+/// link's direction.
+pub(crate) fn place_exactly(
+    link: &PlacedLink,
+    corners: [Vector; 3],
+) -> ([Vec3<DoubleDouble>; 3], Link<DoubleDouble>) {
+    let pair = link.pair(corners);
+    let scale = 1.0 / pair.unit;
+    let offset = |point: Vector| {
+        let coordinate = |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
+        let (to, from) = (point, link.start());
+        Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
+    };
+    let has_axis = pair.link.axis != Vec3::zero(0.0);
+    let flat = link.flat().map(|flat| flat && has_axis);
+    let placed = Link::new(offset(link.end()), pair.link.radius.into(), flat);
+    (corners.map(offset), placed)
+}
+
+/// From the axis point nearest to `point` to that point.
+pub(super) fn offset_from_axis(link: &Link<Real>, point: Vec3<Real>) -> Vec3<Real> {
+    let t = point.dot(link.axis).max(0.0).min(link.end.dot(link.axis));
+    point.along(link.axis, -t)
+}

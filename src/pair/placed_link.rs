@@ -1,0 +1,172 @@
+//! A link in the mesh's frame, and how near a triangle is to it.
+
+use super::coordinates::{Pair, SLACK, offset_from_axis};
+use super::nearest::Nearest;
+use crate::distance::{Axial, Face, Link, Scalar, Vec3, gives_direction, segment_segment};
+use crate::robot::ModifiedCylinder;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// A link in the mesh's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedLink {
+    start: Vector,
+    end: Vector,
+    /// From start to end.
+    along: Vector,
+    /// The unit direction of the axis, or zero without one.
+    axis: Vec3<Real>,
+    radius: Real,
+    flat: [bool; 2],
+    /// The largest coordinate from the start, or the radius.
+    extent: Real,
+}
+
+impl PlacedLink {
+    /// The link at `pose`.
+    pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose) -> Self {
+        Self::of(&link.transformed(pose))
+    }
+
+    /// A link that is in the mesh's frame.
+    pub(crate) fn of(link: &ModifiedCylinder) -> Self {
+        Self::between(link.start(), link.end(), link.radius(), link.flat())
+    }
+
+    pub(crate) fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
+        let along = end - start;
+        let extent = along.abs().max_element().max(radius);
+        Self { start, end, along, axis: Vec3::from(along).normalised(), radius, flat, extent }
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.start.is_finite() && self.end.is_finite() && self.radius.is_finite()
+    }
+
+    /// The share of the axis at which it is nearest to a point.
+    pub(crate) fn share_of(&self, point: Vector) -> Real {
+        let share = (point - self.start).dot(self.along) / self.along.length_squared();
+        // 0 / 0 without a length: the comparison turns it into 0.
+        if share > 0.0 { share.min(1.0) } else { 0.0 }
+    }
+
+    pub(crate) fn start(&self) -> Vector {
+        self.start
+    }
+
+    pub(crate) fn end(&self) -> Vector {
+        self.end
+    }
+
+    pub(crate) fn along(&self) -> Vector {
+        self.along
+    }
+
+    pub(crate) fn axis(&self) -> Vec3<Real> {
+        self.axis
+    }
+
+    pub(crate) fn radius(&self) -> Real {
+        self.radius
+    }
+
+    pub(crate) fn flat(&self) -> [bool; 2] {
+        self.flat
+    }
+
+    /// The largest coordinate from the start, or the radius.
+    pub(crate) fn extent(&self) -> Real {
+        self.extent
+    }
+
+    /// The nearest points of the link and a triangle.
+    pub(crate) fn measure(&self, triangle: u32, corners: [Vector; 3]) -> Nearest {
+        let pair = self.pair(corners);
+        let face = Face::new(pair.triangle);
+        Pair::report(
+            pair.unit,
+            self.start,
+            triangle,
+            Axial::new(&pair.link, &face).with_caps(&pair.link, &face),
+        )
+    }
+
+    /// A lower bound on the distance between link and triangle.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn at_least(&self, corners: [Vector; 3]) -> Real {
+        let pair = self.pair(corners);
+        pair.at_least() * pair.unit
+    }
+
+    /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
+    pub(super) fn measure_within(&self, bound: Real, triangle: u32, corners: [Vector; 3]) -> Option<Nearest> {
+        let pair = self.pair(corners);
+        // Bounds are brought into the mesh's unit, and not the other way: whatever is rounded there, the distance is too.
+        if pair.at_least() * pair.unit > bound {
+            return None;
+        }
+        let face = Face::new(pair.triangle);
+        let axial = Axial::new(&pair.link, &face);
+        let closest = if !axial.beyond_flat_cap() {
+            axial.without_caps(&pair.link)
+        } else if axial.cap_bounds(&pair.link, &face).0 * pair.unit > bound {
+            return None;
+        } else {
+            axial.with_caps(&pair.link, &face)
+        };
+        let nearest = Pair::report(pair.unit, self.start, triangle, closest);
+        (nearest.distance <= bound).then_some(nearest)
+    }
+
+    /// Whether the link is at most `bound` from the segment between two points.
+    pub(crate) fn comes_within(&self, bound: Real, from: Vector, to: Vector) -> bool {
+        // The capsule around the link is quick to measure, and no farther.
+        let pair = self.pair([from, to, to]);
+        let [from, to, _] = pair.triangle;
+        let axis = segment_segment([Vec3::zero(0.0), pair.link.end], [from, to]).distance;
+        if (axis - pair.link.radius - SLACK) * pair.unit > bound {
+            return false;
+        }
+        let edge = Face::new(pair.triangle);
+        Axial::new(&pair.link, &edge).with_caps(&pair.link, &edge).distance * pair.unit <= bound
+    }
+
+    /// The largest coordinate of link and triangle from the link's start, or the radius.
+    pub(crate) fn extent_with(&self, corners: [Vector; 3]) -> Real {
+        let [a, b, c] = corners.map(|corner| (corner - self.start).abs());
+        a.max(b).max(c).max_element().max(self.extent)
+    }
+
+    pub(crate) fn pair(&self, corners: [Vector; 3]) -> Pair {
+        let offsets = corners.map(|corner| corner - self.start);
+        let extent = self.extent_with(corners);
+        let scale = extent.power_of_two_to_unity();
+        let end = Vec3::from(self.along * scale);
+        // A length whose square vanishes beside the triangle tells no direction.
+        let axis = if gives_direction(end.norm_squared()) { self.axis } else { Vec3::zero(0.0) };
+        Pair {
+            triangle: offsets.map(|offset| Vec3::from(offset * scale)),
+            link: Link { end, axis, radius: self.radius * scale, flat: self.flat },
+            unit: 1.0 / scale,
+        }
+    }
+
+    /// A lower bound on the distance between the link and anything in the box.
+    ///
+    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies behind a plane
+    /// with normal v before its ends, and the box beyond the one through its corner on that side. But for rounding
+    /// the bound is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
+    /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
+    /// badly.
+    pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
+        let (low, high) = (mins - self.start, maxs - self.start);
+        let scale = low.abs().max(high.abs()).max_element().max(self.extent).power_of_two_to_unity();
+        let half = (high - low) * (0.5 * scale);
+        let centre = Vec3::from(low * scale + half);
+        let end = Vec3::from(self.along * scale);
+        let link = Link { end, axis: self.axis, radius: self.radius * scale, flat: self.flat };
+        let normal = offset_from_axis(&link, centre);
+        let corner = half.dot(Vector::from(normal).abs());
+        let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
+        ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
+    }
+}

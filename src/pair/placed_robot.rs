@@ -1,0 +1,112 @@
+//! The robot in the mesh's frame.
+
+use super::checks::{check_range, rigid_pose};
+use super::placed_link::PlacedLink;
+use crate::answer::ProximityError;
+use crate::distance::Scalar;
+use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// A robot at a pose in the frame of a mesh, whose links are placed when they are needed.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedRobot<'a> {
+    robot: &'a Chain,
+    /// Its rotation is of unit length.
+    pose: Pose,
+    /// Base and tip in the mesh's frame.
+    ends: [Vector; 2],
+    /// By how much a rotation that is not quite of unit length stretches the robot.
+    stretch: Real,
+    /// What rounding can do to the place of a link in a capsule.
+    ///
+    /// A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, the length of the error), and a moved one by u more
+    /// of where it comes to be. |q|^2 |p| is no longer than that place and the translation together, and a length at most
+    /// 1.74 times its largest coordinate: 37 u of the largest coordinates of both. Twice that, for the capsule and for the
+    /// link, is less than 128 u.
+    slack: Real,
+}
+
+impl<'a> PlacedRobot<'a> {
+    /// # Errors
+    /// The pose is not finite or not rigid, or moves a link out of range.
+    pub(crate) fn new(robot: &'a Chain, pose: &Pose) -> Result<Self, ProximityError> {
+        let pose = rigid_pose(pose)?;
+        let links = robot.links();
+        let ends = [pose * links[0].start(), pose * links[links.len() - 1].end()];
+        check_range(robot, &pose, ends)?;
+        let stretch = pose.rotation.length_squared().max(1.0);
+        let around = match robot.link_tree()[0] {
+            LinkNode::Inner { bound, .. } => bound.radius * stretch,
+            LinkNode::Leaf(_) => 0.0,
+        };
+        let largest = ends[0].abs().max(ends[1].abs()).max(pose.translation.abs()).max_element();
+        let slack = 128.0 * Real::UNIT_ROUNDOFF * (2.0 * largest + around);
+        Ok(Self { robot, pose, ends, stretch, slack })
+    }
+
+    /// The links in the robot's frame.
+    pub(crate) fn links(&self) -> &'a [ModifiedCylinder] {
+        self.robot.links()
+    }
+
+    /// A link in the mesh's frame.
+    pub(crate) fn link(&self, link: usize) -> PlacedLink {
+        PlacedLink::new(&self.robot.links()[link], &self.pose)
+    }
+
+    /// All links in the mesh's frame.
+    pub(crate) fn placed_links(&self) -> impl Iterator<Item = PlacedLink> {
+        self.robot.links().iter().map(|link| PlacedLink::new(link, &self.pose))
+    }
+
+    /// How long the links before a link are, together.
+    pub(crate) fn length_before(&self, link: usize) -> Real {
+        self.robot.length_before(link)
+    }
+
+    pub(crate) fn link_tree(&self) -> &'a [LinkNode] {
+        self.robot.link_tree()
+    }
+
+    /// A capsule around links in the mesh's frame.
+    pub(crate) fn bound(&self, bound: &BoundingCapsule) -> PlacedLink {
+        let ([start, end], radius) = self.capsule(bound);
+        PlacedLink::between(start, end, radius, [false; 2])
+    }
+
+    /// The ends of its axis, and a radius that holds the links as they are placed one by one.
+    #[inline(always)]
+    fn capsule(&self, bound: &BoundingCapsule) -> ([Vector; 2], Real) {
+        ([self.pose * bound.start, self.pose * bound.end], bound.radius * self.stretch + self.slack)
+    }
+
+    /// Base and tip in the mesh's frame.
+    pub(crate) fn ends(&self) -> [Vector; 2] {
+        self.ends
+    }
+
+    /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame; the radius; which caps
+    /// are flat.
+    #[inline(always)] // what it hands over is used at once
+    pub(crate) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
+        match node {
+            LinkNode::Inner { bound, .. } => {
+                let (ends, radius) = self.capsule(bound);
+                (ends, radius, [false; 2])
+            }
+            LinkNode::Leaf(link) => {
+                let link = self.robot.links()[*link].transformed(&self.pose);
+                ([link.start(), link.end()], link.radius(), link.flat())
+            }
+        }
+    }
+
+    /// A point of the robot in the mesh's frame.
+    pub(crate) fn placed(&self, point: Vector) -> Vector {
+        self.pose * point
+    }
+
+    pub(crate) fn in_robot_frame(&self, point: Vector) -> Vector {
+        self.pose.inverse_transform_point(point)
+    }
+}

@@ -1,0 +1,63 @@
+//! The contacts of a robot by search: those of every link whose surroundings hold a part of the wall.
+
+use super::across::Across;
+use super::gathering::gather;
+use super::local_minima::{LocalMinima, RobotContacts, Wall};
+use super::near_triangle::NearTriangles;
+use crate::answer::Contact;
+use crate::pair::{PlacedLink, PlacedRobot};
+use crate::robot::LinkNode;
+use crate::search::hierarchy::{MeshSearch, Searched};
+use crate::threads::Lazy;
+use parry3d_f64::math::Real;
+
+/// A search that tells which triangles lie on a slope towards a neighbour.
+pub(crate) struct ContactSearch<'a> {
+    pub search: MeshSearch<'a>,
+    /// Begun at the first question.
+    pub across: &'a Lazy<Across<f32>>,
+}
+
+impl ContactSearch<'_> {
+    /// Every contact of the robot at most `margin` away, link by link.
+    pub(crate) fn within(
+        &mut self,
+        robot: PlacedRobot,
+        margin: Real,
+        minima: &mut LocalMinima,
+        out: &mut Vec<Contact>,
+    ) {
+        let (level, hierarchy) = (self.search.level, self.search.hierarchy);
+        let wall = Wall { mesh: &hierarchy.mesh, place_of: &hierarchy.single().place_of };
+        let mut contacts = RobotContacts::new(level, wall, robot, margin, minima, out);
+        let (tree, mut place) = (robot.link_tree(), 0);
+        while let Some(node) = tree.get(place) {
+            match node {
+                LinkNode::Inner { bound, below } => {
+                    if !self.search.may_meet(&robot.bound(bound), margin) {
+                        place += below;
+                    }
+                }
+                LinkNode::Leaf(link) => {
+                    contacts.add(*link, |link, near| self.near(link, margin, near));
+                }
+            }
+            place += 1;
+        }
+        self.search.scratch.work.measured += contacts.finish();
+    }
+
+    /// Adds to `found` the triangles that may be at most `bound` from a link.
+    fn near(&mut self, link: &PlacedLink, bound: Real, found: &mut NearTriangles) {
+        let hierarchy = self.search.hierarchy;
+        match hierarchy.searched(self.search.level, link) {
+            Searched::Single(searched) => {
+                let across = self.across.get_or_build(|| Across::new(hierarchy.single()));
+                gather(self.search.single(), &searched, bound, Some(across), found);
+            }
+            // Such links are rare: they do without the corners beyond the edges.
+            Searched::Double(searched) => gather(self.search.double(), &searched, bound, None, found),
+            Searched::OutOfReach => found.add_unknown(0..hierarchy.mesh.len() as u32),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Whether a robot keeps a margin.
+//!
+//! What the last query proved may still hold for a robot that has moved a little. If not, a search for a little more than
+//! the margin tells the next queries as well, where robots move little. A robot that is new is asked about first where it
+//! seems to pass through the wall.
+
+use super::joint::{JointSearch, Pairs};
+use super::keeps_away::KeepsAway;
+use super::memory::KeptDistances;
+use super::rough_sides::RoughSides;
+use crate::pair::{Best, PlacedRobot};
+use crate::search::hierarchy::{MeshSearch, Scratch};
+use parry3d_f64::math::Real;
+
+/// What a query about a margin leaves for the next.
+#[derive(Clone, Default)]
+pub(crate) struct ClearsMemory {
+    single: Pairs<f32>,
+    double: Pairs<f64>,
+    kept: KeptDistances,
+}
+
+impl ClearsMemory {
+    pub(crate) fn forget(&mut self) {
+        self.single.forget();
+        self.double.forget();
+        self.forget_distances();
+    }
+
+    /// Forgets what only holds as long as the mesh is still.
+    pub(crate) fn forget_distances(&mut self) {
+        self.kept.forget();
+    }
+}
+
+/// A search for anything at most a margin from a robot.
+pub(crate) struct ClearsSearch<'a> {
+    pub search: MeshSearch<'a>,
+    pub sides: &'a RoughSides,
+    pub robot: PlacedRobot<'a>,
+    pub memory: &'a mut ClearsMemory,
+}
+
+impl ClearsSearch<'_> {
+    /// Whether every link keeps more than the margin away.
+    pub(crate) fn clears(&mut self, margin: Real) -> bool {
+        let (robot, reach) = (self.robot, self.search.hierarchy.reach);
+        if self.memory.kept.all_keep(robot, margin) {
+            return true;
+        }
+        if let Some(wider) = self.memory.kept.wider(robot, margin, Real::INFINITY, reach) {
+            if let Some(known) = self.keeps_away(margin + wider) {
+                self.memory.kept.keep_all(robot, margin + wider, known, reach);
+                return true;
+            }
+            self.memory.kept.miss();
+        }
+        self.keeps_away(margin).is_some()
+    }
+
+    /// What of the robot is known to keep more than `margin` away. None where some link does not.
+    fn keeps_away(&mut self, margin: Real) -> Option<KeepsAway> {
+        let robot = self.robot;
+        let MeshSearch { level, hierarchy, scratch } = &mut self.search;
+        let (level, mesh) = (*level, &hierarchy.mesh);
+        let Scratch { work, .. } = &mut **scratch;
+        let ClearsMemory { single, double, .. } = &mut *self.memory;
+        let first = self.sides.crossing(robot);
+        let search =
+            JointSearch { level, tree: hierarchy.single(), robot, margin, first, pairs: single, work };
+        let mut answer = search.keeps_away(mesh);
+        let mut even_capsule = single.speak_for_capsule();
+        if answer.is_none() {
+            let tree = hierarchy.double(level);
+            let search = JointSearch { level, tree, robot, margin, first, pairs: double, work };
+            answer = search.keeps_away(mesh);
+            even_capsule = double.speak_for_capsule();
+        }
+        if let Some(keeps_away) = answer {
+            let known = if even_capsule { KeepsAway::Capsule } else { KeepsAway::Links };
+            return keeps_away.then_some(known);
+        }
+        let mut is_away =
+            |link| self.search.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none();
+        robot.placed_links().all(&mut is_away).then_some(KeepsAway::Links)
+    }
+}
