@@ -88,6 +88,7 @@ pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send, E: Send>(
 mod tests {
     use super::*;
     use std::collections::HashSet;
+    use std::convert::Infallible;
     use std::sync::Mutex;
     use std::thread::{self, ThreadId};
     use std::time::Duration;
@@ -115,11 +116,12 @@ mod tests {
 
     fn threads_of_shares() -> HashSet<ThreadId> {
         let (mut answers, mut memories) = ([None; 64], Vec::<()>::new());
-        let answered = in_shares(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
-            thread::sleep(Duration::from_millis(1));
-            answers.fill(Some(thread::current().id()));
-            Ok(())
-        });
+        let answered =
+            in_shares::<_, _, _, Infallible>(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
+                thread::sleep(Duration::from_millis(1));
+                answers.fill(Some(thread::current().id()));
+                Ok(())
+            });
         assert!(answered.is_ok());
         answers.into_iter().flatten().collect()
     }
