@@ -286,14 +286,14 @@ fn ratio(of: Duration, to: Duration) -> f64 {
 /// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
 fn nearest(links: &[LinkProximity], curve: Option<Clearance>, pieces: &[TubePiece]) -> Option<String> {
     if let Some(curve) = curve {
-        let Clearance { lower, upper, arc_length, .. } = curve;
+        let (lower, upper, arc_length) = (curve.lower, curve.upper, curve.arc_length);
         let count = pieces.len();
         return Some(format!(
             "the curve, in {count} pieces: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"
         ));
     }
     let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    let LinkProximity { link, triangle, distance, .. } = nearest;
+    let (link, triangle, distance) = (nearest.link, nearest.triangle, nearest.distance);
     Some(format!("closest: link {link} and triangle {triangle}, {distance:.3} mm apart"))
 }
 

@@ -3,8 +3,8 @@
 #[cfg(feature = "gpu")]
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
-    Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, FirstContact, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, ProximityError, Side, TriangleFeature, TubePiece,
-    Work,
+    Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer, LinkFeature,
+    LinkProximity, MeshError, MotionAnswer, ProximityError, ShapeInContact, Side, TriangleFeature, TubePiece,
+    Witness, Work,
 };
 pub use crate::engine::{BvhSearch, Exhaustive, Proximity, SearchPrecision};

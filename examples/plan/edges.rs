@@ -4,7 +4,7 @@ use continuum_demo::ctr::{Joints, Robot};
 use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::steer::Random;
 use parry_continuum::parry::math::{Pose, Real};
-use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
+use parry_continuum::proximity::{BvhSearch, Decision};
 use parry_continuum::{Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
@@ -107,8 +107,7 @@ impl Edges<'_> {
         let begin = Instant::now();
         let is_clear = match self.check {
             Check::Proof => {
-                self.search.clears_motion(&motion, self.margin, RESOLUTION).map_err(text)?
-                    == MotionAnswer::Clear
+                self.search.clears_motion(&motion, self.margin, RESOLUTION).map_err(text)?.is_clear()
             }
             Check::Steps(step) => self.is_clear_in_steps(&motion, step)?,
         };
@@ -138,7 +137,7 @@ impl Edges<'_> {
         let tubes: Vec<_> = tubes.iter().map(|(tube, pose)| (tube, *pose)).collect();
         let mut decisions = Vec::new();
         self.search.tube_clears_batch(&tubes, self.margin, RESOLUTION, &mut decisions).map_err(text)?;
-        let is_clear = decisions.into_iter().map(|decision| decision == Decision::Clear);
+        let is_clear = decisions.into_iter().map(|decision| decision == Ok(Decision::Clear));
         Ok(places
             .into_iter()
             .zip(is_clear)

@@ -1,7 +1,9 @@
 //! Where and how link and wall are nearest: what a controller needs beyond two points.
 
+use super::Witness;
 use super::feature::ContactFeature;
 use parry3d_f64::math::{Real, Vector};
+use std::ops::{Deref, DerefMut};
 
 /// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
 ///
@@ -15,10 +17,6 @@ pub struct Contact {
     pub link: u32,
     /// Where along the link's axis, from 0 at its start to 1 at its end.
     pub fraction: Real,
-    /// Where along the chain's centreline, from the base.
-    pub arc_length: Real,
-    /// The triangle's position in the mesh.
-    pub triangle: u32,
     /// Which parts of link and triangle are nearest to each other.
     pub feature: ContactFeature,
     /// The distance between link and triangle, 0 where they touch or overlap.
@@ -34,10 +32,8 @@ pub struct Contact {
     /// is as short, as far as rounding can tell (16 u of the extent): where the axis lies in the plane of the triangle and
     /// meets it, neither side is the robot's.
     pub normal: Option<Vector>,
-    /// The link's closest point.
-    pub on_robot: Vector,
-    /// The triangle's closest point; the same as `on_robot` where the distance is 0.
-    pub on_mesh: Vector,
+    /// The two closest points, and where they are. The arc length is that of `fraction`.
+    pub witness: Witness,
     /// From the point of the axis at `fraction` to the link's closest point, or the one that parts last: the arm on which
     /// a turn of the link moves that point.
     pub lever: Vector,
@@ -52,7 +48,7 @@ impl Contact {
     /// How fast the distance changes with a joint q, or with time: the derivative of [`depth`](Self::depth), which is the
     /// [`distance`](Self::distance) where they are apart. The wall stands still.
     ///
-    /// `velocity` is dc/dq, that of the centreline's point at [`arc_length`](Self::arc_length), and `angular_velocity`
+    /// `velocity` is dc/dq, that of the centreline's point at [`arc_length`](Witness::arc_length), and `angular_velocity`
     /// is how the link turns there, dt/dq = angular_velocity x t for its direction t; both in the mesh's frame. A turn
     /// about the link's own axis has no effect. Beside the link and beyond a round cap only the velocity counts; at a
     /// flat cap the turn moves the closest point on its lever:
@@ -122,5 +118,19 @@ impl Contact {
             let (velocity, angular_velocity) = jacobian(self.arc_length, joint);
             self.rate(velocity, angular_velocity)
         }));
+    }
+}
+
+impl Deref for Contact {
+    type Target = Witness;
+
+    fn deref(&self) -> &Witness {
+        &self.witness
+    }
+}
+
+impl DerefMut for Contact {
+    fn deref_mut(&mut self) -> &mut Witness {
+        &mut self.witness
     }
 }

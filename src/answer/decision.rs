@@ -1,13 +1,13 @@
 //! Yes, no, or too close to tell.
 
-/// Whether a tube keeps a margin.
+/// Whether a margin is kept: by a tube, by a motion at every time, by all of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Decision {
-    /// Its clearance is more than the margin.
+    /// The clearance is more than the margin. This is proven.
     Clear,
-    /// Its clearance is at most the margin.
-    Touches,
-    /// Its clearance is within the resolution of the margin.
+    /// The clearance is at most the margin. This is proven.
+    Contact,
+    /// Neither: the clearance is within the resolution of the margin, or the input leaves it open.
     Undecided,
 }

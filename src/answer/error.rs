@@ -2,10 +2,12 @@
 
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
+use strum::IntoStaticStr;
 use thiserror::Error;
 
 /// Why a mesh cannot be queried.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum MeshError {
     /// A vertex has a coordinate that is NaN or infinite.
@@ -54,7 +56,8 @@ pub enum MeshError {
 }
 
 /// Why a query has no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum ProximityError {
     /// The robot's pose has a component that is NaN or infinite.
@@ -94,6 +97,14 @@ pub enum ProximityError {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
     },
+    /// What is asked for cannot be answered yet.
+    #[error("`{parameter}` is {value}; only 0 is answered for now")]
+    NotYet {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+        /// The number that was given.
+        value: Real,
+    },
     /// The bounds of a tube cannot come as close as was asked for.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \
@@ -107,8 +118,8 @@ pub enum ProximityError {
         /// What the samples and the stated error allow here.
         possible: Real,
     },
-    /// A tube has no section, because its samples were refused.
-    #[error("the tube is empty because its last samples were refused; give it good ones")]
+    /// A motion left its tube empty.
+    #[error("the motion gave a tube without points; fill the tube in `Motion::shape`")]
     EmptyTube,
     /// The curve of a tube has a coordinate that is NaN or infinite.
     #[error("the tube's curve is not finite near the arc length {arc_length}; repair the function")]
@@ -180,7 +191,8 @@ pub enum ProximityError {
 
 /// How a GPU failed. Each engine on that GPU tells of it, by the query that comes next; the one after that may succeed.
 #[cfg(feature = "gpu")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum DeviceFailure {
     /// It was reset or removed. It answers nothing more.
@@ -195,4 +207,33 @@ pub enum DeviceFailure {
     /// It did not write its answer.
     #[error("the GPU did not answer; update its driver, or use an engine on the CPU")]
     Unanswered,
+}
+
+impl MeshError {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    pub fn kind(&self) -> &'static str {
+        self.into()
+    }
+}
+
+impl ProximityError {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that of the error
+    /// that it passes on.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Motion(error) => error.kind(),
+            Self::Mesh(error) => error.kind(),
+            #[cfg(feature = "gpu")]
+            Self::Device(error) => error.kind(),
+            other => other.into(),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl DeviceFailure {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    pub fn kind(&self) -> &'static str {
+        self.into()
+    }
 }

@@ -7,16 +7,13 @@ mod decision;
 mod derivative;
 mod error;
 mod feature;
-mod first_contact;
 mod inside_answer;
 mod link_proximity;
 mod motion_answer;
-#[cfg(feature = "serde-serialize")]
-mod motion_serialised;
-#[cfg(feature = "serde-serialize")]
-mod place;
+mod shape_in_contact;
 mod side;
 mod tube_piece;
+mod witness;
 mod work;
 
 pub use certificate::Certificate;
@@ -28,10 +25,11 @@ pub use derivative::Derivative;
 pub use error::DeviceFailure;
 pub use error::{MeshError, ProximityError};
 pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
-pub use first_contact::FirstContact;
 pub use inside_answer::InsideAnswer;
 pub use link_proximity::LinkProximity;
 pub use motion_answer::MotionAnswer;
+pub use shape_in_contact::ShapeInContact;
 pub use side::Side;
 pub use tube_piece::TubePiece;
+pub use witness::Witness;
 pub use work::Work;

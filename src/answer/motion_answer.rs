@@ -1,41 +1,78 @@
-//! Whether a motion is clear. Points are in the mesh's frame and unit.
+//! An answer about a motion.
 
-use parry3d_f64::math::{Real, Vector};
+use super::{Decision, ShapeInContact};
+use parry3d_f64::math::Real;
 
-/// Whether a motion keeps a margin from the mesh.
+/// Whether a motion keeps a margin from the mesh, until when, and which shape does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde-serialize",
-    serde(try_from = "super::motion_serialised::Answer", into = "super::motion_serialised::Answer")
-)]
+#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
 #[non_exhaustive]
-pub enum MotionAnswer {
-    /// The clearance is more than the margin at every time from 0 to 1.
-    Clear,
-    /// There is a shape whose clearance is at most the margin.
-    #[non_exhaustive]
-    Contact {
-        /// The time of the shape.
-        t: Real,
-        /// Its clearance is at most this, which is at most the margin.
-        upper: Real,
-        /// The arc length on the centreline at the place that realises `upper`.
-        arc_length: Real,
-        /// The section of constant radius at that place, counted from the base.
-        section: u32,
-        /// The triangle there.
-        triangle: u32,
-        /// A point of the tube that is `upper` away from `on_mesh`, or nearer.
-        on_robot: Vector,
-        /// A point of the triangle; the same as `on_robot` where `upper` is 0.
-        on_mesh: Vector,
-    },
-    /// No such shape was found, but one whose clearance is at most the margin and the resolution; or one in which the end
-    /// of a link becomes flat or round, so close to the mesh that this decides.
-    #[non_exhaustive]
-    Undecided {
-        /// The first interval of time in which there is one. The clearance is more than the margin before it.
+pub struct MotionAnswer {
+    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shape was found that is at most the margin away,
+    /// but one that is so by the resolution more; or one in which the end of a link becomes flat or round, so close to the
+    /// mesh that this decides.
+    pub decision: Decision,
+    /// The first interval of time in which the margin may not be kept: it is kept before it. `[1, 1]` where it always is.
+    pub interval: [Real; 2],
+    /// Where the decision is `Contact`, a shape that does not keep it, which stands at the end of the interval.
+    pub contact: Option<ShapeInContact>,
+}
+
+impl MotionAnswer {
+    pub(crate) fn clear() -> Self {
+        Self { decision: Decision::Clear, interval: [1.0; 2], contact: None }
+    }
+
+    pub(crate) fn undecided(interval: [Real; 2]) -> Self {
+        Self { decision: Decision::Undecided, interval, contact: None }
+    }
+
+    pub(crate) fn contact(clear_until: Real, contact: ShapeInContact) -> Self {
+        Self { decision: Decision::Contact, interval: [clear_until, contact.t], contact: Some(contact) }
+    }
+
+    /// Whether the margin is kept at every time. This is proven.
+    pub fn is_clear(&self) -> bool {
+        self.decision == Decision::Clear
+    }
+}
+
+#[cfg(feature = "serde-serialize")]
+mod serialised {
+    use super::MotionAnswer;
+    use crate::answer::{Decision, ShapeInContact};
+    use parry3d_f64::math::Real;
+    use serde::{Deserialize, Serialize};
+
+    /// The fields of a [`MotionAnswer`].
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename = "MotionAnswer")]
+    pub(crate) struct Fields {
+        decision: Decision,
         interval: [Real; 2],
-    },
+        contact: Option<ShapeInContact>,
+    }
+
+    impl From<MotionAnswer> for Fields {
+        fn from(MotionAnswer { decision, interval, contact }: MotionAnswer) -> Self {
+            Self { decision, interval, contact }
+        }
+    }
+
+    /// Times of a motion are from 0 to 1, the earlier one first, and a contact is named where there is one.
+    impl TryFrom<Fields> for MotionAnswer {
+        type Error = String;
+
+        fn try_from(Fields { decision, interval, contact }: Fields) -> Result<Self, String> {
+            let [from, to] = interval;
+            if !(0.0 <= from && from <= to && to <= 1.0) {
+                return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
+            }
+            if (decision == Decision::Contact) != contact.is_some() {
+                return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
+            }
+            Ok(Self { decision, interval, contact })
+        }
+    }
 }

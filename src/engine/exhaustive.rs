@@ -1,16 +1,16 @@
 //! Proximity by looking at every triangle.
 
-use super::proximity::{HasMesh, Proximity, pairs};
+use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::mesh::Mesh;
-use crate::pair::{PlacedLink, PlacedRobot, rigid_pose};
+use crate::pair::PlacedRobot;
 use crate::query::contacts::{LocalMinima, RobotContacts, Wall};
-use crate::query::{check_bound, check_margin};
 use crate::robot::Chain;
 use crate::search::exhaustive::{Aim, Kernels, Pass, Triangles};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::iter::once;
 use std::sync::Arc;
 
 /// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
@@ -112,54 +112,41 @@ impl<T: SearchPrecision> Exhaustive<T> {
         self.work
     }
 
-    fn run<'a>(
-        &mut self,
-        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
-        aim: Aim,
-    ) -> Result<(), ProximityError> {
-        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim)?;
-        Ok(())
+    fn run<'a>(&mut self, robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>, aim: Aim) {
+        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
     }
 
     /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in the cache. `answer` gets
-    /// each with its place among all and among those of the last pass.
-    fn run_batch(
+    /// each with its place among those of the last pass.
+    fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
         aim: Aim,
-        mut answer: impl FnMut(&Self, [usize; 2]),
-    ) -> Result<(), ProximityError> {
-        let mut first = 0;
-        while first < robots.len() {
-            let count = count_at_once(&robots[first..]);
-            self.run(pairs(&robots[first..first + count]), aim)?;
-            (0..count).for_each(|number| answer(self, [first + number, number]));
-            first += count;
+        out: &mut [Result<A, ProximityError>],
+        mut answer: impl FnMut(&Self, PlacedRobot, usize, &mut Result<A, ProximityError>),
+    ) {
+        let (mut robots, mut out) = (robots, out);
+        while !robots.is_empty() {
+            let count = count_at_once(robots);
+            let (together, others) = robots.split_at(count);
+            let (answers, later) = out.split_at_mut(count);
+            self.run(placed(together), aim);
+            for (number, (robot, out)) in placed(together).zip(answers).enumerate() {
+                match robot {
+                    Ok(robot) => answer(self, robot, number, out),
+                    Err(error) => *out = Err(error),
+                }
+            }
+            (robots, out) = (others, later);
         }
-        Ok(())
     }
 
     /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
-    fn least_within(&self, number: usize) -> Option<LinkProximity> {
+    fn least(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
             a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
         };
         self.pass.answers(number).min_by(order)
-    }
-
-    fn least(&self, robot: &Chain, pose: &Pose, number: usize) -> LinkProximity {
-        self.least_within(number).unwrap_or_else(|| {
-            // Without a bound some triangle is always the nearest; this is any other.
-            let pose = rigid_pose(pose).unwrap_or(*pose); // as it was searched for
-            let link = PlacedLink::new(&robot.links()[0], &pose);
-            link.measure(0, self.triangles.mesh.corners(0)).report(0)
-        })
-    }
-}
-
-impl<T: SearchPrecision> HasMesh for Exhaustive<T> {
-    fn mesh(&self) -> &Mesh {
-        &self.triangles.mesh
     }
 }
 
@@ -176,55 +163,47 @@ fn count_at_once(robots: &[(&Chain, Pose)]) -> usize {
     robots.iter().map(|(robot, _)| *robot).map(fits).take_while(|fits| *fits).count().max(1)
 }
 
-impl<T: SearchPrecision> Proximity for Exhaustive<T> {
-    fn per_link(
+impl<T: SearchPrecision> Engine for Exhaustive<T> {
+    fn mesh(&self) -> &Mesh {
+        &self.triangles.mesh
+    }
+
+    fn ask_per_link(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        self.run(std::iter::once((robot, pose)), Aim::EachLink)?;
+        self.run(once(Ok(robot)), Aim::EachLink);
         out.extend(self.pass.answers(0));
         Ok(())
     }
 
-    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        self.run(std::iter::once((robot, pose)), Aim::Least(Real::INFINITY))?;
-        Ok(self.least(robot, pose, 0))
-    }
-
-    fn minimum_within(
+    fn ask_nearest(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_bound(bound)?;
-        if bound < 0.0 {
-            // Nothing is asked for; robot and pose are looked at all the same.
-            return PlacedRobot::new(robot, pose).map(|_| None);
-        }
-        self.run(std::iter::once((robot, pose)), Aim::Least(bound))?;
-        Ok(self.least_within(0))
+        self.run(once(Ok(robot)), Aim::Least(bound));
+        Ok(self.least(0))
     }
 
-    fn within(
+    fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
+        self.run(once(Ok(robot)), Aim::Within(margin));
+        Ok(self.pass.is_clear(0))
+    }
+
+    fn ask_contacts(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         margin: Real,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
         let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
-        let placed = PlacedRobot::new(robot, pose)?;
-        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), placed, margin, minima, out);
+        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, margin, minima, out);
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
-            let (robots, end) = (std::iter::once((robot, pose)), first + count);
-            *work += pass.run(level, culling, triangles, robots, first..end, Aim::Every(margin))?;
+            let end = first + count;
+            *work += pass.run(level, culling, triangles, once(Ok(robot)), first..end, Aim::Every(margin));
             let Some(within) = pass.within() else {
                 count = count.div_ceil(2);
                 continue;
@@ -239,57 +218,52 @@ impl<T: SearchPrecision> Proximity for Exhaustive<T> {
         Ok(())
     }
 
-    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        check_margin(margin)?;
-        self.run(std::iter::once((robot, pose)), Aim::Within(margin))?;
-        Ok(self.pass.is_clear(0))
-    }
-
-    fn per_link_batch(
+    fn ask_per_link_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<Vec<LinkProximity>>,
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.resize_with(robots.len(), Vec::new);
-        let answered = self.run_batch(robots, Aim::EachLink, |engine, [place, number]| {
-            out[place].clear();
-            out[place].extend(engine.pass.answers(number));
+        out.resize_with(robots.len(), || Ok(Vec::new()));
+        self.run_batch(robots, Aim::EachLink, out, |engine, _, number, out| {
+            let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
+            links.clear();
+            links.extend(engine.pass.answers(number));
+            *out = Ok(links);
         });
-        answered.inspect_err(|_| out.clear())
+        Ok(())
     }
 
-    fn minimum_batch(
+    fn ask_minimum_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<LinkProximity>,
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        let answered = self.run_batch(robots, Aim::Least(Real::INFINITY), |engine, [place, number]| {
-            let (robot, pose) = &robots[place];
-            out.push(engine.least(robot, pose, number));
+        out.resize_with(robots.len(), || Ok(LinkProximity::unanswered()));
+        self.run_batch(robots, Aim::Least(Real::INFINITY), out, |engine, robot, number, out| {
+            let least = engine.least(number);
+            *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), robot)));
         });
-        answered.inspect_err(|_| out.clear())
+        Ok(())
     }
 
-    fn clears_batch(
+    fn ask_clears_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
         margin: Real,
-        out: &mut Vec<bool>,
+        out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
-        let answered = self.run_batch(robots, Aim::Within(margin), |engine, [_, number]| {
-            out.push(engine.pass.is_clear(number));
+        out.resize_with(robots.len(), || Ok(false));
+        self.run_batch(robots, Aim::Within(margin), out, |engine, _, number, out| {
+            *out = Ok(engine.pass.is_clear(number));
         });
-        answered.inspect_err(|_| out.clear())
+        Ok(())
     }
 
-    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.triangles.mesh.check_moved(vertices)?;
+    fn move_vertices(&mut self, vertices: &[Vector]) {
         let triangles = Arc::make_mut(&mut self.triangles);
         triangles.mesh.set_vertices(vertices);
         triangles.refill(self.level);
-        Ok(())
     }
 }
+
+impl<T: SearchPrecision> Proximity for Exhaustive<T> {}

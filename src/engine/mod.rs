@@ -6,7 +6,5 @@ mod proximity;
 
 pub use bvh::BvhSearch;
 pub use exhaustive::{Exhaustive, SearchPrecision};
-pub(crate) use proximity::HasMesh;
 pub use proximity::Proximity;
-#[cfg(feature = "gpu")]
-pub(crate) use proximity::pairs;
+pub(crate) use proximity::{Engine, any_triangle, placed};

@@ -1,6 +1,7 @@
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
-use crate::pair::{contact, contacts, derivative};
+use crate::pair::{PlacedRobot, contact, contacts, derivative};
+use crate::query::{check_bound, check_margin, check_prominence};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -11,13 +12,14 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// distances. Of triangles that are as close as one another, touching ones included, [`BvhSearch`](super::BvhSearch) and
 /// [`Exhaustive`](super::Exhaustive) name the lowest, and of links that share it the lowest, on any number of threads.
 ///
-/// The batches take many robots, such as a planner's samples, and answer in their order on all cores.
+/// The batches take many robots, such as a planner's samples, and answer in their order on all cores. Each robot has a
+/// `Result` of its own: one that is refused costs the others nothing.
 ///
 /// A query that returns an error leaves `out` empty.
 ///
 /// Only the engines of this crate are engines: the trait is sealed.
 #[allow(private_bounds)]
-pub trait Proximity: HasMesh {
+pub trait Proximity: Engine {
     /// The closest triangle of every link, in link order. `out` is cleared first.
     ///
     /// # Errors
@@ -27,13 +29,20 @@ pub trait Proximity: HasMesh {
         robot: &Chain,
         pose: &Pose,
         out: &mut Vec<LinkProximity>,
-    ) -> Result<(), ProximityError>;
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        self.ask_per_link(PlacedRobot::new(robot, pose)?, out)
+    }
 
     /// The closest link and triangle of the whole robot.
     ///
     /// # Errors
     /// The pose is not finite, or it moves a link out of range.
-    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError>;
+    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
+        let robot = PlacedRobot::new(robot, pose)?;
+        let found = self.ask_nearest(robot, Real::INFINITY)?;
+        Ok(found.unwrap_or_else(|| any_triangle(self.mesh(), robot)))
+    }
 
     /// The closest link and triangle, if they are at most `bound` apart: [`minimum`](Proximity::minimum) for less work
     /// where nothing is as near. Several meshes are asked in turn, each for what is nearer than the last:
@@ -74,14 +83,21 @@ pub trait Proximity: HasMesh {
         robot: &Chain,
         pose: &Pose,
         bound: Real,
-    ) -> Result<Option<LinkProximity>, ProximityError>;
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        check_bound(bound)?;
+        let robot = PlacedRobot::new(robot, pose)?;
+        if bound < 0.0 { Ok(None) } else { self.ask_nearest(robot, bound) }
+    }
 
     /// Whether the robot keeps more than `margin` away from the mesh: exactly `minimum().distance > margin`,
     /// for less work.
     ///
     /// # Errors
     /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
-    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError>;
+    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
+        check_margin(margin)?;
+        self.ask_clears(PlacedRobot::new(robot, pose)?, margin)
+    }
 
     /// Every contact at most `margin` away: where the distance between a link and the mesh has a local minimum, link by
     /// link and nearest first. `out` is cleared first.
@@ -108,52 +124,86 @@ pub trait Proximity: HasMesh {
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices.collect(), indices)?)?;
     /// let robot = Chain::from_centreline(&[-Vector::X, Vector::X], &[0.5])?;
     /// let mut contacts = Vec::new();
-    /// search.within(&robot, &Pose::IDENTITY, 2.0, &mut contacts)?;
+    /// search.within(&robot, &Pose::IDENTITY, 2.0, 0.0, &mut contacts)?;
     /// assert_eq!(contacts.len(), 2);
     /// assert!(contacts[0].normal.is_some_and(|normal| (normal + Vector::Z).length() < 0.2));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
+    /// `prominence` is by how much farther every way on the mesh from a contact to a nearer place must lead first. It is 0 for
+    /// now, which is every local minimum.
+    ///
     /// # Errors
-    /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
+    /// The margin is negative or NaN, the prominence is not 0, the pose is not finite, or it moves a link out of range.
     fn within(
         &mut self,
         robot: &Chain,
         pose: &Pose,
         margin: Real,
+        prominence: Real,
         out: &mut Vec<Contact>,
-    ) -> Result<(), ProximityError>;
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        check_prominence(prominence)?;
+        self.ask_contacts(PlacedRobot::new(robot, pose)?, margin, out)
+    }
 
-    /// [`Proximity::per_link`] for many robots. `out` gets one entry per robot; its inner vectors are used again.
+    /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is none; inner vectors are used
+    /// again.
     ///
     /// # Errors
-    /// Those of the first robot that has one.
+    /// The engine's device failed. `out` is then empty.
     fn per_link_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<Vec<LinkProximity>>,
-    ) -> Result<(), ProximityError>;
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        self.ask_per_link_batch(robots, out).inspect_err(|_| out.clear())
+    }
 
-    /// [`Proximity::minimum`] for many robots. `out` gets one entry per robot.
+    /// [`minimum`](Self::minimum) for many robots. `out` gets the answer of each, or why there is none.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Proximity};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+    /// let lost = Pose::from_translation(Vector::NAN);
+    /// let mut answers = Vec::new();
+    /// search.minimum_batch(&[(&robot, Pose::IDENTITY), (&robot, lost)], &mut answers)?;
+    /// assert!(answers[0].is_ok_and(|closest| closest.distance > 4.0));
+    /// assert_eq!(answers[1].map_err(|error| error.kind()), Err("pose_not_finite"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
-    /// Those of the first robot that has one.
+    /// The engine's device failed. `out` is then empty.
     fn minimum_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<LinkProximity>,
-    ) -> Result<(), ProximityError>;
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        self.ask_minimum_batch(robots, out).inspect_err(|_| out.clear())
+    }
 
-    /// [`Proximity::clears`] for many robots. `out` gets one entry per robot.
+    /// [`clears`](Self::clears) for many robots. `out` gets the answer of each, or why there is none.
     ///
     /// # Errors
-    /// Those of the first robot that has one.
+    /// The margin is negative or NaN, or the engine's device failed. `out` is then empty.
     fn clears_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
         margin: Real,
-        out: &mut Vec<bool>,
-    ) -> Result<(), ProximityError>;
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.ask_clears_batch(robots, margin, out).inspect_err(|_| out.clear())
+    }
 
     /// An answer with its normal, its place on the robot and the features that are nearest, of the mesh that the engine
     /// has now. Give the same robot and pose as to the query.
@@ -261,15 +311,77 @@ pub trait Proximity: HasMesh {
     ///
     /// # Errors
     /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
-    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError>;
+    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.mesh().check_moved(vertices)?;
+        self.move_vertices(vertices);
+        Ok(())
+    }
 }
 
-/// An engine's mesh as it is now.
-pub(crate) trait HasMesh {
+/// What an engine does itself: all else is the same for all engines, and stands in [`Proximity`]. Robots are placed,
+/// margins and bounds at least 0.
+pub(crate) trait Engine {
+    /// The mesh as it is now.
     fn mesh(&self) -> &Mesh;
+
+    /// The closest triangle of every link, in `out`, which is empty.
+    fn ask_per_link(
+        &mut self,
+        robot: PlacedRobot,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError>;
+
+    /// The closest link and triangle, if they are at most `bound` apart. Without a bound there is none only where rounding
+    /// hides all distances.
+    fn ask_nearest(
+        &mut self,
+        robot: PlacedRobot,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError>;
+
+    /// Whether every link keeps more than `margin` away.
+    fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError>;
+
+    /// Every contact at most `margin` away, in `out`, which is empty.
+    fn ask_contacts(
+        &mut self,
+        robot: PlacedRobot,
+        margin: Real,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError>;
+
+    fn ask_per_link_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
+    ) -> Result<(), ProximityError>;
+
+    fn ask_minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
+    ) -> Result<(), ProximityError>;
+
+    fn ask_clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError>;
+
+    /// Moves the vertices, which were checked.
+    fn move_vertices(&mut self, vertices: &[Vector]);
 }
 
-/// The robots of a batch, one by one.
-pub(crate) fn pairs<'a>(robots: &'a [(&Chain, Pose)]) -> impl Iterator<Item = (&'a Chain, &'a Pose)> {
-    robots.iter().map(|(robot, pose)| (*robot, pose))
+/// Some triangle, for a robot whose nearest no search tells.
+pub(crate) fn any_triangle(mesh: &Mesh, robot: PlacedRobot) -> LinkProximity {
+    let link = robot.link(0);
+    link.answer(0, &link.measure(0, mesh.corners(0)))
+}
+
+/// The robots of a batch in the mesh's frame, or why they are refused.
+pub(crate) fn placed<'a>(
+    robots: &'a [(&Chain, Pose)],
+) -> impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>> {
+    robots.iter().map(|(robot, pose)| PlacedRobot::new(robot, pose))
 }

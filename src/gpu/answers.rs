@@ -7,29 +7,35 @@ use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
 use crate::answer::{LinkProximity, ProximityError};
 use crate::pair::{Nearest, PlacedRobot};
-use crate::robot::Chain;
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::Real;
 
 impl GpuExhaustive {
     /// Places the robots' links and has the device find their candidates. Only triangles within `margin` are of interest
     /// if there is one.
     pub(super) fn search<'a>(
         &mut self,
-        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         margin: Option<Real>,
     ) -> Result<(), ProximityError> {
         let Self { links, device_links, robots: ranges, .. } = self;
         links.clear();
         device_links.clear();
         ranges.clear();
-        for (robot, pose) in robots {
+        for robot in robots {
             let first = links.len();
-            for link in PlacedRobot::new(robot, pose)?.placed_links() {
+            let robot = match robot {
+                Ok(robot) => robot,
+                Err(error) => {
+                    ranges.push(Err(error));
+                    continue;
+                }
+            };
+            for link in robot.placed_links() {
                 let on_device = DeviceLink::new(&link, &self.frame, margin, self.gpu.precision());
                 links.push((link, on_device.is_some().then_some(device_links.len())));
                 device_links.extend(on_device);
             }
-            ranges.push(first..links.len());
+            ranges.push(Ok(first..links.len()));
         }
         if device_links.is_empty() {
             return Ok(());
@@ -74,12 +80,20 @@ impl GpuExhaustive {
     }
 
     /// The nearest triangle of each link of a robot.
-    pub(super) fn answers(&mut self, robot: usize, out: &mut Vec<LinkProximity>) {
-        for (link, place) in self.robots[robot].clone().enumerate() {
+    ///
+    /// # Errors
+    /// It is refused.
+    pub(super) fn answers(
+        &mut self,
+        robot: usize,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        for (link, place) in self.robots[robot].clone()?.enumerate() {
             // Some triangle is always the nearest; this is any other.
             let nearest = self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
-            out.push(nearest.report(link));
+            out.push(self.links[place].0.answer(link, &nearest));
         }
+        Ok(())
     }
 
     fn first_triangle(&self, place: usize) -> Nearest {
@@ -87,8 +101,11 @@ impl GpuExhaustive {
     }
 
     /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
-    pub(super) fn least(&mut self, robot: usize) -> LinkProximity {
-        let places = self.robots[robot].clone();
+    ///
+    /// # Errors
+    /// The robot is refused.
+    pub(super) fn least(&mut self, robot: usize) -> Result<LinkProximity, ProximityError> {
+        let places = self.robots[robot].clone()?;
         let first = places.start;
         let mut best: Option<LinkProximity> = None;
         // The likeliest link first: its distance rules out most others.
@@ -99,7 +116,7 @@ impl GpuExhaustive {
             if self.at_least(place) <= bound
                 && let Some(nearest) = self.nearest(place, bound)
             {
-                let other = nearest.report(place - first);
+                let other = self.links[place].0.answer(place - first, &nearest);
                 let key = |answer: &LinkProximity| (answer.triangle, answer.link);
                 let is_nearer = |best: LinkProximity| {
                     other.distance < best.distance
@@ -110,11 +127,14 @@ impl GpuExhaustive {
                 }
             }
         }
-        best.unwrap_or_else(|| self.first_triangle(first).report(0))
+        Ok(best.unwrap_or_else(|| self.links[first].0.answer(0, &self.first_triangle(first))))
     }
 
     /// Whether a robot keeps its distance.
-    pub(super) fn is_clear(&mut self, robot: usize, margin: Real) -> bool {
-        self.robots[robot].clone().all(|place| self.nearest(place, margin).is_none())
+    ///
+    /// # Errors
+    /// It is refused.
+    pub(super) fn is_clear(&mut self, robot: usize, margin: Real) -> Result<bool, ProximityError> {
+        Ok(self.robots[robot].clone()?.all(|place| self.nearest(place, margin).is_none()))
     }
 }

@@ -8,15 +8,15 @@ use super::plan::Tuning;
 use super::query::Query;
 use super::wgsl::CONVEX;
 use super::{GpuError, Precision};
-use crate::answer::{Contact, DeviceFailure, LinkProximity, MeshError, ProximityError};
-use crate::engine::{HasMesh, Proximity, pairs};
+use crate::answer::{Contact, DeviceFailure, LinkProximity, ProximityError};
+use crate::engine::{Engine, Proximity, placed};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::query::contacts::contacts_by_all_triangles;
-use crate::query::{check_bound, check_margin};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
+use std::iter::once;
 use std::ops::Range;
 use std::time::Duration;
 use wgpu::ComputePipeline;
@@ -56,7 +56,7 @@ pub struct GpuExhaustive {
     pub(super) links: Vec<(PlacedLink, Option<usize>)>,
     pub(super) device_links: Vec<DeviceLink>,
     /// The links of each robot.
-    pub(super) robots: Vec<Range<usize>>,
+    pub(super) robots: Vec<Result<Range<usize>, ProximityError>>,
 }
 
 // A planner may own an engine on a thread of its own.
@@ -180,110 +180,91 @@ impl GpuExhaustive {
     }
 }
 
-impl HasMesh for GpuExhaustive {
+impl Engine for GpuExhaustive {
     fn mesh(&self) -> &Mesh {
         &self.mesh
     }
-}
 
-impl Proximity for GpuExhaustive {
-    fn per_link(
+    fn ask_per_link(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        self.search(std::iter::once((robot, pose)), None)?;
-        self.answers(0, out);
-        Ok(())
+        self.search(once(Ok(robot)), None)?;
+        self.answers(0, out)
     }
 
-    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        self.search(std::iter::once((robot, pose)), None)?;
-        Ok(self.least(0))
-    }
-
-    /// As [`minimum`](Proximity::minimum), whatever the bound.
-    fn minimum_within(
+    /// Of all triangles, whatever the bound.
+    fn ask_nearest(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_bound(bound)?;
-        if bound < 0.0 {
-            return PlacedRobot::new(robot, pose).map(|_| None);
-        }
-        let least = self.minimum(robot, pose)?;
+        self.search(once(Ok(robot)), None)?;
+        let least = self.least(0)?;
         Ok((least.distance <= bound).then_some(least))
     }
 
+    fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
+        self.search(once(Ok(robot)), Some(margin))?;
+        self.is_clear(0, margin)
+    }
+
     /// On the CPU: the device names the nearest triangles of a link, and not all that are near.
-    fn within(
+    fn ask_contacts(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         margin: Real,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
-        contacts_by_all_triangles(&self.mesh, PlacedRobot::new(robot, pose)?, margin, out);
+        contacts_by_all_triangles(&self.mesh, robot, margin, out);
         Ok(())
     }
 
-    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        check_margin(margin)?;
-        self.search(std::iter::once((robot, pose)), Some(margin))?;
-        Ok(self.is_clear(0, margin))
-    }
-
-    fn per_link_batch(
+    fn ask_per_link_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<Vec<LinkProximity>>,
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        self.search(pairs(robots), None).inspect_err(|_| out.clear())?;
-        out.resize_with(robots.len(), Vec::new);
-        for (robot, answers) in out.iter_mut().enumerate() {
-            answers.clear();
-            self.answers(robot, answers);
+        self.search(placed(robots), None)?;
+        out.resize_with(robots.len(), || Ok(Vec::new()));
+        for (robot, out) in out.iter_mut().enumerate() {
+            let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
+            links.clear();
+            *out = self.answers(robot, &mut links).map(|()| links);
         }
         Ok(())
     }
 
-    fn minimum_batch(
+    fn ask_minimum_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<LinkProximity>,
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        self.search(pairs(robots), None)?;
+        self.search(placed(robots), None)?;
         out.extend((0..robots.len()).map(|robot| self.least(robot)));
         Ok(())
     }
 
-    fn clears_batch(
+    fn ask_clears_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
         margin: Real,
-        out: &mut Vec<bool>,
+        out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
-        self.search(pairs(robots), Some(margin))?;
+        self.search(placed(robots), Some(margin))?;
         out.extend((0..robots.len()).map(|robot| self.is_clear(robot, margin)));
         Ok(())
     }
 
-    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.mesh.check_moved(vertices)?;
+    fn move_vertices(&mut self, vertices: &[Vector]) {
         self.mesh.set_vertices(vertices);
         self.frame = SearchFrame::new(&self.mesh);
         if let Some(mesh) = &mut self.on_device {
             mesh.outdate();
         }
-        Ok(())
     }
 }
+
+impl Proximity for GpuExhaustive {}

@@ -1,11 +1,11 @@
 //! An answer with its normal and its place on the robot.
 
 use super::answered::{corners, placed_link, transformed_link};
-use super::contacts_together::{Place, try_add_contacts};
+use super::contacts_together::{PlacedPair, try_add_contacts};
 use super::nearest::Nearest;
 use super::nearest_features::NearestFeatures;
 use super::placed_link::PlacedLink;
-use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError};
+use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError, Witness};
 use crate::mesh::Mesh;
 use crate::robot::{Chain, length};
 use fearless_simd::Level;
@@ -43,9 +43,9 @@ pub(crate) fn contacts(
         let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
         let before = robot.length_before(answer.link as usize);
         let ends = [link.start(), link.end()];
-        Ok(Place { ends, radius: link.radius(), flat: link.flat(), corners, before })
+        Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
     };
-    let check = |answer: &LinkProximity, place: &Place, measured: &Nearest| {
+    let check = |answer: &LinkProximity, place: &PlacedPair, measured: &Nearest| {
         answer.check_fit_of(measured, &place.link(), place.corners)
     };
     try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
@@ -74,18 +74,15 @@ pub(crate) fn contact_of(
     before: Real,
     found: &NearestFeatures,
 ) -> Contact {
-    let LinkProximity { link, triangle, distance, on_robot, on_mesh } = *answer;
+    let LinkProximity { link, distance, witness } = *answer;
     Contact {
         link,
         fraction: found.fraction,
-        arc_length: before + found.fraction * length,
-        triangle,
         feature: ContactFeature { link: found.link, triangle: found.triangle },
         distance,
         depth: Some(if distance > 0.0 { distance } else { found.depth.min(0.0) }),
         normal: found.normal,
-        on_robot,
-        on_mesh,
+        witness: Witness { arc_length: before + found.fraction * length, ..witness },
         lever: found.lever,
         kink: found.kink,
     }

@@ -15,7 +15,7 @@ use std::convert::Infallible;
 
 /// What a contact is made of beside its answer: the link and the triangle in the mesh's frame.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct PlacedPair {
     pub ends: [Vector; 2],
     pub radius: Real,
     pub flat: [bool; 2],
@@ -38,7 +38,7 @@ struct Parts {
     nearest: Rows<7>,
 }
 
-impl Place {
+impl PlacedPair {
     /// The link, ready to be measured.
     pub(crate) fn link(&self) -> PlacedLink {
         let [start, end] = self.ends;
@@ -50,7 +50,7 @@ impl Place {
 pub(crate) fn add_contacts(
     level: Level,
     answers: &[LinkProximity],
-    mut place: impl FnMut(&LinkProximity) -> Place,
+    mut place: impl FnMut(&LinkProximity) -> PlacedPair,
     out: &mut Vec<Contact>,
 ) {
     let place = |answer: &LinkProximity| Ok::<_, Infallible>(place(answer));
@@ -65,15 +65,15 @@ pub(crate) fn add_contacts(
 pub(crate) fn try_add_contacts<E>(
     level: Level,
     answers: &[LinkProximity],
-    mut place: impl FnMut(&LinkProximity) -> Result<Place, E>,
-    check: impl Fn(&LinkProximity, &Place, &Nearest) -> Result<(), E>,
+    mut place: impl FnMut(&LinkProximity) -> Result<PlacedPair, E>,
+    check: impl Fn(&LinkProximity, &PlacedPair, &Nearest) -> Result<(), E>,
     out: &mut Vec<Contact>,
 ) -> Result<(), E> {
     let mut rows = [[0.0; TOGETHER]; 18];
     for answers in answers.chunks(TOGETHER) {
         let mut places = [None; TOGETHER];
         for (lane, answer) in answers.iter().enumerate() {
-            let Place { ends, radius, flat, corners, .. } = *places[lane].insert(place(answer)?);
+            let PlacedPair { ends, radius, flat, corners, .. } = *places[lane].insert(place(answer)?);
             put_pair(&mut rows, lane, corners, ends, radius, flat);
         }
         let parts = parts_at(level, &rows, answers.len());
@@ -172,7 +172,7 @@ mod tests {
     use continuum_testing::Random;
 
     /// A link and a triangle, many of them parallel, level or touching.
-    fn place(random: &mut Random) -> Place {
+    fn place(random: &mut Random) -> PlacedPair {
         let (size, level) = (2.0_f64.powi(random.below(41) as i32 - 20), random.below(3) == 0);
         let mut point = || {
             let point = random.point();
@@ -182,7 +182,7 @@ mod tests {
         let radius = size * [0.0, 0.1, 0.5, 2.0][random.below(4) as usize];
         let flat = [random.below(2) == 0, random.below(2) == 0].map(|flat| flat && way != Vector::ZERO);
         let before = random.between(0.0, 9.0);
-        Place { ends: [start, start + way], radius, flat, corners, before }
+        PlacedPair { ends: [start, start + way], radius, flat, corners, before }
     }
 
     /// Each contact computed with any others, on each instruction set, has the bits it has alone.
@@ -192,13 +192,14 @@ mod tests {
         for seed in 0..4000 {
             let random = &mut Random::new(seed);
             let places: Vec<_> = (0..1 + seed as usize % 19).map(|_| place(random)).collect();
-            let link = |place: &Place| {
+            let link = |place: &PlacedPair| {
                 let [start, end] = place.ends;
                 PlacedLink::between(start, end, place.radius, place.flat)
             };
             let measured = places.iter().enumerate();
-            let answers: Vec<_> =
-                measured.map(|(k, place)| link(place).measure(0, place.corners).report(k)).collect();
+            let answers: Vec<_> = measured
+                .map(|(k, place)| link(place).answer(k, &link(place).measure(0, place.corners)))
+                .collect();
             let alone = |answer: &LinkProximity| {
                 let place = &places[answer.link as usize];
                 let length = length(place.ends[1] - place.ends[0]);

@@ -49,7 +49,7 @@ impl LinkProximity {
         link: &PlacedLink,
         corners: [Vector; 3],
     ) -> Result<(), ProximityError> {
-        let Self { distance, on_robot, on_mesh, .. } = *self;
+        let (distance, on_robot, on_mesh) = (self.distance, self.on_robot, self.on_mesh);
         let [a, b, c] = corners;
         let points = [link.start(), link.end(), a, b, c];
         let largest = points.iter().fold(0.0, |most: Real, point| most.max(point.abs().max_element()));

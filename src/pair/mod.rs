@@ -22,7 +22,7 @@ mod search_link;
 pub(crate) use best::Best;
 pub(crate) use checks::rigid_pose;
 pub(crate) use contact::{contact, contacts};
-pub(crate) use contacts_together::{Place, add_contacts};
+pub(crate) use contacts_together::{PlacedPair, add_contacts};
 pub(crate) use derivative::derivative;
 pub(crate) use link_lanes::{LinkLanes, Nearer};
 pub(crate) use nearest::Nearest;

@@ -2,6 +2,7 @@
 
 use super::coordinates::{Pair, SLACK, offset_from_axis};
 use super::nearest::Nearest;
+use crate::answer::{LinkProximity, Witness};
 use crate::distance::{Axial, Face, Link, Scalar, Vec3, gives_direction, segment_segment};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -19,6 +20,10 @@ pub(crate) struct PlacedLink {
     flat: [bool; 2],
     /// The largest coordinate from the start, or the radius.
     extent: Real,
+    /// How long the links before it are, together.
+    before: Real,
+    /// The segment of the robot's input that it stands for.
+    segment: u32,
 }
 
 impl PlacedLink {
@@ -35,7 +40,22 @@ impl PlacedLink {
     pub(crate) fn between(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
         let along = end - start;
         let extent = along.abs().max_element().max(radius);
-        Self { start, end, along, axis: Vec3::from(along).normalised(), radius, flat, extent }
+        let axis = Vec3::from(along).normalised();
+        Self { start, end, along, axis, radius, flat, extent, before: 0.0, segment: 0 }
+    }
+
+    /// The same link, as the one that stands for a segment of the robot's input, behind links of the length `before`.
+    pub(super) fn at(self, before: Real, segment: u32) -> Self {
+        Self { before, segment, ..self }
+    }
+
+    /// The answer about the link with this number.
+    pub(crate) fn answer(&self, number: usize, nearest: &Nearest) -> LinkProximity {
+        let Nearest { triangle, distance, on_robot, on_mesh } = *nearest;
+        let length = self.along.dot(Vector::from(self.axis));
+        let arc_length = self.before + self.share_of(on_mesh) * length;
+        let witness = Witness { on_robot, on_mesh, triangle, arc_length, segment: self.segment };
+        LinkProximity { link: number as u32, distance, witness }
     }
 
     pub(crate) fn is_finite(&self) -> bool {

@@ -51,12 +51,13 @@ impl<'a> PlacedRobot<'a> {
 
     /// A link in the mesh's frame.
     pub(crate) fn link(&self, link: usize) -> PlacedLink {
-        PlacedLink::new(&self.robot.links()[link], &self.pose)
+        let segment = self.robot.segment_of(link) as u32;
+        PlacedLink::new(&self.robot.links()[link], &self.pose).at(self.robot.length_before(link), segment)
     }
 
     /// All links in the mesh's frame.
     pub(crate) fn placed_links(&self) -> impl Iterator<Item = PlacedLink> {
-        self.robot.links().iter().map(|link| PlacedLink::new(link, &self.pose))
+        (0..self.robot.links().len()).map(|link| self.link(link))
     }
 
     /// How long the links before a link are, together.

@@ -86,6 +86,16 @@ impl<'a> PlacedTube<'a> {
         self.slack
     }
 
+    /// What the error that the tube states for itself costs a clearance: it counts in both bounds.
+    pub(crate) fn uncertainty(&self) -> Real {
+        2.0 * self.tube.error()
+    }
+
+    /// The segment of the input at an arc length of a section.
+    pub(crate) fn segment(&self, number: u32, arc: Real) -> u32 {
+        self.tube.segment(number, arc)
+    }
+
     /// The radius of a piece.
     pub(crate) fn radius(&self, piece: &Piece) -> Real {
         self.section(piece.section).radius

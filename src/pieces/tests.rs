@@ -175,7 +175,7 @@ fn witnesses_are_no_nearer_than_the_tube() {
                         + tangent.cross(random.direction()) * (section.radius * random.between(0.5, 2.0))
                         + tangent
                             * (section.radius * [0.0, random.between(-1.0, 1.0)][random.below(2) as usize]);
-                    let witness = placed.witness(number as u32, s, x);
+                    let witness = placed.near(number as u32, s, x);
                     let truth = distance(&arcs, &tube, number, x);
                     assert!(
                         witness.upper >= truth - 1e-6 * section.radius,

@@ -18,3 +18,13 @@ pub(crate) fn check_not_negative(parameter: &'static str, value: Real) -> Result
 pub(crate) fn check_bound(bound: Real) -> Result<(), ProximityError> {
     if bound.is_nan() { Err(ProximityError::NotANumber { parameter: "bound" }) } else { Ok(()) }
 }
+
+/// The prominence of a contact: every local minimum is one.
+pub(crate) fn check_prominence(prominence: Real) -> Result<(), ProximityError> {
+    check_not_negative("prominence", prominence)?;
+    if prominence > 0.0 {
+        Err(ProximityError::NotYet { parameter: "prominence", value: prominence })
+    } else {
+        Ok(())
+    }
+}

@@ -52,6 +52,8 @@ use std::sync::OnceLock;
 pub struct Chain {
     links: Vec<ModifiedCylinder>,
     segments: Vec<Range<usize>>,
+    /// The segment that is the first link: those before it have no length.
+    first_segment: usize,
     /// Capsules around halves, quarters ... of the links.
     link_tree: Vec<LinkNode>,
     /// How long the links before each one are, together.
@@ -153,6 +155,11 @@ impl Chain {
         self.segments.get(link).cloned().unwrap_or_default()
     }
 
+    /// The input segment that link number `link` is: the one of [`segments_of`](Self::segments_of) that has a length.
+    pub(crate) fn segment_of(&self, link: usize) -> usize {
+        if link == 0 { self.first_segment } else { self.segments_of(link).start }
+    }
+
     /// The smallest box, with sides along the axes of the robot's frame, that holds all links.
     pub fn local_aabb(&self) -> Aabb {
         let boxes = self.links.iter().map(ModifiedCylinder::local_aabb);
@@ -183,11 +190,15 @@ impl Chain {
         image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
     ) -> Option<Self> {
         let links = self.links.iter().map(image).collect::<Option<Vec<_>>>()?;
-        Some(Self::of(links, self.segments.clone()))
+        Some(Self::of(links, self.segments.clone(), self.first_segment))
     }
 
-    pub(super) fn of(links: Vec<ModifiedCylinder>, segments: Vec<Range<usize>>) -> Self {
-        let mut chain = Self { links, segments, ..Self::empty() };
+    pub(super) fn of(
+        links: Vec<ModifiedCylinder>,
+        segments: Vec<Range<usize>>,
+        first_segment: usize,
+    ) -> Self {
+        let mut chain = Self { links, segments, first_segment, ..Self::empty() };
         chain.follow_links();
         chain
     }
@@ -197,6 +208,7 @@ impl Chain {
         Self {
             links: Vec::new(),
             segments: Vec::new(),
+            first_segment: 0,
             link_tree: Vec::new(),
             lengths_before: Vec::new(),
             bvh: OnceLock::new(),
@@ -233,6 +245,8 @@ impl Chain {
             ];
             if let Some(segments) = self.segments.last_mut() {
                 segments.end = k;
+            } else {
+                self.first_segment = k;
             }
             self.segments.push(if self.links.is_empty() { 0 } else { k }..radii.len());
             self.links.push(ModifiedCylinder::unchecked(points[k], points[k + 1], radii[k], caps));
@@ -258,7 +272,9 @@ impl Chain {
 /// Equal links for equal segments. The hierarchy follows from them.
 impl PartialEq for Chain {
     fn eq(&self, other: &Self) -> bool {
-        self.links == other.links && self.segments == other.segments
+        self.links == other.links
+            && self.segments == other.segments
+            && self.first_segment == other.first_segment
     }
 }
 

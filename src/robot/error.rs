@@ -1,8 +1,10 @@
 use parry3d_f64::math::{Real, Vector};
+use strum::IntoStaticStr;
 use thiserror::Error;
 
 /// Why a link or a chain could not be built. Each message names the value at fault and what to change.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum RobotError {
     /// A point has a coordinate that is NaN or infinite.
@@ -146,6 +148,14 @@ pub enum RobotError {
         /// When.
         t: Real,
     },
+    /// The kinematics behind a motion has no shape: return it from [`Motion::shape`](crate::Motion::shape).
+    #[error("the kinematics has no shape at t = {t}: {reason}")]
+    NoShape {
+        /// When.
+        t: Real,
+        /// Why, in the words of the kinematics.
+        reason: &'static str,
+    },
     /// A stated speed is not a number that is at least 0.
     #[error("the motion states the speed {value} for section {section}; it must be finite and at least 0")]
     BadSpeed {
@@ -276,4 +286,11 @@ pub enum RobotError {
         /// The length of the difference of the unit vectors.
         off: Real,
     },
+}
+
+impl RobotError {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    pub fn kind(&self) -> &'static str {
+        self.into()
+    }
 }

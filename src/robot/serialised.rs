@@ -41,6 +41,9 @@ pub(super) struct Links {
     radii: Vec<Real>,
     caps: Vec<[Cap; 2]>,
     segments: Vec<usize>,
+    /// How many of the first link's segments come before the one that has a length.
+    #[serde(default)]
+    leading: usize,
 }
 
 impl From<Chain> for Links {
@@ -52,6 +55,7 @@ impl From<Chain> for Links {
             radii: links.iter().map(ModifiedCylinder::radius).collect(),
             caps: links.iter().map(ModifiedCylinder::caps).collect(),
             segments: (0..links.len()).map(|link| chain.segments_of(link).len()).collect(),
+            leading: chain.segment_of(0),
         }
     }
 }
@@ -81,6 +85,9 @@ impl TryFrom<Links> for Chain {
             segments.push(from..to);
             from = to;
         }
-        Ok(Self::of(links, segments))
+        if segments.first().is_none_or(|first| data.leading >= first.end) {
+            return Err(format!("{} segments come before the one that is link 0", data.leading));
+        }
+        Ok(Self::of(links, segments, data.leading))
     }
 }

@@ -141,7 +141,7 @@ impl<'a> Sight<'a> {
 }
 
 /// A vertex seen from the origin: how far along the axis, and how far across it in four directions.
-struct Place {
+struct Seen {
     along: Real,
     across: [Real; 4],
     distance_squared: Real,
@@ -177,14 +177,14 @@ impl Gates {
         }
     }
 
-    fn place(&self, p: Vector) -> Place {
+    fn place(&self, p: Vector) -> Seen {
         let [along, y, z] = self.axes.map(|axis| axis.dot(p));
         let diagonals = [y + z, y - z].map(|sum| sum * std::f64::consts::FRAC_1_SQRT_2);
-        Place { along, across: [y, z, diagonals[0], diagonals[1]], distance_squared: p.length_squared() }
+        Seen { along, across: [y, z, diagonals[0], diagonals[1]], distance_squared: p.length_squared() }
     }
 
     /// Whether a chord to this place passes all gates for sure, or nothing if it does not.
-    fn view(&self, place: &Place, widened: Real) -> Option<bool> {
+    fn view(&self, place: &Seen, widened: Real) -> Option<bool> {
         // The axis is at least 4 tau along, and its nearest point of the chord at least 3 tau.
         if place.along <= widened {
             return None;
@@ -197,7 +197,7 @@ impl Gates {
     }
 
     /// Takes away what does not pass the gate of a vertex; a wall, if nothing is left.
-    fn narrow(&mut self, vertex: usize, place: &Place, sight: &Sight) -> Option<Wall> {
+    fn narrow(&mut self, vertex: usize, place: &Seen, sight: &Sight) -> Option<Wall> {
         let shares = 1.0 / place.along;
         if place.along > sight.widened {
             let margin = sight.widened * STEEPEST * shares;

@@ -60,35 +60,29 @@ pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
 }
 
 /// Answers questions in shares, each share with a memory of its own.
-///
-/// # Errors
-/// Those of `answer` for the first share, in order, that has one.
-pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send, E: Send>(
+pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
     questions: &[Q],
     answers: &mut [A],
     memories: &mut Vec<M>,
-    answer: impl Fn(&mut M, &[Q], &mut [A]) -> Result<(), E> + Sync + Send,
-) -> Result<(), E> {
+    answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync + Send,
+) {
     #[cfg(feature = "parallel")]
     if !IS_ALONE.get() {
         // A few shares for each thread, because questions differ in the time they take.
         let share = questions.len().div_ceil(4 * threads()).max(1);
         memories.resize_with(questions.len().div_ceil(share), M::default);
         let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
-        let results =
-            shares.zip(memories).map(|((questions, answers), memory)| answer(memory, questions, answers));
-        // Of two errors the left one, which is that of earlier questions.
-        return results.reduce(|| Ok(()), Result::and);
+        shares.zip(memories).for_each(|((questions, answers), memory)| answer(memory, questions, answers));
+        return;
     }
     memories.resize_with(1, M::default);
-    memories.iter_mut().try_for_each(|memory| answer(memory, questions, answers))
+    memories.iter_mut().for_each(|memory| answer(memory, questions, answers));
 }
 
 #[cfg(all(test, feature = "parallel"))]
 mod tests {
     use super::*;
     use std::collections::HashSet;
-    use std::convert::Infallible;
     use std::sync::Mutex;
     use std::thread::{self, ThreadId};
     use std::time::Duration;
@@ -116,13 +110,10 @@ mod tests {
 
     fn threads_of_shares() -> HashSet<ThreadId> {
         let (mut answers, mut memories) = ([None; 64], Vec::<()>::new());
-        let answered =
-            in_shares::<_, _, _, Infallible>(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
-                thread::sleep(Duration::from_millis(1));
-                answers.fill(Some(thread::current().id()));
-                Ok(())
-            });
-        assert!(answered.is_ok());
+        in_shares(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
+            thread::sleep(Duration::from_millis(1));
+            answers.fill(Some(thread::current().id()));
+        });
         answers.into_iter().flatten().collect()
     }
 

@@ -7,7 +7,7 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Clearance, Decision, FirstContact, LinkProximity, MotionAnswer, Proximity, Work,
+    BvhSearch, Certificate, Clearance, Decision, LinkProximity, MotionAnswer, Proximity, Work,
 };
 use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
@@ -106,7 +106,7 @@ fn answers_about_tubes_and_motions_come_back() {
     let tube = Tube::from(&Chain::from_centreline(&points, &[0.5; 2]).unwrap());
     let found = search.clearance(&tube, &Pose::IDENTITY, 0.01).unwrap();
     assert_eq!(from_str::<Clearance>(&to_string(&found).unwrap()).unwrap(), found);
-    for decision in [Decision::Clear, Decision::Touches, Decision::Undecided] {
+    for decision in [Decision::Clear, Decision::Contact, Decision::Undecided] {
         assert_eq!(from_str::<Decision>(&to_string(&decision).unwrap()).unwrap(), decision);
     }
 
@@ -124,18 +124,10 @@ fn answers_about_tubes_and_motions_come_back() {
             let motion = LinearMotion::chain(&points, &to, &[0.5; 2]).unwrap();
             let answer = search.clears_motion(&motion, margin, 0.1).unwrap();
             assert_eq!(from_str::<MotionAnswer>(&to_string(&answer).unwrap()).unwrap(), answer);
-            kinds[match answer {
-                MotionAnswer::Clear => 0,
-                MotionAnswer::Contact { .. } => 1,
-                _ => 2,
-            }] += 1;
+            kinds[answer.decision as usize] += 1;
             let answer = search.time_of_contact(&motion, margin, 0.1).unwrap();
-            assert_eq!(from_str::<FirstContact>(&to_string(&answer).unwrap()).unwrap(), answer);
-            kinds[match answer {
-                FirstContact::Never => 3,
-                FirstContact::Within { .. } => 4,
-                _ => 5,
-            }] += 1;
+            assert_eq!(from_str::<MotionAnswer>(&to_string(&answer).unwrap()).unwrap(), answer);
+            kinds[3 + answer.decision as usize] += 1;
         }
     }
     assert!(kinds.iter().all(|count| *count > 10), "{kinds:?}");
@@ -144,27 +136,27 @@ fn answers_about_tubes_and_motions_come_back() {
 #[test]
 fn what_no_query_about_a_motion_answers_is_an_error() {
     let contact = json!({
-        "t": 0.5, "upper": 0.25, "arc_length": 3.0, "section": 0, "triangle": 7,
+        "t": 0.5, "upper": 0.25, "arc_length": 3.0, "segment": 2, "section": 0, "triangle": 7,
         "on_robot": [0.0, 0.0, 0.0], "on_mesh": [0.0, 0.0, 0.25],
     });
+    let answer = |decision: &str, interval: [f64; 2], contact: Option<&Value>| {
+        refusal::<MotionAnswer>(json!({"decision": decision, "interval": interval, "contact": contact}))
+    };
     let with = |key: &str, value: Value| {
         let mut contact = contact.clone();
         contact[key] = value;
-        refusal::<MotionAnswer>(json!({"Contact": contact}))
+        answer("Contact", [0.0, 0.5], Some(&contact))
     };
     assert_eq!(with("t", json!(1.0)), "");
     assert!(with("t", json!(1.5)).contains("from 0 to 1"));
     assert!(with("t", json!(-0.5)).contains("from 0 to 1"));
     assert!(with("upper", json!(-0.25)).contains("the clearance is -0.25"));
     assert!(with("on_mesh", json!([0.0, 0.0])).contains("length"));
-    let first = |clear_until: f64| {
-        refusal::<FirstContact>(json!({"Within": {"clear_until": clear_until, "contact": contact}}))
-    };
-    assert_eq!(first(0.5), "");
-    assert!(first(0.75).contains("in order, not 0.75 to 0.5"));
-    let undecided =
-        |interval: [f64; 2]| refusal::<MotionAnswer>(json!({"Undecided": {"interval": interval}}));
-    assert_eq!(undecided([0.25, 0.5]), "");
-    assert!(undecided([0.5, 0.25]).contains("in order"));
-    assert_eq!(refusal::<MotionAnswer>(json!("Clear")), "");
+    assert_eq!(answer("Contact", [0.5, 0.5], Some(&contact)), "");
+    assert!(answer("Contact", [0.75, 0.5], Some(&contact)).contains("in order, not 0.75 to 0.5"));
+    assert!(answer("Contact", [0.5, 0.5], None).contains("the contact is None"));
+    assert!(answer("Clear", [1.0, 1.0], Some(&contact)).contains("the decision is Clear"));
+    assert_eq!(answer("Undecided", [0.25, 0.5], None), "");
+    assert!(answer("Undecided", [0.5, 0.25], None).contains("in order"));
+    assert_eq!(answer("Clear", [1.0, 1.0], None), "");
 }

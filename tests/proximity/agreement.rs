@@ -1,7 +1,7 @@
 //! Every engine gives the same answers, on pleasant and on nasty meshes.
 
 use crate::scenes::{bent_towards, extent, mesh_of, nasty_mesh, random_robot};
-use continuum_testing::Random;
+use continuum_testing::{Random, answered};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
@@ -201,14 +201,17 @@ fn a_batch_is_its_robots_one_by_one() {
         (0..5).map(|i| (random_robot(&mut random, 1.0, Vector::ZERO, i % 3), random.pose(0.3))).collect();
     let robots: Vec<_> = robots.iter().map(|(robot, pose)| (robot, *pose)).collect();
     for (name, mut engine) in engines(&mesh) {
-        let (mut per_link, mut minimum, mut clears) = (vec![Vec::new(); 9], Vec::new(), vec![true; 9]);
+        let (mut per_link, mut minimum, mut clears) =
+            (vec![Ok(Vec::new()); 9], Vec::new(), vec![Ok(true); 9]);
         engine.per_link_batch(&robots, &mut per_link).unwrap();
         engine.minimum_batch(&robots, &mut minimum).unwrap();
         // A margin that some keep and others do not.
+        let (per_link, minimum) = (answered(&per_link), answered(&minimum));
         let mut distances: Vec<_> = minimum.iter().map(|answer| answer.distance).collect();
         distances.sort_by(f64::total_cmp);
         let margin = distances[2];
         engine.clears_batch(&robots, margin, &mut clears).unwrap();
+        let clears = answered(&clears);
         assert_eq!([per_link.len(), minimum.len(), clears.len()], [robots.len(); 3]);
         assert!(clears.contains(&true) && clears.contains(&false), "{name}: {clears:?}");
         for (number, (robot, pose)) in robots.iter().enumerate() {
@@ -224,25 +227,33 @@ fn a_batch_is_its_robots_one_by_one() {
     }
 }
 
+/// A robot that is refused costs the others of its batch nothing.
 #[test]
-fn the_first_bad_robot_of_a_batch_is_reported_and_nothing_answered() {
+fn each_robot_of_a_batch_has_a_result_of_its_own() {
     let mut random = Random::new(14);
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
     let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
     let bad = [Pose::from_translation(Vector::X * 1e200), Pose::from_translation(Vector::splat(f64::NAN))];
     let mut robots = vec![(&robot, Pose::IDENTITY); 40];
     (robots[13].1, robots[29].1) = (bad[0], bad[1]);
-    let expected = Err(ProximityError::OutOfRange { link: 0, limit: 1e150 });
+    let refusals =
+        [(13, ProximityError::OutOfRange { link: 0, limit: 1e150 }), (29, ProximityError::PoseNotFinite)];
     for (name, mut engine) in engines(&mesh) {
         let (mut per_link, mut minimum, mut clears) = (Vec::new(), Vec::new(), Vec::new());
-        engine.per_link_batch(&robots[..9], &mut per_link).unwrap();
-        engine.minimum_batch(&robots[..9], &mut minimum).unwrap();
-        engine.clears_batch(&robots[..9], 0.0, &mut clears).unwrap();
-        assert_eq!(engine.per_link_batch(&robots, &mut per_link), expected, "{name}");
-        assert_eq!(engine.minimum_batch(&robots, &mut minimum), expected, "{name}");
-        assert_eq!(engine.clears_batch(&robots, 0.0, &mut clears), expected, "{name}");
-        assert_eq!([per_link.len(), minimum.len(), clears.len()], [0; 3], "{name}");
-        clears.push(true);
+        engine.per_link_batch(&robots, &mut per_link).unwrap();
+        engine.minimum_batch(&robots, &mut minimum).unwrap();
+        engine.clears_batch(&robots, 0.0, &mut clears).unwrap();
+        assert_eq!([per_link.len(), minimum.len(), clears.len()], [40; 3], "{name}");
+        for place in 0..40 {
+            let expected = refusals.iter().find(|(refused, _)| *refused == place).map(|(_, error)| *error);
+            let errors = [per_link[place].as_ref().err().copied(), minimum[place].err(), clears[place].err()];
+            assert_eq!(errors, [expected; 3], "{name}, {place}");
+            if expected.is_none() {
+                assert_eq!(per_link[place], per_link[0], "{name}, {place}");
+                assert_eq!(minimum[place], minimum[0], "{name}, {place}");
+                assert_eq!(clears[place], minimum[0].map(|least| least.distance > 0.0), "{name}, {place}");
+            }
+        }
         let margin = engine.clears_batch(&robots[..9], -1.0, &mut clears);
         assert_eq!(
             (margin, clears.len()),

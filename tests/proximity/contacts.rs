@@ -125,7 +125,7 @@ impl Passes {
 
 fn contacts(engine: &mut impl Proximity, robot: &Chain, margin: f64) -> Vec<Contact> {
     let mut out = Vec::new();
-    engine.within(robot, &Pose::IDENTITY, margin, &mut out).unwrap();
+    engine.within(robot, &Pose::IDENTITY, margin, 0.0, &mut out).unwrap();
     out
 }
 
@@ -306,7 +306,7 @@ fn the_minimum_within_a_bound() {
                 touching += usize::from(least.distance == 0.0);
             }
             assert_eq!(engine.minimum_within(&robot, &pose, -1.0), Ok(None));
-            assert!(engine.within(&robot, &pose, f64::NAN, &mut Vec::new()).is_err());
+            assert!(engine.within(&robot, &pose, f64::NAN, 0.0, &mut Vec::new()).is_err());
         }
     }
     assert!(within > 1000 && beyond > 300 && touching > 300, "{within} {beyond} {touching}");

@@ -131,7 +131,7 @@ fn rounded(answer: LinkProximity, random: &mut Random) -> LinkProximity {
         1 => x.next_down(),
         _ => x,
     };
-    let LinkProximity { mut distance, mut on_robot, mut on_mesh, .. } = answer;
+    let (mut distance, mut on_robot, mut on_mesh) = (answer.distance, answer.on_robot, answer.on_mesh);
     distance = off(distance).max(0.0);
     for point in [&mut on_robot, &mut on_mesh] {
         *point = Vector::new(off(point.x), off(point.y), off(point.z));

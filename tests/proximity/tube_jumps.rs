@@ -14,15 +14,9 @@ fn speck(at: Vector, size: f64, random: &mut Random) -> BvhSearch {
 }
 
 /// The finest bounds that the samples allow, beginning with a tolerance.
-fn finest(search: &mut BvhSearch, tube: &Tube, mut tolerance: f64) -> Clearance {
-    loop {
-        search.forget();
-        match search.clearance(tube, &Pose::IDENTITY, tolerance) {
-            Ok(found) => return found,
-            Err(ProximityError::ToleranceTooFine { possible, .. }) => tolerance = 1.01 * possible,
-            Err(error) => panic!("{error}"),
-        }
-    }
+fn finest(search: &mut BvhSearch, tube: &Tube, tolerance: f64) -> Clearance {
+    search.forget();
+    search.clearance(tube, &Pose::IDENTITY, tolerance).unwrap()
 }
 
 /// A tube that is bent up to 0.3 and straight from there on, sampled at every 1, behind a face at z = 0. A speck is 0.02
@@ -165,7 +159,7 @@ fn judge(random: &mut Random, rounds: usize) -> Seen {
             let below = truth.lower * (1.0 - 1e-9);
             search.forget();
             let touches = search.tube_clears(&tube, &Pose::IDENTITY, below, 1e-3 * gap);
-            let is_misjudged = is_misjudged || truth.lower > 0.0 && touches == Ok(Decision::Touches);
+            let is_misjudged = is_misjudged || truth.lower > 0.0 && touches == Ok(Decision::Contact);
             if is_wrong || is_misjudged {
                 seen.wrong += 1;
                 if seen.wrong < 5 {

@@ -116,8 +116,8 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
         }
     }
     let (mut contacts, mut others) = (Vec::new(), Vec::new());
-    let kept = search.within(robot, pose, margin, &mut contacts);
-    let asked = fresh.within(robot, pose, margin, &mut others);
+    let kept = search.within(robot, pose, margin, 0.0, &mut contacts);
+    let asked = fresh.within(robot, pose, margin, 0.0, &mut others);
     assert_eq!((kept.is_ok(), &contacts), (asked.is_ok(), &others), "within {margin}{}", problem());
     assert_eq!(kept.is_ok(), margin >= 0.0, "within {margin}{}", problem());
     assert!(contacts.iter().all(|contact| contact.distance <= margin), "beyond {margin}{}", problem());
@@ -130,7 +130,7 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
     let mut batch = Vec::new();
     if search.minimum_batch(&places, &mut batch).is_ok() {
         for ((robot, place), answer) in places.iter().zip(&batch) {
-            assert_eq!(fresh.minimum(robot, place).as_ref(), Ok(answer), "{place:?}{}", problem());
+            assert_eq!(fresh.minimum(robot, place), *answer, "{place:?}{}", problem());
         }
     }
     tube(search, scene, distance, margin);
@@ -152,7 +152,7 @@ fn tube(search: &mut BvhSearch, scene: &Scene, distance: f64, margin: f64) {
             Ok(Decision::Clear) => {
                 assert!(distance > margin, "clear of {margin} at {distance}{}", scene.problem())
             }
-            Ok(Decision::Touches) => {
+            Ok(Decision::Contact) => {
                 assert!(distance <= margin, "within {margin} at {distance}{}", scene.problem())
             }
             _ => {}

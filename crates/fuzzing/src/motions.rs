@@ -4,7 +4,7 @@
 use crate::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, FirstContact, MotionAnswer, Proximity};
+use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity};
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
 
 /// At so many times a motion is compared with its shapes.
@@ -78,9 +78,10 @@ fn check<M: Motion>(
     assert_eq!(search.time_of_contact(motion, margin, resolution), first, "asked again{}", problem());
     // Until when it is said to be clear.
     let clear_until = [
-        match answer {
-            Ok(MotionAnswer::Clear) => Some(2.0),
-            Ok(MotionAnswer::Contact { t, upper, .. }) => {
+        match &answer {
+            Ok(MotionAnswer { decision: Decision::Clear, .. }) => Some(2.0),
+            Ok(MotionAnswer { contact: Some(shape), .. }) => {
+                let (t, upper) = (shape.t, shape.upper);
                 assert!((0.0..=1.0).contains(&t) && upper <= margin, "{answer:?} {margin}{}", problem());
                 let there = distance(t);
                 assert!(
@@ -90,16 +91,17 @@ fn check<M: Motion>(
                 );
                 None
             }
-            Ok(MotionAnswer::Undecided { interval, .. }) => Some(interval[0]),
+            Ok(MotionAnswer { interval, .. }) => Some(interval[0]),
             _ => None,
         },
-        match first {
-            Ok(FirstContact::Never) => Some(2.0),
-            Ok(FirstContact::Within { clear_until, t, upper, .. }) => {
-                assert!(clear_until <= t && upper <= margin, "{first:?} {margin}{}", problem());
-                Some(clear_until)
+        match &first {
+            Ok(MotionAnswer { decision: Decision::Clear, .. }) => Some(2.0),
+            Ok(MotionAnswer { interval: [clear_until, t], contact: Some(shape), .. }) => {
+                let is_right = clear_until <= t && *t == shape.t && shape.upper <= margin;
+                assert!(is_right, "{first:?} {margin}{}", problem());
+                Some(*clear_until)
             }
-            Ok(FirstContact::Undecided { interval, .. }) => Some(interval[0]),
+            Ok(MotionAnswer { interval, .. }) => Some(interval[0]),
             _ => None,
         },
     ];
@@ -111,8 +113,8 @@ fn check<M: Motion>(
             assert!(is_clear, "{there} at {t}, clear of {margin} until {clear_until}{}", problem());
         }
     }
-    let contradict = (matches!(answer, Ok(MotionAnswer::Clear))
-        && matches!(first, Ok(FirstContact::Within { .. })))
-        || (matches!(answer, Ok(MotionAnswer::Contact { .. })) && first == Ok(FirstContact::Never));
+    let decisions = [answer, first].map(|answer| answer.map(|answer| answer.decision));
+    let contradict = decisions == [Ok(Decision::Clear), Ok(Decision::Contact)]
+        || decisions == [Ok(Decision::Contact), Ok(Decision::Clear)];
     assert!(!contradict, "{answer:?} {first:?}{}", problem());
 }

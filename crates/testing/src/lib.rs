@@ -26,3 +26,8 @@ pub mod rotation;
 pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, distance_cases, read_lines};
 pub use random::Random;
+
+/// The answers of a batch, each of which there has to be.
+pub fn answered<T: Clone, E: std::fmt::Debug>(batch: &[Result<T, E>]) -> Vec<T> {
+    batch.iter().map(|answer| answer.as_ref().expect("an answer").clone()).collect()
+}

@@ -3,24 +3,28 @@
 use super::search::{BvhSearch, Context, Memory};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::pieces::PlacedTube;
-use crate::query::clearance::{Place, TubeMemory, TubeSearch};
+use crate::query::clearance::{Start, TubeMemory, TubeSearch};
 use crate::query::{check_margin, check_not_negative};
 use crate::robot::Tube;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
-    /// The clearance of a tube, between bounds that are at most `tolerance` apart.
+    /// The clearance of a tube, between bounds that are at most `tolerance` apart where the tube allows that.
     ///
     /// `pose` is the tube's in the mesh's frame. The bounds hold for the tube as it was given, all rounding included:
     /// `lower` <= clearance <= `upper`, and `upper` is realised by the points of the answer. With a tolerance of 0, which
     /// suits straight pieces alone, they differ by rounding.
     ///
+    /// There are always bounds. [`resolved`](Clearance::resolved) says whether they are as close as was asked for: samples may
+    /// be too coarse for that, rounding may hide it, and a query ends after 65,536 pieces. What the tube states as its own
+    /// error is in both bounds, and no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
+    ///
     /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the tube is empty, or its curve not finite somewhere; the pose is not finite or
-    /// moves it out of range; or the samples allow no answer as fine as that.
+    /// The tolerance is negative or NaN; the curve of the tube is not finite somewhere; or the pose is not finite or moves
+    /// it out of range.
     pub fn clearance(
         &mut self,
         tube: &Tube,
@@ -72,7 +76,7 @@ impl BvhSearch {
 
     /// Whether a tube keeps more than `margin` away from the mesh.
     ///
-    /// `Clear` and `Touches` are proven. `Undecided` is the answer only where the clearance is within `resolution` of
+    /// `Clear` and `Contact` are proven. `Undecided` is the answer only where the clearance is within `resolution` of
     /// the margin.
     ///
     /// ```
@@ -84,7 +88,7 @@ impl BvhSearch {
     /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
     /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
-    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Touches);
+    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Contact);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -102,34 +106,34 @@ impl BvhSearch {
         self.context().tube_clears(tube, pose, margin, resolution)
     }
 
-    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets one entry per tube.
+    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets the answer of each, or why there is none.
     ///
     /// # Errors
-    /// Those of the first tube that has one; `out` is then empty.
+    /// The tolerance is negative or NaN; `out` is then empty.
     pub fn clearance_batch(
         &mut self,
         tubes: &[(&Tube, Pose)],
         tolerance: Real,
-        out: &mut Vec<Clearance>,
+        out: &mut Vec<Result<Clearance, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
         check_not_negative("tolerance", tolerance)?;
         self.batch(tubes, out, Clearance::unanswered, |context, (tube, pose), out| {
-            *out = context.clearance(tube, pose, tolerance)?;
-            Ok(())
-        })
+            *out = context.clearance(tube, pose, tolerance);
+        });
+        Ok(())
     }
 
-    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets one entry per tube.
+    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets the answer of each, or why there is none.
     ///
     /// # Errors
-    /// Those of the first tube that has one; `out` is then empty.
+    /// The margin or the resolution is negative or NaN; `out` is then empty.
     pub fn tube_clears_batch(
         &mut self,
         tubes: &[(&Tube, Pose)],
         margin: Real,
         resolution: Real,
-        out: &mut Vec<Decision>,
+        out: &mut Vec<Result<Decision, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
@@ -139,10 +143,10 @@ impl BvhSearch {
             out,
             || Decision::Undecided,
             |context, (tube, pose), out| {
-                *out = context.tube_clears(tube, pose, margin, resolution)?;
-                Ok(())
+                *out = context.tube_clears(tube, pose, margin, resolution);
             },
-        )
+        );
+        Ok(())
     }
 }
 
@@ -196,7 +200,7 @@ impl<'a> Context<'a> {
         self,
         tube: &'a Tube,
         pose: &'a Pose,
-    ) -> Result<(TubeSearch<'a>, &'a mut Option<Place>), ProximityError> {
+    ) -> Result<(TubeSearch<'a>, &'a mut Option<Start>), ProximityError> {
         let Self { level, mesh, memory } = self;
         let hierarchy = &mesh.hierarchy;
         let Memory { scratch, tube: TubeMemory { pieces, last }, .. } = memory;

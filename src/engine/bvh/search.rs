@@ -2,16 +2,15 @@
 
 use super::prepared_mesh::PreparedMesh;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
-use crate::engine::{HasMesh, Proximity};
+use crate::engine::{Engine, Proximity, any_triangle};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use crate::query::clearance::TubeMemory;
 use crate::query::contacts::{ContactSearch, LocalMinima};
 use crate::query::motion::MotionMemory;
 use crate::query::nearest::{
-    ClearsMemory, ClearsSearch, MinimumMemory, OfLink, PerLinkMemory, minimum_within, per_link,
+    ClearsMemory, ClearsSearch, MinimumMemory, PerLinkMemory, minimum_within, per_link,
 };
-use crate::query::{check_bound, check_margin};
 use crate::robot::Chain;
 use crate::search::hierarchy::{MeshSearch, Scratch};
 use crate::threads::in_shares;
@@ -176,25 +175,22 @@ impl BvhSearch {
         self.memory.scratch.work
     }
 
-    /// The answers about many robots, on all cores.
-    ///
-    /// # Errors
-    /// Those of the first robot that has one; `out` is then empty.
+    /// The answers about many robots, on all cores. `out` gets them in order; what it had is there to be used again.
     pub(super) fn batch<R: Sync, T: Send>(
         &mut self,
         robots: &[R],
-        out: &mut Vec<T>,
+        out: &mut Vec<Result<T, ProximityError>>,
         unanswered: impl Fn() -> T,
-        answer: impl Fn(Context, &R, &mut T) -> Result<(), ProximityError> + Sync + Send,
-    ) -> Result<(), ProximityError> {
-        out.resize_with(robots.len(), unanswered);
+        answer: impl Fn(Context, &R, &mut Result<T, ProximityError>) + Sync + Send,
+    ) {
+        out.resize_with(robots.len(), || Ok(unanswered()));
         let (level, mesh) = (self.level, &*self.mesh);
-        let result = in_shares(robots, out, &mut self.batch, |memory, robots, out| {
+        in_shares(robots, out, &mut self.batch, |memory, robots, out| {
             memory.forget();
-            let mut pairs = robots.iter().zip(out);
-            pairs.try_for_each(|(robot, out)| answer(Context { level, mesh, memory }, robot, out))
+            for (robot, out) in robots.iter().zip(out) {
+                answer(Context { level, mesh, memory }, robot, out);
+            }
         });
-        result.inspect_err(|_| out.clear())
     }
 
     pub(super) fn prepared(&self) -> &PreparedMesh {
@@ -214,160 +210,123 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    fn per_link(
-        self,
-        robot: &Chain,
-        pose: &Pose,
-        out: &mut Vec<LinkProximity>,
-    ) -> Result<(), ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
+    fn per_link(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {
         let Self { level, mesh, memory } = self;
         let Memory { scratch, per_link: memory, .. } = memory;
         per_link(MeshSearch { level, hierarchy: &mesh.hierarchy, scratch }, robot, memory, out);
-        Ok(())
     }
 
-    fn minimum(self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
-        let mesh = &self.mesh.hierarchy.mesh;
-        // Where no search tells the nearest, any triangle is as near.
-        let found = self.nearest_link(robot, Real::INFINITY);
-        let (link, nearest) = found.unwrap_or_else(|| (0, robot.link(0).measure(0, mesh.corners(0))));
-        Ok(nearest.report(link))
-    }
-
-    fn minimum_within(
-        self,
-        robot: &Chain,
-        pose: &Pose,
-        bound: Real,
-    ) -> Result<Option<LinkProximity>, ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
-        let found = if bound < 0.0 { None } else { self.nearest_link(robot, bound) };
-        Ok(found.map(|(link, nearest)| nearest.report(link)))
-    }
-
-    fn nearest_link(self, robot: PlacedRobot, bound: Real) -> Option<OfLink> {
+    fn nearest(self, robot: PlacedRobot, bound: Real) -> Option<LinkProximity> {
         let Self { level, mesh, memory } = self;
         let Memory { scratch, minimum: memory, .. } = memory;
-        minimum_within(MeshSearch { level, hierarchy: &mesh.hierarchy, scratch }, robot, memory, bound)
+        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
+        let (link, nearest) = minimum_within(search, robot, memory, bound)?;
+        Some(robot.link(link).answer(link, &nearest))
     }
 
-    fn clears(self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
+    fn clears(self, robot: PlacedRobot, margin: Real) -> bool {
         let Self { level, mesh, memory } = self;
         let Memory { scratch, clears: memory, .. } = memory;
         let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
-        Ok(ClearsSearch { search, sides: mesh.sides(), robot, memory }.clears(margin))
+        ClearsSearch { search, sides: mesh.sides(), robot, memory }.clears(margin)
     }
 
-    fn within(
-        self,
-        robot: &Chain,
-        pose: &Pose,
-        margin: Real,
-        out: &mut Vec<Contact>,
-    ) -> Result<(), ProximityError> {
-        let robot = PlacedRobot::new(robot, pose)?;
+    fn within(self, robot: PlacedRobot, margin: Real, out: &mut Vec<Contact>) {
         let Self { level, mesh, memory } = self;
         let Memory { scratch, contacts: minima, .. } = memory;
         let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
         ContactSearch { search, across: mesh.across() }.within(robot, margin, minima, out);
-        Ok(())
     }
 }
 
-impl HasMesh for BvhSearch {
+impl Engine for BvhSearch {
     fn mesh(&self) -> &Mesh {
         &self.mesh.hierarchy.mesh
     }
-}
 
-impl Proximity for BvhSearch {
-    fn per_link(
+    fn ask_per_link(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        self.context().per_link(robot, pose, out)
+        self.context().per_link(robot, out);
+        Ok(())
     }
 
-    fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
-        self.context().minimum(robot, pose)
-    }
-
-    fn minimum_within(
+    fn ask_nearest(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        check_bound(bound)?;
-        self.context().minimum_within(robot, pose, bound)
+        Ok(self.context().nearest(robot, bound))
     }
 
-    fn clears(&mut self, robot: &Chain, pose: &Pose, margin: Real) -> Result<bool, ProximityError> {
-        check_margin(margin)?;
-        self.context().clears(robot, pose, margin)
+    fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
+        Ok(self.context().clears(robot, margin))
     }
 
-    fn within(
+    fn ask_contacts(
         &mut self,
-        robot: &Chain,
-        pose: &Pose,
+        robot: PlacedRobot,
         margin: Real,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
-        self.context().within(robot, pose, margin, out)
+        self.context().within(robot, margin, out);
+        Ok(())
     }
 
-    fn per_link_batch(
+    fn ask_per_link_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<Vec<LinkProximity>>,
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        self.batch(robots, out, Vec::new, |context, (robot, pose), out| context.per_link(robot, pose, out))
+        self.batch(robots, out, Vec::new, |context, (robot, pose), out| {
+            let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
+            *out = PlacedRobot::new(robot, pose).map(|robot| {
+                context.per_link(robot, &mut links);
+                links
+            });
+        });
+        Ok(())
     }
 
-    fn minimum_batch(
+    fn ask_minimum_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
-        out: &mut Vec<LinkProximity>,
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
         self.batch(robots, out, LinkProximity::unanswered, |context, (robot, pose), out| {
-            *out = context.minimum(robot, pose)?;
-            Ok(())
-        })
+            let mesh = &context.mesh.hierarchy.mesh;
+            *out = PlacedRobot::new(robot, pose).map(|robot| {
+                let found = context.nearest(robot, Real::INFINITY);
+                found.unwrap_or_else(|| any_triangle(mesh, robot))
+            });
+        });
+        Ok(())
     }
 
-    fn clears_batch(
+    fn ask_clears_batch(
         &mut self,
         robots: &[(&Chain, Pose)],
         margin: Real,
-        out: &mut Vec<bool>,
+        out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
         self.batch(
             robots,
             out,
             || false,
             |context, (robot, pose), out| {
-                *out = context.clears(robot, pose, margin)?;
-                Ok(())
+                *out = PlacedRobot::new(robot, pose).map(|robot| context.clears(robot, margin));
             },
-        )
+        );
+        Ok(())
     }
 
-    fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.mesh.hierarchy.mesh.check_moved(vertices)?;
+    fn move_vertices(&mut self, vertices: &[Vector]) {
         Arc::make_mut(&mut self.mesh).set_vertices(self.level, vertices);
         // It spoke of the mesh as it was.
         self.memory.forget_distances();
-        Ok(())
     }
 }
+
+impl Proximity for BvhSearch {}

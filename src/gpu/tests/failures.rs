@@ -91,7 +91,7 @@ fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, rest);
     engine.on_device().unwrap().parts[0].vertex_buffer.destroy();
     engine.set_vertices(&moved).unwrap();
-    let mut out = vec![Vec::new()];
+    let mut out = vec![Ok(Vec::new())];
     let failed = engine.per_link_batch(&[(&robot, pose)], &mut out);
     assert_eq!(failed, Err(ProximityError::Device(DeviceFailure::Refused)));
     assert!(out.is_empty());

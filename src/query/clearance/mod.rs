@@ -2,4 +2,4 @@
 
 mod tube_search;
 
-pub(crate) use tube_search::{Found, Place, TubeMemory, TubeSearch};
+pub(crate) use tube_search::{Found, Start, TubeMemory, TubeSearch};

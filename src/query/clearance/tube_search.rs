@@ -6,11 +6,15 @@
 //! it the curve is resolved as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies
 //! are the links themselves.
 
-use crate::answer::{Clearance, Decision, ProximityError};
+use crate::answer::{Clearance, Decision, ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
-use crate::pieces::{Outer, Piece, PlacedTube, Witness};
+use crate::pieces::{OnTube, Outer, Piece, PlacedTube};
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Real, Vector};
+
+/// After so many pieces none is halved any more, and the bounds are what they are: a limit on the time that a query takes,
+/// far above what any tolerance needs that the samples allow.
+const MOST_PIECES: u32 = 1 << 16;
 
 /// A tube on its way through a mesh.
 pub(crate) struct TubeSearch<'a> {
@@ -22,7 +26,7 @@ pub(crate) struct TubeSearch<'a> {
 
 /// Where a query ended, for the next to begin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct Start {
     pub triangle: u32,
     pub section: u32,
     arc: Real,
@@ -32,7 +36,7 @@ pub(crate) struct Place {
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
     pub pieces: Vec<Piece>,
-    pub last: Option<Place>,
+    pub last: Option<Start>,
 }
 
 impl TubeMemory {
@@ -44,41 +48,52 @@ impl TubeMemory {
 /// The least upper bound so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
-    pub place: Place,
+    pub upper: Real,
+    pub section: u32,
     pub witness: Witness,
-    pub on_mesh: Vector,
+}
+
+impl Found {
+    /// Where the next query begins.
+    fn start(&self) -> Start {
+        let Witness { triangle, arc_length, .. } = self.witness;
+        Start { triangle, section: self.section, arc: arc_length }
+    }
 }
 
 impl TubeSearch<'_> {
-    /// The clearance, with bounds no farther apart than the tolerance; and where it was found.
+    /// The clearance, with bounds no farther apart than the tolerance where the tube allows that; and where it was found.
     ///
     /// Each piece that is settled is handed over, with its body and how far away that is at least. Those that were not
     /// needed, because the tube touches the mesh, are left in `pieces`.
     pub(crate) fn clearance(
         &mut self,
         tolerance: Real,
-        last: Option<Place>,
+        last: Option<Start>,
         mut settled: impl FnMut(&Piece, &Outer, Real),
-    ) -> Result<(Clearance, Place), ProximityError> {
+    ) -> Result<(Clearance, Start), ProximityError> {
+        let uncertainty = self.tube.uncertainty();
         // So that the bounds of the answer are no farther apart than asked for after they are rounded.
-        let aim = (tolerance - 4.0 * self.tube.slack()).max(0.0);
+        let aim = (tolerance + uncertainty - 4.0 * self.tube.slack()).max(0.0);
+        let mut left = MOST_PIECES;
         let mut best = self.first_bound(last);
-        self.begin(best.witness.upper.max(tolerance));
+        self.begin(best.upper.max(tolerance));
         let mut lower = Real::INFINITY;
         let mut settle = |piece: &Piece, outer: &Outer, apart: Real| {
             lower = lower.min(apart);
             settled(piece, outer, apart);
         };
         while let Some(piece) = self.pieces.pop() {
-            let bound = best.witness.upper - aim;
+            let bound = best.upper - aim;
             // Nothing below 0 is left to be found.
-            if bound < 0.0 || best.witness.upper <= 0.0 {
+            if bound < 0.0 || best.upper <= 0.0 {
                 self.pieces.push(piece);
                 break;
             }
             let outer = self.outer(&piece)?;
+            left -= u32::from(left > 0);
             let is_wide =
-                outer.over > 2.0 * aim && (outer.is_flat() || outer.over > 0.25 * best.witness.upper);
+                left > 0 && outer.over > 2.0 * aim && (outer.is_flat() || outer.over > 0.25 * best.upper);
             if is_wide && let Some(halves) = self.halves(&piece, &outer, aim) {
                 if self.search.may_meet(&outer.body, bound) {
                     self.pieces.extend(halves);
@@ -87,29 +102,27 @@ impl TubeSearch<'_> {
                 }
                 continue;
             }
-            let start = [Some(best.place.triangle), None];
+            let start = [Some(best.witness.triangle), None];
             let Some(nearest) = self.search.nearest(&outer.body, Best::within(bound), start).nearest() else {
                 settle(&piece, &outer, bound);
                 continue;
             };
             let found = self.witness(&piece, &outer, &nearest);
-            if found.witness.upper < best.witness.upper {
+            if found.upper < best.upper {
                 best = found;
             }
-            if nearest.distance >= best.witness.upper - aim {
+            if nearest.distance >= best.upper - aim || left == 0 {
                 settle(&piece, &outer, nearest.distance);
             } else if let Some(halves) = self.halves(&piece, &outer, aim) {
-                self.extend_nearest_last(halves, found.place.arc);
+                self.extend_nearest_last(halves, found.witness.arc_length);
             } else {
                 settle(&piece, &outer, nearest.distance);
             }
         }
-        let Found { place, witness, on_mesh } = best;
-        let lower = if self.pieces.is_empty() { lower.min(witness.upper) } else { 0.0 };
-        self.check_resolved(witness.upper - lower, ("tolerance", tolerance))?;
-        let Place { triangle, section, arc } = place;
-        let Witness { upper, on_robot, .. } = witness;
-        Ok((Clearance { lower, upper, arc_length: arc, section, triangle, on_robot, on_mesh }, place))
+        let Found { upper, section, witness } = best;
+        let lower = if self.pieces.is_empty() { lower.min(upper) } else { 0.0 };
+        let resolved = upper - lower <= tolerance + uncertainty;
+        Ok((Clearance { lower, upper, resolved, uncertainty, section, witness }, best.start()))
     }
 
     /// Whether the tube keeps more than the margin away; and where it does not.
@@ -117,8 +130,8 @@ impl TubeSearch<'_> {
         &mut self,
         margin: Real,
         resolution: Real,
-        last: Option<Place>,
-    ) -> Result<(Decision, Option<Place>), ProximityError> {
+        last: Option<Start>,
+    ) -> Result<(Decision, Option<Start>), ProximityError> {
         let mut decision = Decision::Clear;
         self.begin(margin.max(resolution));
         while let Some(piece) = self.pieces.pop() {
@@ -137,14 +150,14 @@ impl TubeSearch<'_> {
                 continue;
             };
             let found = self.witness(&piece, &outer, &nearest);
-            let upper = found.witness.upper;
+            let upper = found.upper;
             if upper <= margin {
-                return Ok((Decision::Touches, Some(found.place)));
+                return Ok((Decision::Contact, Some(found.start())));
             }
             if upper - nearest.distance <= resolution {
                 decision = Decision::Undecided;
             } else if let Some(halves) = self.halves(&piece, &outer, 0.25 * outer.over) {
-                self.extend_nearest_last(halves, found.place.arc);
+                self.extend_nearest_last(halves, found.witness.arc_length);
             } else {
                 self.check_resolved(upper - nearest.distance, ("resolution", resolution))?;
                 decision = Decision::Undecided;
@@ -154,7 +167,7 @@ impl TubeSearch<'_> {
     }
 
     /// A first upper bound: from the triangle of the last answer, or from the one nearest to the longest section's chord.
-    fn first_bound(&mut self, last: Option<Place>) -> Found {
+    fn first_bound(&mut self, last: Option<Start>) -> Found {
         let sections = self.tube.sections();
         if let Some(last) = last.filter(|last| (last.section as usize) < sections.len()) {
             let place = self.tube.place_at(last.section, last.arc);
@@ -206,7 +219,7 @@ impl TubeSearch<'_> {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         let found = self.witness_at(piece.section, arc, nearest);
-        if nearest.distance > 0.0 || found.witness.upper <= 0.0 {
+        if nearest.distance > 0.0 || found.upper <= 0.0 {
             return found;
         }
         // The body's common point with a triangle that crosses it may lie on its boundary, from where nobody sees that
@@ -214,7 +227,7 @@ impl TubeSearch<'_> {
         let middle = outer.body.start() + outer.body.along() * 0.5;
         let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
         let deeper = self.witness_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
-        if deeper.witness.upper < found.witness.upper { deeper } else { found }
+        if deeper.upper < found.upper { deeper } else { found }
     }
 
     /// The point of a triangle nearest to a point.
@@ -224,9 +237,11 @@ impl TubeSearch<'_> {
     }
 
     fn witness_at(&self, section: u32, arc: Real, nearest: &Nearest) -> Found {
-        let witness = self.tube.witness(section, arc, nearest.on_mesh);
-        let place = Place { triangle: nearest.triangle, section, arc: witness.arc };
-        Found { place, witness, on_mesh: nearest.on_mesh }
+        let Nearest { triangle, on_mesh, .. } = *nearest;
+        let OnTube { upper, arc, point } = self.tube.near(section, arc, on_mesh);
+        let segment = self.tube.segment(section, arc);
+        let witness = Witness { on_robot: point, on_mesh, triangle, arc_length: arc, segment };
+        Found { upper, section, witness }
     }
 
     /// # Errors

@@ -62,7 +62,7 @@ use super::near_triangle::{End, Index, NearTriangles};
 use super::wall_pieces::{Around, Pieces};
 use crate::answer::{Contact, LinkProximity};
 use crate::mesh::Mesh;
-use crate::pair::{Place, PlacedLink, PlacedRobot, Ranked, add_contacts, rank_each};
+use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
@@ -197,7 +197,7 @@ impl<'a> RobotContacts<'a> {
             // Both are in the order of links.
             while links.next_if(|at| at.number < found.link as usize).is_some() {}
             let link = links.peek().map_or_else(|| robot.link(found.link as usize), |at| at.link);
-            Place {
+            PlacedPair {
                 ends: [link.start(), link.end()],
                 radius: link.radius(),
                 flat: link.flat(),
@@ -286,7 +286,7 @@ impl LocalMinima {
             self.around.clear();
             let (index, piece, around) = (&self.index, &mut self.piece, &mut self.around);
             let mut pieces = Pieces { link, wall, near, places, index, ranked, piece, around };
-            self.found.extend(pieces.first_triangles().map(|nearest| nearest.report(*link_number)));
+            self.found.extend(pieces.first_triangles().map(|nearest| link.answer(*link_number, nearest)));
         }
     }
 }

@@ -89,7 +89,7 @@ impl<M: Motion> Moment<'_, M> {
         };
         *last = Some(nearest.triangle);
         let found = search.witness(&piece, &outer, &nearest);
-        let upper = found.witness.upper;
+        let upper = found.upper;
         let is_fine = reach <= half_resolution;
         if upper <= self.margin {
             return Ok(Verdict::Contact { found, is_fine });

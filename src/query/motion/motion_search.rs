@@ -13,7 +13,7 @@
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::moment::{Moment, Verdict, Waiting};
-use crate::answer::{FirstContact, MotionAnswer, ProximityError};
+use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
 use crate::pieces::{Piece, PlacedTube};
 use crate::query::clearance::{Found, TubeSearch};
@@ -112,24 +112,15 @@ impl<M: Motion> MotionSearch<'_, M> {
                 let first = left.chain(undecided).fold(near, |first, times| {
                     if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
                 });
-                return Ok(MotionAnswer::Undecided { interval: first });
+                return Ok(MotionAnswer::undecided(first));
             }
             let seen = self.examine(&interval)?;
             if seen.is_near && near.is_none() {
                 near = Some((interval.times, self.shapes + PATIENCE));
             }
             if let Some(found) = seen.contact {
-                let t = interval.middle();
-                let Found { place, witness, on_mesh } = found;
-                return Ok(MotionAnswer::Contact {
-                    t,
-                    upper: witness.upper,
-                    arc_length: witness.arc,
-                    section: place.section,
-                    triangle: place.triangle,
-                    on_robot: witness.on_robot,
-                    on_mesh,
-                });
+                // Of the shapes before it nothing is proven yet but what was asked first.
+                return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.middle(), &found)));
             }
             if seen.is_undecided {
                 let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
@@ -137,11 +128,11 @@ impl<M: Motion> MotionSearch<'_, M> {
             }
             self.memory.intervals.extend(halves(&interval, &seen).into_iter().flatten());
         }
-        Ok(undecided.map_or(MotionAnswer::Clear, |interval| MotionAnswer::Undecided { interval }))
+        Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter.
-    pub(crate) fn first_contact(&mut self) -> Result<FirstContact, ProximityError> {
+    pub(crate) fn first_contact(&mut self) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
         let mut clear_until = 1.0;
         self.begin();
@@ -163,19 +154,16 @@ impl<M: Motion> MotionSearch<'_, M> {
             }
             self.memory.intervals.extend(halves(&interval, &seen).into_iter().rev().flatten());
         }
-        let Some((t, Found { place, witness, on_mesh })) = contact else {
-            return Ok(undecided.map_or(FirstContact::Never, |interval| FirstContact::Undecided { interval }));
+        let Some((t, found)) = contact else {
+            return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
         };
-        Ok(FirstContact::Within {
-            clear_until: undecided.map_or(clear_until, |interval| interval[0].min(clear_until)),
-            t,
-            upper: witness.upper,
-            arc_length: witness.arc,
-            section: place.section,
-            triangle: place.triangle,
-            on_robot: witness.on_robot,
-            on_mesh,
-        })
+        let clear_until = undecided.map_or(clear_until, |interval| interval[0].min(clear_until));
+        Ok(MotionAnswer::contact(clear_until, self.shape_in_contact(t, &found)))
+    }
+
+    /// A place that was found on the shape at `t`, which the tube is.
+    fn shape_in_contact(&self, t: Real, found: &Found) -> ShapeInContact {
+        ShapeInContact { t, upper: found.upper, section: found.section, witness: found.witness }
     }
 
     fn begin(&mut self) {

@@ -53,9 +53,9 @@ impl FewEach {
             nearest[owners[place]].take(ranked.nearest);
             place += 1;
         });
-        for ((number, _), best) in links.iter().zip(nearest) {
+        for ((number, link), best) in links.iter().zip(nearest) {
             if let Some(nearest) = best.nearest() {
-                out[*number] = nearest.report(*number);
+                out[*number] = link.answer(*number, &nearest);
             }
         }
         place as u64
@@ -112,7 +112,7 @@ mod tests {
                         None
                     });
                     out.push(match answer {
-                        Ok(best) => best.nearest().unwrap().report(number),
+                        Ok(best) => link.answer(number, &best.nearest().unwrap()),
                         Err(first) => {
                             assert_eq!(first, few[0]);
                             LinkProximity::unanswered()
@@ -124,7 +124,7 @@ mod tests {
                 let in_question = links.iter().filter(|link| !link.2).map(|link| link.1.len());
                 assert_eq!(measured, in_question.sum::<usize>() as u64);
                 for (number, (answer, best)) in out.iter().zip(&expected).enumerate() {
-                    let expected = best.nearest().unwrap().report(number);
+                    let expected = links[number].0.answer(number, &best.nearest().unwrap());
                     assert_eq!(bits(answer), bits(&expected), "{level:?}, seed {seed}");
                     touching += u32::from(answer.distance <= 0.0);
                     let as_near = |triangle: &&u32| **triangle == answer.triangle + 20;

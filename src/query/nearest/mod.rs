@@ -10,6 +10,6 @@ mod per_link;
 mod rough_sides;
 
 pub(crate) use clears::{ClearsMemory, ClearsSearch};
-pub(crate) use minimum::{MinimumMemory, OfLink, minimum_within};
+pub(crate) use minimum::{MinimumMemory, minimum_within};
 pub(crate) use per_link::{PerLinkMemory, per_link};
 pub(crate) use rough_sides::RoughSides;

@@ -37,7 +37,7 @@ pub(crate) fn per_link(
         before = Some(match answer {
             Ok(best) => {
                 let nearest = best.nearest().unwrap_or_else(|| search.any(&link));
-                out.push(nearest.report(number));
+                out.push(link.answer(number, &nearest));
                 nearest.triangle
             }
             Err(likely) => {

@@ -7,18 +7,18 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A share of a section; or, from one share to another, the chord between the two.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct SampledPlace {
     pub section: usize,
     pub shares: [Real; 2],
 }
 
 /// The places to try: nine even shares of each section; and where a shape is given by samples, eight of its samples and
 /// the chords from them to the next, which are known best.
-pub(super) fn places(tube: &Tube) -> Vec<Place> {
+pub(super) fn places(tube: &Tube) -> Vec<SampledPlace> {
     const PARTS: u32 = 8;
     let mut places = Vec::new();
     for (number, section) in tube.sections().iter().enumerate() {
-        let mut add = |shares: [Real; 2]| places.push(Place { section: number, shares });
+        let mut add = |shares: [Real; 2]| places.push(SampledPlace { section: number, shares });
         for part in 0..=PARTS {
             add([Real::from(part) / Real::from(PARTS); 2]);
         }
@@ -69,7 +69,7 @@ pub(super) struct Moved {
 
 impl Sampled {
     /// Samples a shape.
-    pub(super) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, places: &[Place]) {
+    pub(super) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, places: &[SampledPlace]) {
         self.t = t;
         // As in queries: a placed point is off by less than 16 roundings of the largest coordinate; a place along the
         // curve by less than one of its length.

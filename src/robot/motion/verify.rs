@@ -5,7 +5,7 @@
 //! and so on steps apart and with the first shape: the way that was stated for the steps between adds up, and what is
 //! not known of two shapes counts once.
 
-use super::sampled::{Moved, Place, Sampled, places};
+use super::sampled::{Moved, Sampled, SampledPlace, places};
 use super::{Motion, Sections, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
@@ -80,7 +80,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
 }
 
 /// How far a place may move, and by how much it may turn, between two times.
-fn way_and_angle(motion: &impl Motion, place: &Place, times: [Real; 2]) -> [Real; 2] {
+fn way_and_angle(motion: &impl Motion, place: &SampledPlace, times: [Real; 2]) -> [Real; 2] {
     let speed = motion.speed(place.section, place.shares, times);
     let apart = times[1] - times[0];
     [speed.point * apart, speed.turn * apart]
@@ -88,7 +88,12 @@ fn way_and_angle(motion: &impl Motion, place: &Place, times: [Real; 2]) -> [Real
 
 /// # Errors
 /// Something moved faster than stated on the way from an earlier shape to a later one.
-fn check(before: &Sampled, here: &Sampled, places: &[Place], motion: &impl Motion) -> Result<(), RobotError> {
+fn check(
+    before: &Sampled,
+    here: &Sampled,
+    places: &[SampledPlace],
+    motion: &impl Motion,
+) -> Result<(), RobotError> {
     let times = [before.t, here.t];
     let (t, apart) = (0.5 * (times[0] + times[1]), times[1] - times[0]);
     for (number, place) in places.iter().enumerate() {
@@ -96,7 +101,7 @@ fn check(before: &Sampled, here: &Sampled, places: &[Place], motion: &impl Motio
         let (whole, steps) = (way_and_angle(motion, place, times), before.stated(number));
         // Sums of fewer than 2^32 terms above 0, each of which has a few roundings.
         let up = 1.0 + 2.0_f64.powi(34) * Real::UNIT_ROUNDOFF;
-        let &Place { section, shares: [share, _] } = place;
+        let &SampledPlace { section, shares: [share, _] } = place;
         for (moved, [whole, steps], is_turn) in
             [(way, [whole[0], steps[0]], false), (angle, [whole[1], steps[1]], true)]
         {

@@ -18,6 +18,8 @@ pub(super) enum Curve {
         points: Vec<Vector>,
         /// The length of the polyline up to each point.
         arcs: Vec<Real>,
+        /// For each point the segment of the input that begins there.
+        segments: Vec<u32>,
     },
     Function(Arc<Function>),
 }
@@ -33,7 +35,7 @@ pub(crate) struct Foot {
 
 /// A place of a curve.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PlaceOnCurve {
     pub point: Vector,
     /// How far off the point may be.
     pub off: Real,
@@ -46,7 +48,9 @@ pub(crate) struct Place {
 impl Clone for Curve {
     fn clone(&self) -> Self {
         match self {
-            Self::Samples { points, arcs } => Self::Samples { points: points.clone(), arcs: arcs.clone() },
+            Self::Samples { points, arcs, segments } => {
+                Self::Samples { points: points.clone(), arcs: arcs.clone(), segments: segments.clone() }
+            }
             Self::Function(curve) => Self::Function(Arc::clone(curve)),
         }
     }
@@ -54,9 +58,13 @@ impl Clone for Curve {
     /// In the memory that it has.
     fn clone_from(&mut self, source: &Self) {
         match (&mut *self, source) {
-            (Self::Samples { points, arcs }, Self::Samples { points: from, arcs: lengths }) => {
+            (
+                Self::Samples { points, arcs, segments },
+                Self::Samples { points: from, arcs: lengths, segments: numbers },
+            ) => {
                 points.clone_from(from);
                 arcs.clone_from(lengths);
+                segments.clone_from(numbers);
             }
             _ => *self = source.clone(),
         }
@@ -65,17 +73,24 @@ impl Clone for Curve {
 
 impl Default for Curve {
     fn default() -> Self {
-        Self::Samples { points: Vec::new(), arcs: Vec::new() }
+        Self::Samples { points: Vec::new(), arcs: Vec::new(), segments: Vec::new() }
     }
 }
 
 impl Curve {
     /// The memory of samples.
-    pub(super) fn into_samples(self) -> (Vec<Vector>, Vec<Real>) {
+    pub(super) fn into_samples(self) -> (Vec<Vector>, Vec<Real>, Vec<u32>) {
         match self {
-            Self::Samples { points, arcs } => (points, arcs),
-            Self::Function(_) => (Vec::new(), Vec::new()),
+            Self::Samples { points, arcs, segments } => (points, arcs, segments),
+            Self::Function(_) => (Vec::new(), Vec::new(), Vec::new()),
         }
+    }
+
+    /// The segment of the input at an arc length of a section; none where the curve is a function.
+    pub(super) fn segment(&self, section: &Section, arc: Real) -> Option<u32> {
+        let Self::Samples { segments, .. } = self else { return None };
+        let from = self.tick(section, arc).saturating_sub(1).max(section.first);
+        segments.get(from as usize).copied()
     }
 
     pub(super) fn point(&self, section: &Section, tick: u32) -> Vector {
@@ -149,9 +164,9 @@ impl Curve {
     /// The place at a share of the section: between two samples, at the same share of the line between them.
     ///
     /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2 away at its share u.
-    pub(super) fn at_share(&self, section: &Section, share: Real) -> Place {
+    pub(super) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         match self {
-            Self::Samples { points, arcs } => {
+            Self::Samples { points, arcs, .. } => {
                 let [from, to] = self.ticks_around(section, [share; 2]);
                 // At a sample the segment before it or behind it.
                 let (from, to) = (from as usize, (to as usize).max(from as usize + 1));
@@ -164,11 +179,11 @@ impl Curve {
                 let tilt = section.curvature * length * section.stretch + rounding / length;
                 let longest = length * section.stretch;
                 let off = 0.5 * section.curvature * longest * longest * (along * (1.0 - along)).max(0.0);
-                Place { point: a + (b - a) * along, off, direction: direction(b - a), tilt }
+                PlaceOnCurve { point: a + (b - a) * along, off, direction: direction(b - a), tilt }
             }
             Self::Function(curve) => {
                 let (point, tangent) = curve(section.start + (section.end - section.start) * share);
-                Place { point, off: 0.0, direction: direction(tangent), tilt: 0.0 }
+                PlaceOnCurve { point, off: 0.0, direction: direction(tangent), tilt: 0.0 }
             }
         }
     }
@@ -177,7 +192,7 @@ impl Curve {
     /// section.
     pub(super) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
         match self {
-            Self::Samples { points, arcs } => {
+            Self::Samples { points, arcs, .. } => {
                 let (first, last) = (section.first as usize, section.last as usize);
                 let from = (self.tick(section, arc) as usize).clamp(first, last);
                 foot_on_samples(&points[..=last], arcs, first, from, point)

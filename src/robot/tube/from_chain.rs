@@ -31,10 +31,11 @@ impl Tube {
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
     pub fn set_chain(&mut self, chain: &Chain) {
-        let links = chain.links().iter().map(|link| Straight {
+        let links = chain.links().iter().enumerate().map(|(number, link)| Straight {
             ends: [link.start(), link.end()],
             radius: link.radius(),
             caps: link.caps(),
+            segment: chain.segment_of(number) as u32,
         });
         self.set_straight(links, Lasting::WhileAllNear);
     }
@@ -55,11 +56,12 @@ impl Tube {
             caps.clear();
             caps.resize(radii.len(), [Cap::Round; 2]);
         }
-        let links = ends.windows(2).zip(radii).zip(&caps).map(|((ends, &radius), &caps)| {
-            let ends = [ends[0], ends[1]];
-            let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
-            Straight { ends, radius, caps }
-        });
+        let links =
+            ends.windows(2).zip(radii).zip(&caps).zip(0..).map(|(((ends, &radius), &caps), segment)| {
+                let ends = [ends[0], ends[1]];
+                let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
+                Straight { ends, radius, caps, segment }
+            });
         self.set_straight(links, Lasting::WhileNear);
         (self.ends, self.caps) = (ends, caps);
     }
@@ -67,12 +69,13 @@ impl Tube {
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
     /// `lasting` tells of flat ends that are not so by the radii alone.
     fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {
-        let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
+        let (mut points, mut arcs, mut segments) = std::mem::take(&mut self.curve).into_samples();
         points.clear();
+        segments.clear();
         arcs.clear();
         self.sections.clear();
         let mut start = 0.0;
-        for Straight { ends, radius, caps } in sections {
+        for Straight { ends, radius, caps, segment } in sections {
             let along = ends[1] - ends[0];
             let (axis, end) = (direction(along), start + length(along));
             let face = |end: usize| {
@@ -92,12 +95,13 @@ impl Tube {
             });
             points.extend(ends);
             arcs.extend([start, end]);
+            segments.extend([segment; 2]);
             start = end;
         }
         self.error = 0.0;
         // Lengths along the tube are rounded too.
         self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
-        self.curve = Curve::Samples { points, arcs };
+        self.curve = Curve::Samples { points, arcs, segments };
         self.mark_lasting_faces();
     }
 }
@@ -107,4 +111,6 @@ struct Straight {
     ends: [Vector; 2],
     radius: Real,
     caps: [Cap; 2],
+    /// The segment of the input that it stands for.
+    segment: u32,
 }

@@ -16,7 +16,7 @@ pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
 use super::{Cap, RobotError};
-use curve::{Curve, Foot, Place};
+use curve::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
 
 /// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius for each section.
@@ -54,6 +54,8 @@ use parry3d_f64::math::{Real, Vector};
 pub struct Tube {
     curve: Curve,
     sections: Vec<Section>,
+    /// Memory for the next samples: what they are measured in, so that the tube stays as it was where they are refused.
+    spare: (Curve, Vec<Section>),
     /// How far the curve may be from what was given.
     error: Real,
     /// The largest coordinate of the centreline, or its length, or more.
@@ -115,18 +117,21 @@ impl Tube {
     /// [`with_error`](Self::with_error) stays.
     ///
     /// # Errors
-    /// As [`from_samples`](Self::from_samples). The tube then has no section, and every query refuses it.
+    /// As [`from_samples`](Self::from_samples). The tube is then what it was before.
     pub fn set_samples(
         &mut self,
         points: &[Vector],
         segment_radii: &[Real],
         end_tangents: Option<[Vector; 2]>,
     ) -> Result<(), RobotError> {
-        let result = self.measure(points, segment_radii, end_tangents);
-        if result.is_err() {
-            self.sections.clear();
+        let reach = self.reach;
+        self.exchange();
+        let measured = self.measure(points, segment_radii, end_tangents);
+        if measured.is_err() {
+            self.exchange();
+            self.reach = reach;
         }
-        result
+        measured
     }
 
     /// The same tube, each point of which may be off by up to `error`, because the sensor or the kinematics are. For a
@@ -178,6 +183,11 @@ impl Tube {
         self.curve.tick(section, arc)
     }
 
+    /// The segment of the input at an arc length of a section; the section's number where the curve is a function.
+    pub(crate) fn segment(&self, number: u32, arc: Real) -> u32 {
+        self.curve.segment(&self.sections[number as usize], arc).unwrap_or(number)
+    }
+
     pub(crate) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
         self.curve.foot(section, arc, point)
     }
@@ -193,7 +203,7 @@ impl Tube {
     }
 
     /// The place at a share of a section.
-    pub(crate) fn at_share(&self, section: &Section, share: Real) -> Place {
+    pub(crate) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         self.curve.at_share(section, share)
     }
 
@@ -203,10 +213,17 @@ impl Tube {
         Some(self.ticks_around(section, [share; 2]).map(|tick| self.share(section, tick)))
     }
 
+    /// Exchanges curve and sections for the spare ones.
+    fn exchange(&mut self) {
+        std::mem::swap(&mut self.curve, &mut self.spare.0);
+        std::mem::swap(&mut self.sections, &mut self.spare.1);
+    }
+
     pub(crate) fn empty() -> Self {
         Self {
             curve: Curve::default(),
             sections: Vec::new(),
+            spare: (Curve::default(), Vec::new()),
             error: 0.0,
             reach: 0.0,
             ends: Vec::new(),

@@ -149,11 +149,13 @@ impl Tube {
         let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
 
-        let (mut points, mut arcs) = std::mem::take(&mut self.curve).into_samples();
+        let (mut points, mut arcs, mut segments) = std::mem::take(&mut self.curve).into_samples();
         points.clear();
         points.extend_from_slice(samples);
         arcs.clear();
         arcs.resize(samples.len(), 0.0);
+        segments.clear();
+        segments.resize(samples.len(), 0);
         self.sections.clear();
         let rounding = 4.0 * Real::UNIT_ROUNDOFF * reach;
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
@@ -180,6 +182,7 @@ impl Tube {
                 }
             }
             arc += segment.length;
+            segments[last] = k as u32;
             // Where it already is, unless points are repeated.
             last += 1;
             points[last] = sample;
@@ -194,6 +197,7 @@ impl Tube {
         }
         points.truncate(last + 1);
         arcs.truncate(last + 1);
+        segments.truncate(last + 1);
         match open.close(last, arc) {
             Ok(section) => self.sections.push(section),
             Err(error) => result = result.and(Err(error)),
@@ -206,7 +210,7 @@ impl Tube {
         if result.is_ok() {
             result = self.stand_faces(&points, tangents, rounding, samples);
         }
-        self.curve = Curve::Samples { points, arcs };
+        self.curve = Curve::Samples { points, arcs, segments };
         result
     }
 

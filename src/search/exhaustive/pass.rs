@@ -6,11 +6,10 @@ use super::scan::{Findings, Job, JobLink, SharedBound};
 use crate::answer::{LinkProximity, ProximityError, Work};
 use crate::distance::Scalar;
 use crate::mesh::Mesh;
-use crate::pair::{Nearest, PlacedRobot, SearchLink};
-use crate::robot::Chain;
+use crate::pair::{Nearest, PlacedLink, PlacedRobot, SearchLink};
 use crate::threads::{Lazy, each, threads};
 use fearless_simd::Level;
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::Real;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -70,8 +69,10 @@ pub(crate) struct Pass<T> {
     links: Vec<JobLink<T>>,
     /// Links that the precision `T` does not resolve.
     double: Vec<JobLink<f64>>,
-    /// The links of each robot.
-    robots: Vec<Range<usize>>,
+    /// All links in the mesh's frame.
+    placed: Vec<PlacedLink>,
+    /// The links of each robot, or why it is refused.
+    robots: Vec<Result<Range<usize>, ProximityError>>,
     bounds: Vec<SharedBound>,
     /// One for each thread; the first has what all have found.
     findings: Vec<Findings>,
@@ -84,6 +85,7 @@ impl<T> Default for Pass<T> {
         Self {
             links: Vec::new(),
             double: Vec::new(),
+            placed: Vec::new(),
             robots: Vec::new(),
             bounds: Vec::new(),
             findings: Vec::new(),
@@ -93,21 +95,18 @@ impl<T> Default for Pass<T> {
 }
 
 impl<T: Kernels> Pass<T> {
-    /// Looks at all triangles, for some links of each robot.
-    ///
-    /// # Errors
-    /// Those of the first robot that has one.
+    /// Looks at all triangles, for some links of each robot. Those that are refused find nothing.
     pub(crate) fn run<'a>(
         &mut self,
         level: Level,
         culling: bool,
         triangles: &Triangles<T>,
-        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         links: Range<usize>,
         aim: Aim,
-    ) -> Result<Work, ProximityError> {
-        let links = self.place(level, triangles, robots, links, aim)?;
-        let Self { links: resolved, double, bounds, findings, robots, is_full } = self;
+    ) -> Work {
+        let links = self.place(level, triangles, robots, links, aim);
+        let Self { links: resolved, double, bounds, findings, robots, is_full, .. } = self;
         bounds.clear();
         bounds.resize_with(if aim == Aim::EachLink { links } else { robots.len() }, || {
             SharedBound::new(aim.bound())
@@ -136,7 +135,7 @@ impl<T: Kernels> Pass<T> {
         for other in others {
             first[0].merge(other);
         }
-        Ok(first[0].work)
+        first[0].work
     }
 
     /// Sorts the robots' links by the precision that resolves them, and counts them.
@@ -144,20 +143,27 @@ impl<T: Kernels> Pass<T> {
         &mut self,
         level: Level,
         triangles: &Triangles<T>,
-        robots: impl Iterator<Item = (&'a Chain, &'a Pose)>,
+        robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         of_each: Range<usize>,
         aim: Aim,
-    ) -> Result<usize, ProximityError> {
-        let Self { links, double, robots: ranges, .. } = self;
+    ) -> usize {
+        let Self { links, double, placed, robots: ranges, .. } = self;
         links.clear();
+        placed.clear();
         double.clear();
         ranges.clear();
         let frame = &triangles.blocks.frame;
         let is_double = T::UNIT_ROUNDOFF <= f64::UNIT_ROUNDOFF;
         let mut place = 0;
-        for (number, (robot, pose)) in robots.enumerate() {
+        for (number, robot) in robots.enumerate() {
             let first = place;
-            let robot = PlacedRobot::new(robot, pose)?;
+            let robot = match robot {
+                Ok(robot) => robot,
+                Err(error) => {
+                    ranges.push(Err(error));
+                    continue;
+                }
+            };
             for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
                 let bound = if aim == Aim::EachLink { place } else { number };
                 let searched = SearchLink::new(&link, frame);
@@ -167,11 +173,12 @@ impl<T: Kernels> Pass<T> {
                     let searched = SearchLink::new(&link, &triangles.double(level).frame);
                     double.push(JobLink { link, searched, place, bound });
                 }
+                placed.push(link);
                 place += 1;
             }
-            ranges.push(first..place);
+            ranges.push(Ok(first..place));
         }
-        Ok(place)
+        place
     }
 
     /// What the last pass found for a link.
@@ -179,11 +186,18 @@ impl<T: Kernels> Pass<T> {
         self.findings[0].nearest[place]
     }
 
+    /// The links of a robot, or why it is refused.
+    fn links_of(&self, robot: usize) -> Result<Range<usize>, ProximityError> {
+        self.robots[robot].clone()
+    }
+
     /// The nearest triangle of each link of a robot.
     pub(crate) fn answers(&self, robot: usize) -> impl Iterator<Item = LinkProximity> {
-        let places = self.robots[robot].clone();
+        let places = self.links_of(robot).unwrap_or_default();
         // Without a bound some triangle is always the nearest.
-        places.enumerate().filter_map(|(link, place)| Some(self.found(place)?.report(link)))
+        places
+            .enumerate()
+            .filter_map(|(link, place)| Some(self.placed[place].answer(link, &self.found(place)?)))
     }
 
     /// The triangles that may be within the bound of the last pass, link by link and each once. None if there may be too
@@ -196,7 +210,7 @@ impl<T: Kernels> Pass<T> {
 
     /// Whether nothing was found for a robot.
     pub(crate) fn is_clear(&self, robot: usize) -> bool {
-        self.robots[robot].clone().all(|place| self.found(place).is_none())
+        self.links_of(robot).unwrap_or_default().all(|place| self.found(place).is_none())
     }
 }
 

@@ -5,7 +5,7 @@ use continuum_demo::ventricle;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, FirstContact, MotionAnswer, Proximity};
+use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Cap, Chain, LinearMotion, Motion, RobotError, Speed, Tube, verify_motion};
 
 /// The model of a chain: Algorithm 1, or capsules.
@@ -47,13 +47,15 @@ fn no_chain_is_misjudged() {
         // Between two steps nothing moves farther than this, unless a cap changes.
         let fine = 4.0 / Real::from(count);
         for margin in [0.0, random.unit(), (least - fine).max(0.0), least + 2e-3] {
-            match search.clears_motion(&motion, margin, 1e-3).unwrap() {
-                MotionAnswer::Clear => {
+            let answer = search.clears_motion(&motion, margin, 1e-3).unwrap();
+            match (answer.decision, answer.contact) {
+                (Decision::Clear, _) => {
                     clear += 1;
                     wide += usize::from(least > margin + 0.5);
                     assert!(least > margin, "certified, but a step is {least} away, margin {margin}");
                 }
-                MotionAnswer::Contact { t, upper, .. } => {
+                (Decision::Contact, Some(shape)) => {
+                    let (t, upper) = (shape.t, shape.upper);
                     contact += 1;
                     let truth = distance(&mut search, &chain(t));
                     assert!(
@@ -61,24 +63,27 @@ fn no_chain_is_misjudged() {
                         "{truth} at {t}, margin {margin}"
                     );
                 }
-                MotionAnswer::Undecided { .. } => undecided += 1,
-                other => panic!("{other:?}"),
+                (Decision::Undecided, _) => undecided += 1,
+                (Decision::Contact, None) => panic!("{answer:?}"),
             }
             // When it happens.
-            match search.time_of_contact(&motion, margin, 1e-3).unwrap() {
-                FirstContact::Never => assert!(least > margin, "never, but {least} away, margin {margin}"),
-                FirstContact::Within { clear_until, t, upper, .. } => {
-                    assert!(clear_until <= t);
+            let answer = search.time_of_contact(&motion, margin, 1e-3).unwrap();
+            match (answer.decision, answer.contact) {
+                (Decision::Clear, _) => assert!(least > margin, "never, but {least} away, margin {margin}"),
+                (Decision::Contact, Some(shape)) => {
+                    let ([clear_until, t], upper) = (answer.interval, shape.upper);
+                    assert!(clear_until <= t && t == shape.t);
                     let truth = distance(&mut search, &chain(t));
                     assert!(truth <= margin + 1e-9 && upper <= margin, "{truth} at {t}, margin {margin}");
                     let clear = distances.iter().take((clear_until * Real::from(count)).ceil() as usize);
                     assert!(clear.clone().all(|distance| *distance > margin), "{clear_until} to {t}");
                 }
-                FirstContact::Undecided { interval, .. } => {
+                (Decision::Undecided, _) => {
+                    let interval = answer.interval;
                     let clear = distances.iter().take((interval[0] * Real::from(count)).ceil() as usize);
                     assert!(clear.clone().all(|distance| *distance > margin), "{interval:?}");
                 }
-                other => panic!("{other:?}"),
+                (Decision::Contact, None) => panic!("{answer:?}"),
             }
         }
     }
@@ -141,14 +146,11 @@ fn a_cap_that_becomes_round_behind_a_thick_point_is_seen() {
     let first = distances.iter().position(|distance| *distance == 0.0).unwrap();
     assert!(first > 60 && distances[..first].iter().all(|distance| *distance > 0.02), "{distances:?}");
     let answer = search.clears_motion(&ThickPoint, 0.0, 1e-3).unwrap();
-    assert!(matches!(answer, MotionAnswer::Contact { t, .. } if t > 0.6), "{answer:?}");
+    assert!(answer.contact.is_some_and(|shape| shape.t > 0.6), "{answer:?}");
     // The thick point is a radius away when the square of `aside` is 1 - 0.25^2.
     let jump = 0.5 + 0.5 * ((1.0 - 0.0625_f64).sqrt() / 3.0).sqrt();
     assert!((first as Real / 100.0 - jump).abs() <= 0.01, "{first} {jump}");
-    match search.time_of_contact(&ThickPoint, 0.0, 1e-3).unwrap() {
-        FirstContact::Within { clear_until, t, .. } => {
-            assert!(clear_until <= jump && jump <= t, "{clear_until} {t}");
-        }
-        other => panic!("{other:?}"),
-    }
+    let first = search.time_of_contact(&ThickPoint, 0.0, 1e-3).unwrap();
+    let [clear_until, t] = first.interval;
+    assert!(first.decision == Decision::Contact && clear_until <= jump && jump <= t, "{first:?}");
 }

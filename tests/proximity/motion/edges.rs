@@ -5,7 +5,7 @@ use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real};
-use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity};
+use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Chain, Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 
@@ -47,12 +47,14 @@ fn judge(
     let answer = search.clears_motion(&counted, margin, RESOLUTION).unwrap();
     seen.shapes += counted.1.get();
     let [lower, upper] = steps.least();
-    match answer {
-        MotionAnswer::Clear => {
+    match (answer.decision, answer.contact) {
+        (Decision::Clear, _) => {
             seen.clear += 1;
             assert!(upper > margin, "certified, but a step comes as near as {upper}, margin {margin}");
         }
-        MotionAnswer::Contact { t, upper, arc_length, on_robot, on_mesh, .. } => {
+        (Decision::Contact, Some(shape)) => {
+            let (t, upper, arc_length) = (shape.t, shape.upper, shape.arc_length);
+            let (on_robot, on_mesh) = (shape.on_robot, shape.on_mesh);
             seen.contact += 1;
             assert!(upper <= margin && (on_robot - on_mesh).length() <= upper + 1e-9);
             let tube = motion.tube(t).unwrap();
@@ -68,7 +70,8 @@ fn judge(
             let ends = [steps.bounds[0][0], steps.bounds[steps.bounds.len() - 1][0]];
             seen.both_ends_clear_but_contact += usize::from(ends.iter().all(|end| *end > margin));
         }
-        MotionAnswer::Undecided { interval, .. } => {
+        (Decision::Undecided, _) => {
+            let interval = answer.interval;
             seen.undecided += 1;
             assert!(0.0 <= interval[0] && interval[0] < interval[1] && interval[1] <= 1.0);
             assert!(
@@ -76,7 +79,7 @@ fn judge(
                 "{lower} {upper} {margin}"
             );
         }
-        other => panic!("{other:?}"),
+        (Decision::Contact, None) => panic!("{answer:?}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::anatomy;
 use continuum_demo::ventricle;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
-use parry_continuum::proximity::{FirstContact, MotionAnswer, ProximityError};
+use parry_continuum::proximity::{Decision, MotionAnswer, ProximityError};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
     verify_motion,
@@ -26,6 +26,10 @@ where
     }
 }
 
+fn decision(answer: Result<MotionAnswer, ProximityError>) -> Result<Decision, ProximityError> {
+    answer.map(|answer| answer.decision)
+}
+
 #[test]
 fn a_motion_that_cannot_be_asked_about_is_refused() {
     let mut search = anatomy();
@@ -38,8 +42,8 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         }
     };
     let good = Made(straight(3, 0.1), || 0.0);
-    assert_eq!(search.clears_motion(&good, 0.0, 1e-3), Ok(MotionAnswer::Clear));
-    assert_eq!(search.time_of_contact(&good, 0.0, 1e-3), Ok(FirstContact::Never));
+    assert_eq!(decision(search.clears_motion(&good, 0.0, 1e-3)), Ok(Decision::Clear));
+    assert_eq!(decision(search.time_of_contact(&good, 0.0, 1e-3)), Ok(Decision::Clear));
     assert!(matches!(
         search.clears_motion(&good, -1.0, 1e-3),
         Err(ProximityError::Negative { parameter: "margin", .. })
@@ -69,6 +73,10 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     let broken =
         Made(|_: Real, tube: &mut Tube| tube.set_samples(&[], &[], None).map(|()| Pose::IDENTITY), || 0.0);
     assert!(matches!(search.clears_motion(&broken, 0.0, 1e-3), Err(ProximityError::Motion(_))));
+    let failing = Made(|t: Real, _: &mut Tube| Err(RobotError::NoShape { t, reason: "no solution" }), || 0.0);
+    let failed = search.clears_motion(&failing, 0.0, 1e-3).unwrap_err();
+    assert_eq!(failed.kind(), "no_shape");
+    assert_eq!(failed.to_string(), "the kinematics has no shape at t = 0.5: no solution");
     let nothing = Made(|_: Real, _: &mut Tube| Ok(Pose::IDENTITY), || 0.0);
     search.forget();
     let lost = Made(
@@ -78,7 +86,7 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         || 0.0,
     );
     assert_eq!(search.clears_motion(&lost, 0.0, 1e-3), Err(ProximityError::PoseNotFinite));
-    assert!(anatomy().clears_motion(&nothing, 0.0, 1e-3).is_err());
+    assert_eq!(anatomy().clears_motion(&nothing, 0.0, 1e-3), Err(ProximityError::EmptyTube));
 
     let (a, b) = ([Vector::ZERO, Vector::Z], [Vector::ZERO, Vector::Z, Vector::X]);
     assert_eq!(LinearMotion::chain(&a, &b, &[1.0]).unwrap_err(), RobotError::PointsDiffer { from: 2, to: 3 });
@@ -119,9 +127,9 @@ fn an_error_is_not_left_to_the_next_motion() {
     };
     let motion = Made(made, || 0.1);
     let fresh = search.clears_motion(&motion, 0.2, 1e-3);
-    assert_eq!(fresh, Ok(MotionAnswer::Clear));
+    assert_eq!(decision(fresh), Ok(Decision::Clear));
     let blurred = Tube::from_samples(&line, &[0.1], None).unwrap().with_error(50.0).unwrap();
     let blurred = RigidMotion::new(blurred, [Pose::IDENTITY; 2]).unwrap();
-    assert_ne!(search.clears_motion(&blurred, 0.2, 1e-3), Ok(MotionAnswer::Clear));
+    assert_ne!(decision(search.clears_motion(&blurred, 0.2, 1e-3)), Ok(Decision::Clear));
     assert_eq!(search.clears_motion(&motion, 0.2, 1e-3), fresh);
 }

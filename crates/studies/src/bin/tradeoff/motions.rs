@@ -9,7 +9,7 @@ use continuum_demo::ventricle;
 use continuum_studies::machine;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer};
+use parry_continuum::proximity::{BvhSearch, Decision};
 use parry_continuum::{Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::fmt::Write;
@@ -60,10 +60,10 @@ type Way<'a> = &'a dyn Fn(&mut BvhSearch, &Counted, Real) -> Result<Verdict, Str
 
 /// By a bound for each piece.
 fn by_pieces(search: &mut BvhSearch, motion: &Counted, margin: Real) -> Result<Verdict, String> {
-    Ok(match search.clears_motion(motion, margin, RESOLUTION).map_err(text)? {
-        MotionAnswer::Clear => Verdict::Clear,
-        MotionAnswer::Contact { .. } => Verdict::Contact,
-        _ => Verdict::Undecided,
+    Ok(match search.clears_motion(motion, margin, RESOLUTION).map_err(text)?.decision {
+        Decision::Clear => Verdict::Clear,
+        Decision::Contact => Verdict::Contact,
+        Decision::Undecided => Verdict::Undecided,
     })
 }
 

@@ -28,16 +28,16 @@ const MOST_TRIED: u32 = 6;
 
 /// A point of the tube near a point of the mesh.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Witness {
+pub(crate) struct OnTube {
     /// The tube is at most this far from the point of the mesh.
     pub upper: Real,
     pub arc: Real,
-    pub on_robot: Vector,
+    pub point: Vector,
 }
 
 impl PlacedTube<'_> {
     /// How near `x` is to a section at most, looking from an arc length nearby.
-    pub(crate) fn witness(&self, number: u32, arc: Real, x: Vector) -> Witness {
+    pub(crate) fn near(&self, number: u32, arc: Real, x: Vector) -> OnTube {
         let section = self.section(number);
         let rounding = self.tube.error() + self.slack;
         let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
@@ -46,7 +46,7 @@ impl PlacedTube<'_> {
         let way = place - x;
         let away = way.length();
         let reach = away + section.deviation + rounding;
-        let mut best = Witness { upper: Real::INFINITY, arc: foot.arc, on_robot: x };
+        let mut best = OnTube { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
         for (end, face) in section.faces.iter().enumerate() {
             let Some(face) = face else { continue };
@@ -73,13 +73,13 @@ impl PlacedTube<'_> {
                 + rounding;
             if upper < best.upper {
                 let share = if size > section.radius { section.radius / size } else { 1.0 };
-                best = Witness { upper, arc: face_arc, on_robot: face.centre + across * share };
+                best = OnTube { upper, arc: face_arc, point: face.centre + across * share };
             }
         }
         if is_beside {
             let upper = (reach - section.radius).max(0.0);
-            let on_robot = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
-            best = Witness { upper, arc: foot.arc, on_robot };
+            let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
+            best = OnTube { upper, arc: foot.arc, point };
         }
         best
     }

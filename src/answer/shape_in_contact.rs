@@ -1,0 +1,74 @@
+//! A shape of a motion that does not keep a margin.
+
+use super::Witness;
+use parry3d_f64::math::Real;
+use std::ops::{Deref, DerefMut};
+
+/// A shape that a motion passes through and that is at most the margin away, in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[non_exhaustive]
+pub struct ShapeInContact {
+    /// The time of the shape, from 0 to 1.
+    pub t: Real,
+    /// Its clearance is at most this, which is at most the margin.
+    pub upper: Real,
+    /// The section of constant radius at the place that realises `upper`, counted from the base.
+    pub section: u32,
+    /// A point of the tube and one of the mesh that are `upper` apart, or nearer.
+    pub witness: Witness,
+}
+
+impl Deref for ShapeInContact {
+    type Target = Witness;
+
+    fn deref(&self) -> &Witness {
+        &self.witness
+    }
+}
+
+impl DerefMut for ShapeInContact {
+    fn deref_mut(&mut self) -> &mut Witness {
+        &mut self.witness
+    }
+}
+
+#[cfg(feature = "serde-serialize")]
+mod serialised {
+    use super::{ShapeInContact, Witness};
+    use parry3d_f64::math::Real;
+    use serde::{Deserialize, Serialize};
+
+    /// The fields of a [`ShapeInContact`].
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename = "ShapeInContact")]
+    pub(crate) struct Fields {
+        t: Real,
+        upper: Real,
+        section: u32,
+        #[serde(flatten)]
+        witness: Witness,
+    }
+
+    impl From<ShapeInContact> for Fields {
+        fn from(ShapeInContact { t, upper, section, witness }: ShapeInContact) -> Self {
+            Self { t, upper, section, witness }
+        }
+    }
+
+    /// No query names a time outside of the motion, or a distance that is negative or not finite.
+    impl TryFrom<Fields> for ShapeInContact {
+        type Error = String;
+
+        fn try_from(Fields { t, upper, section, witness }: Fields) -> Result<Self, String> {
+            if !(0.0..=1.0).contains(&t) {
+                return Err(format!("times of a motion are from 0 to 1, not {t}"));
+            }
+            if !(upper.is_finite() && upper >= 0.0) {
+                return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
+            }
+            Ok(Self { t, upper, section, witness })
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What realises an answer.
+
+use parry3d_f64::math::{Real, Vector};
+
+/// Two points that realise a distance, and where on robot and mesh they are, in the mesh's frame and unit.
+///
+/// Every answer that names a place has one, and reads as it: `answer.on_mesh` is `answer.witness.on_mesh`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[non_exhaustive]
+pub struct Witness {
+    /// The robot's point.
+    pub on_robot: Vector,
+    /// The triangle's point; the same as `on_robot` where they touch or overlap.
+    pub on_mesh: Vector,
+    /// The triangle's position in the mesh.
+    pub triangle: u32,
+    /// Where along the robot's centreline, from the base: the place nearest to `on_mesh` on the axis of the link, or on that
+    /// of the tube.
+    pub arc_length: Real,
+    /// The segment of the robot's input there, between points `segment` and `segment + 1`. Of a tube that has no points it is
+    /// the section of constant radius.
+    pub segment: u32,
+}
+
+impl Witness {
+    /// What stands in a batch until its turn comes.
+    pub(crate) fn none() -> Self {
+        let nowhere = Vector::splat(Real::NAN);
+        Self { on_robot: nowhere, on_mesh: nowhere, triangle: 0, arc_length: Real::NAN, segment: 0 }
+    }
+}
+
+#[cfg(feature = "serde-serialize")]
+mod serialised {
+    use super::Witness;
+    use parry3d_f64::math::{Real, Vector};
+    use serde::{Deserialize, Serialize};
+
+    /// The fields of a [`Witness`], points as `[x, y, z]`.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename = "Witness")]
+    pub(crate) struct Fields {
+        on_robot: [Real; 3],
+        on_mesh: [Real; 3],
+        triangle: u32,
+        arc_length: Real,
+        segment: u32,
+    }
+
+    impl From<Witness> for Fields {
+        fn from(found: Witness) -> Self {
+            let Witness { on_robot, on_mesh, triangle, arc_length, segment } = found;
+            let (on_robot, on_mesh) = (on_robot.to_array(), on_mesh.to_array());
+            Self { on_robot, on_mesh, triangle, arc_length, segment }
+        }
+    }
+
+    /// Every answer names a finite place.
+    impl TryFrom<Fields> for Witness {
+        type Error = String;
+
+        fn try_from(fields: Fields) -> Result<Self, String> {
+            let Fields { on_robot, on_mesh, triangle, arc_length, segment } = fields;
+            let (on_robot, on_mesh) = (Vector::from_array(on_robot), Vector::from_array(on_mesh));
+            if arc_length.is_finite() && on_robot.is_finite() && on_mesh.is_finite() {
+                Ok(Self { on_robot, on_mesh, triangle, arc_length, segment })
+            } else {
+                Err(format!("a place is not finite: {arc_length}, {on_robot} or {on_mesh}"))
+            }
+        }
+    }
+}
