@@ -7,4 +7,6 @@ mod proximity;
 pub use bvh::BvhSearch;
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use proximity::Proximity;
-pub(crate) use proximity::{Engine, any_triangle, placed};
+#[cfg(feature = "gpu")]
+pub(crate) use proximity::placed;
+pub(crate) use proximity::{Engine, any_triangle};

@@ -84,7 +84,10 @@ fn what_no_constructor_makes_is_an_error() {
     assert!(with("segments", json!([1, 0])).contains("link 1 stands for 0"));
     assert!(with("segments", json!([1, u64::MAX])).contains("link 1 stands for"));
 
-    let answer = json!({"link": 0, "triangle": 1, "distance": 0.5, "on_robot": [0.0, 0.0, 0.0], "on_mesh": [0.0, 0.0, 0.5]});
+    let answer = json!({
+        "link": 0, "triangle": 1, "distance": 0.5, "arc_length": 2.0, "segment": 3,
+        "on_robot": [0.0, 0.0, 0.0], "on_mesh": [0.0, 0.0, 0.5],
+    });
     let mut negative = answer.clone();
     negative["distance"] = json!(-0.5);
     assert_eq!(refusal::<LinkProximity>(answer), "");

@@ -402,7 +402,7 @@ fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
         let mut search = BvhSearch::new(&wall).unwrap();
         let truth = search.clearance(&tube, &own, 1e-3).unwrap();
         let doubtful = tube.with_error(error).unwrap();
-        let found = search.clearance(&doubtful, &Pose::IDENTITY, 8.0 * error + 1e-3).unwrap();
+        let found = search.clearance(&doubtful, &Pose::IDENTITY, 6.0 * error + 1e-3).unwrap();
         apart += usize::from(found.lower > 0.0);
         assert!(found.lower <= truth.upper && truth.lower <= found.upper, "{found:?} {truth:?} {error}");
         let cleared = search.tube_clears(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
