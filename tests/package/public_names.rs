@@ -15,7 +15,8 @@ const MODULES: [(&str, &str); 4] = [
 fn names(text: &str) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     let mut is_hidden = false;
-    for item in text.replace("{\n", "{").replace(",\n}", "}").lines() {
+    let joined = text.replace("{\n", "{").replace(",\n}", "}").replace(",\n    ", ", ");
+    for item in joined.lines() {
         if let Some(item) = item.strip_prefix("pub ") {
             let (kind, rest) = item.split_once(' ').unwrap_or((item, ""));
             let last = rest.trim_end_matches(';').rsplit("::").next().unwrap_or_default();
