@@ -1,13 +1,16 @@
-//! What a tube is to a mesh: convex bodies around its pieces, and points that are in it.
+//! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
 
 mod on_tube;
 mod outer;
 mod piece;
 mod placed_tube;
+mod refine;
 #[cfg(test)]
 mod tests;
+mod tube_in_mesh;
 
-pub(crate) use on_tube::OnTube;
 pub(crate) use outer::Outer;
 pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;
+pub(crate) use refine::{Look, Near, Part, Question, Verdict, refine};
+pub(crate) use tube_in_mesh::{Found, TubeInMesh};

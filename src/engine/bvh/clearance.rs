@@ -2,8 +2,8 @@
 
 use super::search::{BvhSearch, Context, Memory};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
-use crate::pieces::PlacedTube;
-use crate::query::clearance::{Start, TubeMemory, TubeSearch};
+use crate::pieces::{PlacedTube, TubeInMesh};
+use crate::query::clearance::{TubeMemory, clearance, tube_clears};
 use crate::query::{check_margin, check_not_negative};
 use crate::robot::Tube;
 use crate::search::hierarchy::MeshSearch;
@@ -151,28 +151,25 @@ impl BvhSearch {
 }
 
 impl<'a> Context<'a> {
-    fn clearance(self, tube: &'a Tube, pose: &'a Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
-        let (mut search, last) = self.tube_search(tube, pose)?;
-        let (answer, place) = search.clearance(tolerance, *last, |_, _, _| ())?;
-        *last = Some(place);
-        Ok(answer)
+    fn clearance(self, tube: &'a Tube, pose: &Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        clearance(&mut tube, memory, tolerance, |_, _, _| ())
     }
 
     fn clearance_pieces(
         self,
         tube: &'a Tube,
-        pose: &'a Pose,
+        pose: &Pose,
         tolerance: Real,
         out: &mut Vec<TubePiece>,
     ) -> Result<Clearance, ProximityError> {
-        let (mut search, last) = self.tube_search(tube, pose)?;
-        let placed = search.tube;
-        let (answer, place) = search.clearance(tolerance, *last, |piece, outer, lower| {
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        let placed = tube.tube;
+        let answer = clearance(&mut tube, memory, tolerance, |piece, outer, lower| {
             out.push(placed.report(piece, outer, lower));
         })?;
-        *last = Some(place);
-        while let Some(piece) = search.pieces.pop() {
-            let outer = search.outer(&piece)?;
+        while let Some(piece) = memory.pieces.pop() {
+            let outer = tube.outer(&piece)?;
             out.push(placed.report(&piece, &outer, 0.0));
         }
         out.sort_unstable_by(|a, b| {
@@ -185,26 +182,24 @@ impl<'a> Context<'a> {
     fn tube_clears(
         self,
         tube: &'a Tube,
-        pose: &'a Pose,
+        pose: &Pose,
         margin: Real,
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
-        let (mut search, last) = self.tube_search(tube, pose)?;
-        let (decision, place) = search.clears(margin, resolution, *last)?;
-        *last = place.or(*last);
-        Ok(decision)
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        tube_clears(&mut tube, memory, margin, resolution)
     }
 
-    /// A search for the tube, and where the last one ended.
-    fn tube_search(
+    /// The tube in the mesh, and what the last query about a tube left.
+    fn tube_in_mesh(
         self,
         tube: &'a Tube,
-        pose: &'a Pose,
-    ) -> Result<(TubeSearch<'a>, &'a mut Option<Start>), ProximityError> {
+        pose: &Pose,
+    ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
         let Self { level, mesh, memory } = self;
         let hierarchy = &mesh.hierarchy;
-        let Memory { scratch, tube: TubeMemory { pieces, last }, .. } = memory;
+        let Memory { scratch, tube: memory, .. } = memory;
         let tube = PlacedTube::new(tube, pose, hierarchy.reach)?;
-        Ok((TubeSearch { search: MeshSearch { level, hierarchy, scratch }, tube, pieces }, last))
+        Ok((TubeInMesh { search: MeshSearch { level, hierarchy, scratch }, tube }, memory))
     }
 }

@@ -1,5 +1,9 @@
-//! The clearance of a tube, between bounds.
+//! How near a tube is, between bounds, and whether it keeps a margin.
 
-mod tube_search;
+mod bounds;
+mod decision;
+mod memory;
 
-pub(crate) use tube_search::{Found, Start, TubeMemory, TubeSearch};
+pub(crate) use bounds::clearance;
+pub(crate) use decision::tube_clears;
+pub(crate) use memory::TubeMemory;

@@ -8,9 +8,7 @@
 
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
-use crate::pair::Best;
-use crate::pieces::{Outer, Piece, PlacedTube};
-use crate::query::clearance::{Found, TubeSearch};
+use crate::pieces::{Found, Look, Near, Outer, Part, Piece, PlacedTube, Question, TubeInMesh, Verdict};
 use crate::robot::{Motion, RobotError};
 use parry3d_f64::math::Real;
 
@@ -21,36 +19,50 @@ const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
 /// What is between two shares of a section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Waiting {
-    pub section: u32,
-    pub shares: [Real; 2],
+    section: u32,
+    shares: [Real; 2],
 }
 
 impl Waiting {
-    /// Its halves, as the piece that holds it is halved.
-    pub(crate) fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
+    /// What a piece of a shape is in any shape.
+    pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
+        Self { section: piece.section, shares: tube.shares(piece) }
+    }
+}
+
+impl Part for Waiting {
+    fn piece(&self, tube: &PlacedTube) -> Piece {
+        tube.between(self.section, self.shares)
+    }
+
+    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
         let [_, between] = tube.shares(&halves[0]);
         let [from, to] = self.shares;
         [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
     }
 }
 
-/// What is known of a piece in an interval.
-pub(crate) enum Verdict {
-    /// It keeps the margin all the time.
-    Keeps,
-    /// Nothing: its halves have to be judged.
-    Part([Piece; 2]),
-    /// It is at most the margin away in the middle shape, at a place that, if it is fine, moves by no more than half of
-    /// the resolution.
-    Contact { found: Found, is_fine: bool },
-    /// It is too near to the margin for the resolution.
-    Undecided,
-    /// It keeps the margin only for so long before and after the middle shape, as far as that tells. `is_near`: there it
-    /// is above the margin by no more than the resolution.
-    Fails { still: Real, is_near: bool },
+/// What the middle shape of an interval shows.
+pub(crate) struct Seen {
+    /// A place where it is at most the margin away.
+    pub contact: Option<Found>,
+    /// Whether that place moves by no more than half of the resolution.
+    pub is_fine: bool,
+    /// Whether a piece is too near to the margin for the resolution.
+    pub is_undecided: bool,
+    /// Whether the shape is above the margin by no more than the resolution.
+    pub is_near: bool,
+    /// For how long before and after the shape the pieces that failed keep the margin.
+    pub still: Real,
 }
 
-/// A motion during an interval.
+impl Default for Seen {
+    fn default() -> Self {
+        Self { contact: None, is_fine: false, is_undecided: false, is_near: false, still: Real::INFINITY }
+    }
+}
+
+/// A motion during an interval, and what its middle shape shows.
 pub(crate) struct Moment<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
@@ -60,67 +72,106 @@ pub(crate) struct Moment<'a, M> {
     pub resolution: Real,
     /// By how much those flat ends that may become round move in that time.
     pub opening: Real,
+    /// The triangle that was found last.
+    pub last: &'a mut Option<u32>,
+    /// Pieces that do not keep the margin during the interval, as far as the shape shows.
+    pub failed: &'a mut Vec<Waiting>,
+    /// How fast the piece moves that is looked at.
+    pub speed: Real,
+    pub seen: Seen,
+}
+
+impl<M: Motion> Question<Waiting> for Moment<'_, M> {
+    const NEARER_FIRST: bool = false;
+
+    fn is_answered(&self) -> bool {
+        false
+    }
+
+    fn look(
+        &mut self,
+        tube: &PlacedTube,
+        part: &Waiting,
+        piece: &Piece,
+        outer: &Outer,
+    ) -> Result<Look, ProximityError> {
+        self.speed = self.speed_of(part, outer, tube.radius(piece))?;
+        let reach = self.reach();
+        let is_wide = outer.over > 2.0 * reach.max(self.resolution)
+            && outer.over > 0.5 * tube.radius(piece).max(self.margin);
+        let aim = reach.max(0.5 * self.resolution);
+        Ok(Look { bound: self.bound(tube), is_wide, aim, start: *self.last })
+    }
+
+    fn keeps_away(&mut self, _: &Piece, _: &Outer, _: Real) {}
+
+    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<Verdict, ProximityError> {
+        *self.last = Some(near.nearest.triangle);
+        let upper = near.found.upper;
+        if upper <= self.margin {
+            self.seen.contact = Some(*near.found);
+            (self.seen.is_fine, self.seen.still) = (self.is_fine(), 0.0);
+            self.failed.push(*near.part);
+            return Ok(Verdict::Answered);
+        }
+        let is_time_to_blame =
+            !self.is_fine() && (upper <= self.bound(&tube.tube) || near.outer.over <= 0.25 * self.reach());
+        if is_time_to_blame {
+            self.fail(tube, near)?;
+            return Ok(Verdict::Settled);
+        }
+        if self.is_fine() && upper - near.nearest.distance <= 0.5 * self.resolution {
+            self.seen.is_undecided = true;
+            return Ok(Verdict::Settled);
+        }
+        Ok(Verdict::Halve(0.25 * near.outer.over))
+    }
+
+    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
+        let may_open = tube.tube.may_open(near.piece);
+        if self.is_fine() && !may_open {
+            tube.check_resolved(near.found.upper - near.nearest.distance, self.resolution)?;
+        }
+        if self.is_fine() && (!may_open || self.reach().max(self.opening) <= self.resolution / 128.0) {
+            self.seen.is_undecided = true;
+            return Ok(());
+        }
+        self.fail(tube, near)
+    }
 }
 
 impl<M: Motion> Moment<'_, M> {
-    /// Judges a piece by the middle shape. `last` is the triangle that was found last.
-    pub(crate) fn judge(
-        &self,
-        search: &mut TubeSearch,
-        waiting: &Waiting,
-        last: &mut Option<u32>,
-    ) -> Result<Verdict, ProximityError> {
-        let tube = search.tube;
-        let half_resolution = 0.5 * self.resolution;
-        let piece = tube.between(waiting.section, waiting.shares);
-        let outer = search.outer(&piece)?;
-        let speed = self.speed(waiting, &outer, tube.radius(&piece))?;
-        let reach = self.half * speed;
-        let bound = self.margin + reach + tube.slack();
-        let is_wide = outer.over > 2.0 * reach.max(self.resolution)
-            && outer.over > 0.5 * tube.radius(&piece).max(self.margin);
-        if is_wide && let Some(halves) = search.halves(&piece, &outer, reach.max(half_resolution)) {
-            let may_meet = search.search.may_meet(&outer.body, bound);
-            return Ok(if may_meet { Verdict::Part(halves) } else { Verdict::Keeps });
-        }
-        let start = [*last, None];
-        let Some(nearest) = search.search.nearest(&outer.body, Best::within(bound), start).nearest() else {
-            return Ok(Verdict::Keeps);
-        };
-        *last = Some(nearest.triangle);
-        let found = search.witness(&piece, &outer, &nearest);
-        let upper = found.upper;
-        let is_fine = reach <= half_resolution;
-        if upper <= self.margin {
-            return Ok(Verdict::Contact { found, is_fine });
-        }
-        let is_time_to_blame = !is_fine && (upper <= bound || outer.over <= 0.25 * reach);
-        if !is_time_to_blame {
-            let gap = upper - nearest.distance;
-            if is_fine && gap <= half_resolution {
-                return Ok(Verdict::Undecided);
-            }
-            if let Some(halves) = search.halves(&piece, &outer, 0.25 * outer.over) {
-                return Ok(Verdict::Part(halves));
-            }
-            let may_open = tube.may_open(&piece);
-            if is_fine && !may_open {
-                search.check_resolved(gap, ("resolution", self.resolution))?;
-            }
-            if is_fine && (!may_open || reach.max(self.opening) <= half_resolution / 64.0) {
-                return Ok(Verdict::Undecided);
-            }
-        }
+    /// How far the piece that is looked at moves from the middle shape.
+    fn reach(&self) -> Real {
+        self.half * self.speed
+    }
+
+    /// What its body must be farther away than for it to keep the margin all the time.
+    fn bound(&self, tube: &PlacedTube) -> Real {
+        self.margin + self.reach() + tube.slack()
+    }
+
+    /// Whether it moves so little that the shape decides.
+    fn is_fine(&self) -> bool {
+        self.reach() <= 0.5 * self.resolution
+    }
+
+    /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.
+    fn fail(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
+        let speed = self.speed;
         if speed > MOST_INTERVALS * self.resolution {
-            let (section, resolution) = (waiting.section as usize, self.resolution);
+            let (section, resolution) = (near.part.section as usize, self.resolution);
             return Err(ProximityError::TooFast { section, speed, resolution });
         }
-        let still = still(nearest.distance - self.margin - tube.slack(), speed);
-        Ok(Verdict::Fails { still, is_near: upper <= self.margin + self.resolution })
+        let still = still(near.nearest.distance - self.margin - tube.tube.slack(), speed);
+        self.seen.still = self.seen.still.min(still);
+        self.seen.is_near |= near.found.upper <= self.margin + self.resolution;
+        self.failed.push(*near.part);
+        Ok(())
     }
 
     /// How fast what the body has to hold moves.
-    fn speed(&self, waiting: &Waiting, outer: &Outer, radius: Real) -> Result<Real, RobotError> {
+    fn speed_of(&self, waiting: &Waiting, outer: &Outer, radius: Real) -> Result<Real, RobotError> {
         let section = waiting.section as usize;
         let stated = self.motion.speed(section, waiting.shares, self.times);
         // A wire has no rim.

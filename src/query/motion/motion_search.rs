@@ -12,11 +12,10 @@
 //! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
-use super::moment::{Moment, Verdict, Waiting};
+use super::moment::{Moment, Seen, Waiting};
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
-use crate::pieces::{Piece, PlacedTube};
-use crate::query::clearance::{Found, TubeSearch};
+use crate::pieces::{Found, Piece, PlacedTube, TubeInMesh, refine};
 use crate::robot::{Motion, Sections, Tube};
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Pose, Real};
@@ -30,7 +29,7 @@ pub(crate) struct MotionMemory {
     sections: Sections,
     /// Pieces that wait for their turn in the present shape, the next one last.
     pieces: Vec<Waiting>,
-    /// What `TubeSearch` keeps pieces in.
+    /// Those that the first shape begins with.
     begun: Vec<Piece>,
     /// Those that failed, one interval's after another's.
     failed: Vec<Waiting>,
@@ -82,21 +81,6 @@ pub(crate) struct MotionSearch<'a, M> {
 /// thousands of intervals.
 const PATIENCE: u64 = 256;
 
-/// What the middle shape of an interval tells.
-struct Seen {
-    /// A place where it is at most the margin away.
-    contact: Option<Found>,
-    /// Whether that place moves by no more than the resolution.
-    is_fine: bool,
-    /// Whether a piece is too near to the margin for the resolution.
-    is_undecided: bool,
-    /// Whether the shape is above the margin by no more than the resolution.
-    is_near: bool,
-    /// Which pieces failed, and for how long before and after the shape they do not.
-    failed: Range<usize>,
-    still: Real,
-}
-
 impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
     pub(crate) fn clears(&mut self) -> Result<MotionAnswer, ProximityError> {
@@ -114,7 +98,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 });
                 return Ok(MotionAnswer::undecided(first));
             }
-            let seen = self.examine(&interval)?;
+            let (seen, failed) = self.examine(&interval)?;
             if seen.is_near && near.is_none() {
                 near = Some((interval.times, self.shapes + PATIENCE));
             }
@@ -126,7 +110,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
                 undecided = if is_first { Some(interval.times) } else { undecided };
             }
-            self.memory.intervals.extend(halves(&interval, &seen).into_iter().flatten());
+            self.memory.intervals.extend(halves(&interval, &seen, failed).into_iter().flatten());
         }
         Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -137,7 +121,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let mut clear_until = 1.0;
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_back() {
-            let seen = self.examine(&interval)?;
+            let (seen, failed) = self.examine(&interval)?;
             if seen.is_undecided {
                 undecided = undecided.or(Some(interval.times));
             }
@@ -147,12 +131,12 @@ impl<M: Motion> MotionSearch<'_, M> {
                 clear_until = if seen.is_fine { interval.times[0] } else { t };
                 self.memory.intervals.clear();
                 if !seen.is_fine {
-                    let before = Interval { times: [interval.times[0], t], pieces: seen.failed };
+                    let before = Interval { times: [interval.times[0], t], pieces: failed.clone() };
                     self.memory.intervals.push_back(before);
                 }
                 continue;
             }
-            self.memory.intervals.extend(halves(&interval, &seen).into_iter().rev().flatten());
+            self.memory.intervals.extend(halves(&interval, &seen, failed).into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
             return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
@@ -186,8 +170,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(pose)
     }
 
-    /// Judges an interval by its middle shape.
-    fn examine(&mut self, interval: &Interval) -> Result<Seen, ProximityError> {
+    /// Judges an interval by its middle shape; and which of the failed pieces are those that failed there.
+    fn examine(&mut self, interval: &Interval) -> Result<(Seen, Range<usize>), ProximityError> {
         let t = interval.middle();
         let is_first = self.shapes == 0;
         let pose = self.shape(t)?;
@@ -201,59 +185,41 @@ impl<M: Motion> MotionSearch<'_, M> {
         let tube = PlacedTube::new(tube, &pose, self.search.hierarchy.reach)?.moving();
         let MeshSearch { level, hierarchy, .. } = self.search;
         let search = MeshSearch { level, hierarchy, scratch: &mut *self.search.scratch };
-        let mut search = TubeSearch { search, tube, pieces: begun };
+        let mut tube = TubeInMesh { search, tube };
         // Below that, rounding decides.
-        search.check_resolved(32.0 * tube.slack(), ("resolution", self.resolution))?;
+        tube.check_resolved(32.0 * tube.tube.slack(), self.resolution)?;
         pieces.clear();
         if is_first {
-            search.begin(self.margin.max(self.resolution));
-            pieces.extend(
-                search
-                    .pieces
-                    .iter()
-                    .map(|piece| Waiting { section: piece.section, shares: tube.shares(piece) }),
-            );
+            tube.begin(self.margin.max(self.resolution), begun);
+            pieces.extend(begun.iter().map(|piece| Waiting::of(piece, &tube.tube)));
         } else {
             pieces.extend_from_slice(&failed[interval.pieces.clone()]);
         }
-
         let first = failed.len();
-        let mut seen = Seen {
-            contact: None,
-            is_fine: false,
-            is_undecided: false,
-            is_near: false,
-            failed: first..first,
-            still: Real::INFINITY,
+        let (margin, resolution, last) = (self.margin, self.resolution, &mut self.last);
+        let mut moment = Moment {
+            motion,
+            times,
+            half,
+            margin,
+            resolution,
+            opening,
+            last,
+            failed,
+            speed: 0.0,
+            seen: Seen::default(),
         };
-        let (margin, resolution) = (self.margin, self.resolution);
-        let moment = Moment { motion, times, half, margin, resolution, opening };
-        while let Some(waiting) = pieces.pop() {
-            match moment.judge(&mut search, &waiting, &mut self.last)? {
-                Verdict::Keeps => {}
-                Verdict::Part(halves) => pieces.extend(waiting.halves(&tube, halves)),
-                Verdict::Undecided => seen.is_undecided = true,
-                Verdict::Fails { still, is_near } => {
-                    seen.still = seen.still.min(still);
-                    seen.is_near |= is_near;
-                    failed.push(waiting);
-                }
-                Verdict::Contact { found, is_fine } => {
-                    (seen.contact, seen.is_fine, seen.still) = (Some(found), is_fine, 0.0);
-                    failed.push(waiting);
-                    failed.append(pieces);
-                    break;
-                }
-            }
-        }
-        seen.failed = first..failed.len();
-        Ok(seen)
+        refine(&mut tube, pieces, &mut moment)?;
+        let seen = moment.seen;
+        // What a contact left unasked.
+        failed.append(pieces);
+        Ok((seen, first..failed.len()))
     }
 }
 
 /// What is left of an interval before and after its middle shape.
-fn halves(interval: &Interval, seen: &Seen) -> [Option<Interval>; 2] {
-    let (t, pieces) = (interval.middle(), &seen.failed);
+fn halves(interval: &Interval, seen: &Seen, pieces: Range<usize>) -> [Option<Interval>; 2] {
+    let t = interval.middle();
     let half = |times: [Real; 2]| {
         (!pieces.is_empty() && times[0] < times[1]).then(|| Interval { times, pieces: pieces.clone() })
     };

@@ -1,0 +1,148 @@
+//! The loop that divides a tube no finer than a question needs.
+//!
+//! The centreline is taken in pieces, each in a convex body that is searched like a link. A body that keeps away settles
+//! its piece; one that does not gives a triangle, whose nearest point bounds the clearance from above, and the piece is
+//! halved where the two bounds are too far apart. So far from the wall one capsule stands for a whole section, and near
+//! it the curve is resolved as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies
+//! are the links themselves.
+
+use super::outer::Outer;
+use super::piece::Piece;
+use super::placed_tube::PlacedTube;
+use super::tube_in_mesh::{Found, TubeInMesh};
+use crate::answer::ProximityError;
+use crate::pair::{Best, Nearest};
+use parry3d_f64::math::Real;
+
+/// What waits for its turn: a piece, or what is one in the present shape of a tube that moves.
+pub(crate) trait Part: Copy {
+    /// The piece that holds it.
+    fn piece(&self, tube: &PlacedTube) -> Piece;
+
+    /// Its halves, as the piece that holds it is halved.
+    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2];
+}
+
+impl Part for Piece {
+    fn piece(&self, _: &PlacedTube) -> Piece {
+        *self
+    }
+
+    fn halves(self, _: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
+        halves
+    }
+}
+
+/// How a question looks at a body.
+pub(crate) struct Look {
+    /// What is farther away than this does not matter.
+    pub bound: Real,
+    /// Whether the body is so wide that its halves are better looked at, if anything is near it at all.
+    pub is_wide: bool,
+    /// How near to the tube the bodies of halves are to come at a face.
+    pub aim: Real,
+    /// A triangle that is likely to be near.
+    pub start: Option<u32>,
+}
+
+/// A part with its body, and what was found near it.
+pub(crate) struct Near<'a, P> {
+    pub part: &'a P,
+    pub piece: &'a Piece,
+    pub outer: &'a Outer,
+    /// The triangle nearest to the body, at a distance that bounds the clearance of the part from below.
+    pub nearest: &'a Nearest,
+    /// What bounds it from above.
+    pub found: &'a Found,
+}
+
+/// What becomes of a part that something is near to.
+pub(crate) enum Verdict {
+    /// It is settled.
+    Settled,
+    /// Its halves have to be looked at, which come as near to the tube as this at a face.
+    Halve(Real),
+    /// The question is answered.
+    Answered,
+}
+
+/// What is asked of a tube.
+pub(crate) trait Question<P> {
+    /// Whether the half that is nearer to what was found comes first.
+    const NEARER_FIRST: bool;
+
+    /// Whether the parts that are left cannot change the answer.
+    fn is_answered(&self) -> bool;
+
+    /// # Errors
+    /// The part cannot be judged.
+    fn look(
+        &mut self,
+        tube: &PlacedTube,
+        part: &P,
+        piece: &Piece,
+        outer: &Outer,
+    ) -> Result<Look, ProximityError>;
+
+    /// The body of a part is farther away than the bound of its look.
+    fn keeps_away(&mut self, piece: &Piece, outer: &Outer, bound: Real);
+
+    /// # Errors
+    /// The part cannot be judged.
+    fn judge(&mut self, tube: &TubeInMesh, near: &Near<P>) -> Result<Verdict, ProximityError>;
+
+    /// A part whose halves were wanted has none.
+    ///
+    /// # Errors
+    /// It cannot be judged without.
+    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<P>) -> Result<(), ProximityError>;
+}
+
+/// Asks a question of all parts, the last one first. Those that were not needed for the answer are left in `parts`.
+///
+/// # Errors
+/// The curve of the tube is not finite, or a part cannot be judged.
+pub(crate) fn refine<P: Part, Q: Question<P>>(
+    tube: &mut TubeInMesh,
+    parts: &mut Vec<P>,
+    question: &mut Q,
+) -> Result<(), ProximityError> {
+    while let Some(part) = parts.pop() {
+        if question.is_answered() {
+            parts.push(part);
+            return Ok(());
+        }
+        let piece = part.piece(&tube.tube);
+        let outer = tube.outer(&piece)?;
+        let Look { bound, is_wide, aim, start } = question.look(&tube.tube, &part, &piece, &outer)?;
+        if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
+            if tube.search.may_meet(&outer.body, bound) {
+                parts.extend(part.halves(&tube.tube, halves));
+            } else {
+                question.keeps_away(&piece, &outer, bound);
+            }
+            continue;
+        }
+        let nearest = tube.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest();
+        let Some(nearest) = nearest else {
+            question.keeps_away(&piece, &outer, bound);
+            continue;
+        };
+        let found = tube.found(&piece, &outer, &nearest);
+        let near = Near { part: &part, piece: &piece, outer: &outer, nearest: &nearest, found: &found };
+        match question.judge(tube, &near)? {
+            Verdict::Settled => {}
+            Verdict::Answered => return Ok(()),
+            Verdict::Halve(aim) => match tube.halves(&piece, &outer, aim) {
+                Some(halves) => {
+                    let is_in_first = found.witness.arc_length < tube.tube.arcs(&halves[0])[1];
+                    let [first, second] = part.halves(&tube.tube, halves);
+                    let swap = Q::NEARER_FIRST && is_in_first;
+                    parts.extend(if swap { [second, first] } else { [first, second] });
+                }
+                None => question.judge_whole(tube, &near)?,
+            },
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! A tube on its way through a mesh: bodies around its pieces, and what is found near them.
+
+use super::on_tube::OnTube;
+use super::outer::Outer;
+use super::piece::Piece;
+use super::placed_tube::PlacedTube;
+use crate::answer::{ProximityError, Witness};
+use crate::pair::{Best, Nearest, PlacedLink};
+use crate::search::hierarchy::MeshSearch;
+use parry3d_f64::math::{Real, Vector};
+
+/// A tube and the mesh through which it goes.
+pub(crate) struct TubeInMesh<'a> {
+    pub search: MeshSearch<'a>,
+    pub tube: PlacedTube<'a>,
+}
+
+/// An upper bound on the clearance, and what realises it.
+#[derive(Clone, Copy)]
+pub(crate) struct Found {
+    pub upper: Real,
+    pub section: u32,
+    pub witness: Witness,
+}
+
+impl TubeInMesh<'_> {
+    /// # Errors
+    /// The curve is not finite there.
+    pub(crate) fn outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
+        let outer = self.tube.outer(piece);
+        if outer.body.is_finite() {
+            Ok(outer)
+        } else {
+            Err(ProximityError::CurveNotFinite { arc_length: self.tube.arcs(piece)[0] })
+        }
+    }
+
+    /// The halves of a piece whose body can become narrower.
+    pub(super) fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
+        if outer.over > self.tube.slack() { self.tube.halves(piece, aim) } else { None }
+    }
+
+    /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
+    /// the radius where that is less.
+    pub(crate) fn begin(&self, scale: Real, pieces: &mut Vec<Piece>) {
+        let radius =
+            self.tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
+        self.tube.begin(scale.max(0.25 * radius), pieces);
+    }
+
+    /// A first upper bound: from the triangle nearest to the longest section's chord.
+    pub(crate) fn first_bound(&mut self) -> Found {
+        let sections = self.tube.sections();
+        let length = |number: &u32| {
+            let section = &sections[*number as usize];
+            section.end - section.start
+        };
+        let longest = (0..sections.len() as u32).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0);
+        let (chord, arcs) = self.tube.chord(longest);
+        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
+        let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
+        let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
+        self.found_at(longest, arc, &nearest)
+    }
+
+    /// The upper bound that a triangle gives at a place of the tube.
+    pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> Found {
+        let place = self.tube.place_at(section, arc);
+        self.found_at(section, arc, &self.nearest_to(place, triangle))
+    }
+
+    /// The upper bound that the triangle nearest to a piece's body gives.
+    pub(super) fn found(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
+        let arcs = self.tube.arcs(piece);
+        let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
+        let found = self.found_at(piece.section, arc, nearest);
+        if nearest.distance > 0.0 || found.upper <= 0.0 {
+            return found;
+        }
+        // The body's common point with a triangle that crosses it may lie on its boundary, from where nobody sees that
+        // the tube is crossed too: one nearer to its middle shows it.
+        let middle = outer.body.start() + outer.body.along() * 0.5;
+        let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
+        let deeper = self.found_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
+        if deeper.upper < found.upper { deeper } else { found }
+    }
+
+    /// The point of a triangle nearest to a point.
+    fn nearest_to(&self, point: Vector, triangle: u32) -> Nearest {
+        let corners = self.search.hierarchy.mesh.corners(triangle);
+        PlacedLink::between(point, point, 0.0, [false; 2]).measure(triangle, corners)
+    }
+
+    fn found_at(&self, section: u32, arc: Real, nearest: &Nearest) -> Found {
+        let Nearest { triangle, on_mesh, .. } = *nearest;
+        let OnTube { upper, arc, point } = self.tube.near(section, arc, on_mesh);
+        let segment = self.tube.segment(section, arc);
+        let witness = Witness { on_robot: point, on_mesh, triangle, arc_length: arc, segment };
+        Found { upper, section, witness }
+    }
+
+    /// # Errors
+    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no more.
+    pub(crate) fn check_resolved(&self, possible: Real, resolution: Real) -> Result<(), ProximityError> {
+        // Written so that NaN is an error.
+        if possible <= resolution + 16.0 * self.tube.slack() {
+            Ok(())
+        } else {
+            Err(ProximityError::ToleranceTooFine { parameter: "resolution", tolerance: resolution, possible })
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The clearance of a tube, between bounds.
+
+use super::memory::TubeMemory;
+use crate::answer::{Clearance, ProximityError};
+use crate::pieces::{Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict, refine};
+use parry3d_f64::math::Real;
+
+/// After so many pieces none is halved any more, and the bounds are what they are: a limit on the time that a query takes,
+/// far above what any tolerance needs that the samples allow.
+const MOST_PIECES: u32 = 1 << 16;
+
+/// The clearance, with bounds no farther apart than the tolerance where the tube allows that.
+///
+/// Each piece that is settled is handed over, with its body and how far away that is at least. Those that were not
+/// needed, because the tube touches the mesh, are left in the memory.
+///
+/// # Errors
+/// The curve of the tube is not finite.
+pub(crate) fn clearance(
+    tube: &mut TubeInMesh,
+    memory: &mut TubeMemory,
+    tolerance: Real,
+    settled: impl FnMut(&Piece, &Outer, Real),
+) -> Result<Clearance, ProximityError> {
+    let uncertainty = tube.tube.uncertainty();
+    // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+    let aim = (tolerance + uncertainty - 4.0 * tube.tube.slack()).max(0.0);
+    let last = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len());
+    let best = match last {
+        Some(last) => tube.bound_at(last.section, last.arc, last.triangle),
+        None => tube.first_bound(),
+    };
+    tube.begin(best.upper.max(tolerance), &mut memory.pieces);
+    let mut bounds = Bounds { aim, best, lower: Real::INFINITY, left: MOST_PIECES, settled };
+    refine(tube, &mut memory.pieces, &mut bounds)?;
+    let Bounds { best, lower, .. } = bounds;
+    let Found { upper, section, witness } = best;
+    memory.last = Some((&best).into());
+    let lower = if memory.pieces.is_empty() { lower.min(upper) } else { 0.0 };
+    let resolved = upper - lower <= tolerance + uncertainty;
+    Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
+}
+
+/// How near the tube is at the least and at the most, as far as its pieces have been looked at.
+struct Bounds<S> {
+    /// How far apart the bounds may stay.
+    aim: Real,
+    best: Found,
+    lower: Real,
+    /// How many pieces may still be halved.
+    left: u32,
+    settled: S,
+}
+
+impl<S: FnMut(&Piece, &Outer, Real)> Bounds<S> {
+    fn settle(&mut self, piece: &Piece, outer: &Outer, apart: Real) {
+        self.lower = self.lower.min(apart);
+        (self.settled)(piece, outer, apart);
+    }
+}
+
+impl<S: FnMut(&Piece, &Outer, Real)> Question<Piece> for Bounds<S> {
+    const NEARER_FIRST: bool = true;
+
+    /// Nothing below 0 is left to be found.
+    fn is_answered(&self) -> bool {
+        self.best.upper - self.aim < 0.0 || self.best.upper <= 0.0
+    }
+
+    fn look(&mut self, _: &PlacedTube, _: &Piece, _: &Piece, outer: &Outer) -> Result<Look, ProximityError> {
+        let Self { aim, best, left, .. } = self;
+        *left = left.saturating_sub(1);
+        let is_wide =
+            *left > 0 && outer.over > 2.0 * *aim && (outer.is_flat() || outer.over > 0.25 * best.upper);
+        Ok(Look { bound: best.upper - *aim, is_wide, aim: *aim, start: Some(best.witness.triangle) })
+    }
+
+    fn keeps_away(&mut self, piece: &Piece, outer: &Outer, bound: Real) {
+        self.settle(piece, outer, bound);
+    }
+
+    fn judge(&mut self, _: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
+        if near.found.upper < self.best.upper {
+            self.best = *near.found;
+        }
+        if near.nearest.distance >= self.best.upper - self.aim || self.left == 0 {
+            self.settle(near.piece, near.outer, near.nearest.distance);
+            return Ok(Verdict::Settled);
+        }
+        Ok(Verdict::Halve(self.aim))
+    }
+
+    fn judge_whole(&mut self, _: &TubeInMesh, near: &Near<Piece>) -> Result<(), ProximityError> {
+        self.settle(near.piece, near.outer, near.nearest.distance);
+        Ok(())
+    }
+}

@@ -1,0 +1,32 @@
+//! What a query about a tube leaves for the next.
+
+use crate::pieces::{Found, Piece};
+use parry3d_f64::math::Real;
+
+/// Where a query ended, for the next to begin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    pub triangle: u32,
+    pub section: u32,
+    pub arc: Real,
+}
+
+impl From<&Found> for Start {
+    fn from(found: &Found) -> Self {
+        let witness = found.witness;
+        Self { triangle: witness.triangle, section: found.section, arc: witness.arc_length }
+    }
+}
+
+/// What a query about a tube leaves for the next.
+#[derive(Clone, Default)]
+pub(crate) struct TubeMemory {
+    pub pieces: Vec<Piece>,
+    pub last: Option<Start>,
+}
+
+impl TubeMemory {
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+}
