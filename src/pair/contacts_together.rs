@@ -1,6 +1,7 @@
 //! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on every instruction set.
 
 use super::contact::contact_of;
+use super::coordinates::Pair;
 use super::nearest::Nearest;
 use super::nearest_features::{NearestFeatures, NearestParts, link_feature, triangle_feature};
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
@@ -143,8 +144,8 @@ fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize,
         let pack = PairLanes::<L>::new(token, pairs, lane);
         store(&mut parts.nearest, 0, lane, pack.placed(pack.closest.point1));
         store(&mut parts.nearest, 3, lane, pack.placed(pack.closest.point2));
-        (pack.closest.distance * pack.unit).store(&mut parts.nearest[6][lane..]);
-        let PairLanes { triangle, link, face, axial, closest, unit, .. } = pack;
+        (pack.closest.distance * pack.pair.unit).store(&mut parts.nearest[6][lane..]);
+        let PairLanes { pair: Pair { triangle, link, unit, .. }, face, axial, closest, .. } = pack;
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
         parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
         for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {

@@ -7,21 +7,57 @@
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
-use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3};
+use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
 /// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2.
 pub(super) const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
-/// A link and a triangle in coordinates of their own.
-pub(crate) struct Pair {
-    pub triangle: [Vec3<Real>; 3],
-    pub link: Link<Real>,
-    /// What 1 is in the mesh's unit.
-    pub unit: Real,
+/// A link in the mesh's frame, or a pack of them.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<T: Scalar> {
+    pub start: Vec3<T>,
+    /// From start to end.
+    pub along: Vec3<T>,
+    /// The unit direction of the axis, or zero without one.
+    pub axis: Vec3<T>,
+    pub radius: T,
+    pub flat: [T::Mask; 2],
+    /// The largest coordinate from the start, or the radius.
+    pub extent: T,
 }
 
-impl Pair {
+/// A link and a triangle in coordinates of their own, or a pack of pairs.
+pub(super) struct Pair<T: Scalar> {
+    pub triangle: [Vec3<T>; 3],
+    pub link: Link<T>,
+    /// What 1 is in the mesh's unit.
+    pub unit: T,
+    /// The largest coordinate of link and triangle from the link's start, or the radius, in the mesh's unit.
+    pub extent: T,
+}
+
+impl<T: Scalar> Placed<T> {
+    /// The pair with a triangle in the mesh's frame.
+    #[inline(always)]
+    pub(super) fn with(&self, [a, b, c]: [Vec3<T>; 3]) -> Pair<T> {
+        let Self { start, along, axis, radius, flat, extent } = *self;
+        let [a, b, c] = [a - start, b - start, c - start];
+        let extent = a.largest().max(b.largest()).max(c.largest()).max(extent);
+        let scale = extent.power_of_two_to_unity();
+        let end = along * scale;
+        // A length whose square vanishes beside the triangle tells no direction.
+        let axis = Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
+        Pair {
+            triangle: [a * scale, b * scale, c * scale],
+            link: Link { end, axis, radius: radius * scale, flat },
+            unit: scale.one() / scale,
+            extent,
+        }
+    }
+}
+
+impl Pair<Real> {
     /// A lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
     pub(super) fn at_least(&self) -> Real {
         let [a, b, c] = self.triangle;

@@ -2,9 +2,9 @@
 //! [`PlacedLink::measure`], on every instruction set.
 
 use super::best::Best;
-use super::coordinates::Pair;
+use super::coordinates::{Pair, Placed};
 use super::nearest::Nearest;
-use super::pair_lanes::{PairLanes, PlacedLanes, Rows, TOGETHER, put_corners, store};
+use super::pair_lanes::{PairLanes, Rows, TOGETHER, put_corners, store};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Closest, Unfused, Vec3, dispatch};
@@ -111,7 +111,7 @@ fn closest<L: Pack<Element = f64>>(
     let (zero, bound) = (L::splat(token, 0.0), L::splat(token, bound));
     let (yes, no) = (zero.le(zero), zero.lt(zero));
     let flat = [if link.flat()[0] { yes } else { no }, if link.flat()[1] { yes } else { no }];
-    let link = PlacedLanes {
+    let link = Placed {
         start: splat::<L>(token, link.start().into()),
         along: splat::<L>(token, link.along().into()),
         axis: splat::<L>(token, link.axis()),
@@ -121,7 +121,8 @@ fn closest<L: Pack<Element = f64>>(
     };
     let mut near = 0;
     for lane in (0..count).step_by(L::LANES) {
-        let PairLanes { closest, unit, .. } = link.with(pair_lanes::corners::<L, 9>(token, corners, lane));
+        let corners = pair_lanes::corners::<L, 9>(token, corners, lane);
+        let PairLanes { pair: Pair { unit, .. }, closest, .. } = PairLanes::between(&link, corners);
         let Closest { distance, point1, point2 } = closest;
         near |= L::bits((distance * unit).le(bound)) << lane;
         distance.store(&mut answers[0][lane..]);

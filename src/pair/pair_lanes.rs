@@ -1,8 +1,9 @@
 //! Pairs of links and triangles in double precision, a pack at a time, each in coordinates of its own: those of
-//! [`PlacedLink::pair`](super::PlacedLink::pair), with the same bits on every instruction set.
+//! [`coordinates`](super::coordinates), with the same bits on every instruction set.
 
 use crate::distance::lanes::Pack;
-use crate::distance::{Axial, Closest, Face, Link, Scalar, Vec3, gives_direction};
+use super::coordinates::{Pair, Placed};
+use crate::distance::{Axial, Closest, Face, Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
 /// How many pairs are computed together: the widest pack of `f64`.
@@ -84,18 +85,13 @@ pub(crate) fn store<L: Pack<Element = f64>, const N: usize>(
     point.z.store(&mut rows[row + 2][lane..]);
 }
 
-/// A pack of pairs, from the links' starts and near one.
-pub(crate) struct PairLanes<L: Scalar> {
-    pub triangle: [Vec3<L>; 3],
-    pub link: Link<L>,
+/// A pack of pairs with their closest points.
+pub(super) struct PairLanes<L: Scalar> {
+    pub pair: Pair<L>,
     pub face: Face<L>,
     pub axial: Axial<L>,
     /// The closest points.
     pub closest: Closest<L>,
-    /// What 1 is in the mesh's unit.
-    pub unit: L,
-    /// The largest coordinate of link and triangle from the link's start, or the radius, in the mesh's unit.
-    pub extent: L,
     /// The start of the link in the mesh's frame.
     start: Vec3<L>,
 }
@@ -103,55 +99,35 @@ pub(crate) struct PairLanes<L: Scalar> {
 impl<L: Pack<Element = f64>> PairLanes<L> {
     /// Those from the lane `lane` on.
     #[inline(always)]
-    pub(crate) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
+    pub(super) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
         let start = point::<L>(token, rows, 9, lane);
         let along = point::<L>(token, rows, 12, lane) - start;
         let radius = L::load(token, &rows[15][lane..]);
         let zero = radius.zero();
         let flat = [zero.lt(L::load(token, &rows[16][lane..])), zero.lt(L::load(token, &rows[17][lane..]))];
         let extent = along.largest().max(radius);
-        let placed = PlacedLanes { start, along, axis: along.normalised(), radius, flat, extent };
-        placed.with(corners::<L, 18>(token, rows, lane))
+        let placed = Placed { start, along, axis: along.normalised(), radius, flat, extent };
+        Self::between(&placed, corners::<L, 18>(token, rows, lane))
+    }
+
+    /// Those of links and triangles in the mesh's frame.
+    #[inline(always)]
+    pub(super) fn between(placed: &Placed<L>, corners: [Vec3<L>; 3]) -> Self {
+        let pair = placed.with(corners);
+        let face = Face::new(pair.triangle);
+        let axial = Axial::new(&pair.link, &face);
+        // Where no lane is beyond a flat cap the discs decide nothing.
+        let closest = if L::bits(axial.beyond_flat_cap()) == 0 {
+            axial.without_caps(&pair.link)
+        } else {
+            axial.with_caps(&pair.link, &face)
+        };
+        Self { pair, face, axial, closest, start: placed.start }
     }
 
     /// A point in the mesh's frame.
     #[inline(always)]
     pub(crate) fn placed(&self, point: Vec3<L>) -> Vec3<L> {
-        self.start + point * self.unit
-    }
-}
-
-/// Links in the mesh's frame, as [`PlacedLink`](super::PlacedLink).
-#[derive(Clone, Copy)]
-pub(crate) struct PlacedLanes<L: Scalar> {
-    pub start: Vec3<L>,
-    pub along: Vec3<L>,
-    pub axis: Vec3<L>,
-    pub radius: L,
-    pub flat: [L::Mask; 2],
-    pub extent: L,
-}
-
-impl<L: Pack<Element = f64>> PlacedLanes<L> {
-    /// The pairs with triangles in the mesh's frame.
-    #[inline(always)]
-    pub(crate) fn with(&self, [a, b, c]: [Vec3<L>; 3]) -> PairLanes<L> {
-        let Self { start, along, axis, radius, flat, extent } = *self;
-        let [a, b, c] = [a - start, b - start, c - start];
-        let extent = a.largest().max(b.largest()).max(c.largest()).max(extent);
-        let scale = extent.power_of_two_to_unity();
-        let triangle = [a * scale, b * scale, c * scale];
-        let end = along * scale;
-        let axis = Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
-        let link = Link { end, axis, radius: radius * scale, flat };
-        let face = Face::new(triangle);
-        let axial = Axial::new(&link, &face);
-        // Where no lane is beyond a flat cap the discs decide nothing.
-        let closest = if L::bits(axial.beyond_flat_cap()) == 0 {
-            axial.without_caps(&link)
-        } else {
-            axial.with_caps(&link, &face)
-        };
-        PairLanes { triangle, link, face, axial, closest, unit: scale.one() / scale, extent, start }
+        self.start + point * self.pair.unit
     }
 }

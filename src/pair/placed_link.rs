@@ -1,9 +1,9 @@
 //! A link in the mesh's frame, and how near a triangle is to it.
 
-use super::coordinates::{Pair, SLACK, offset_from_axis};
+use super::coordinates::{Pair, Placed, SLACK, offset_from_axis};
 use super::nearest::Nearest;
 use crate::answer::{LinkProximity, Witness};
-use crate::distance::{Axial, Face, Link, Scalar, Vec3, gives_direction, segment_segment};
+use crate::distance::{Axial, Face, Link, Scalar, Vec3, segment_segment};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -156,18 +156,12 @@ impl PlacedLink {
         a.max(b).max(c).max_element().max(self.extent)
     }
 
-    pub(crate) fn pair(&self, corners: [Vector; 3]) -> Pair {
-        let offsets = corners.map(|corner| corner - self.start);
-        let extent = self.extent_with(corners);
-        let scale = extent.power_of_two_to_unity();
-        let end = Vec3::from(self.along * scale);
-        // A length whose square vanishes beside the triangle tells no direction.
-        let axis = if gives_direction(end.norm_squared()) { self.axis } else { Vec3::zero(0.0) };
-        Pair {
-            triangle: offsets.map(|offset| Vec3::from(offset * scale)),
-            link: Link { end, axis, radius: self.radius * scale, flat: self.flat },
-            unit: 1.0 / scale,
-        }
+    /// The pair with a triangle, in coordinates of its own.
+    #[inline(always)]
+    pub(super) fn pair(&self, corners: [Vector; 3]) -> Pair<Real> {
+        let Self { along, axis, radius, flat, extent, .. } = *self;
+        let placed = Placed { start: self.start.into(), along: along.into(), axis, radius, flat, extent };
+        placed.with(corners.map(Vec3::from))
     }
 
     /// A lower bound on the distance between the link and anything in the box.

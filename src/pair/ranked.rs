@@ -1,6 +1,7 @@
 //! The triangles near a robot's links in the order in which pieces of the wall appear: measured in double precision, a
 //! pack at a time.
 
+use super::coordinates::Pair;
 use super::nearest::Nearest;
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
 use super::placed_link::PlacedLink;
@@ -78,7 +79,7 @@ fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
 fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, ranks: &mut RankRows) {
     for lane in (0..count).step_by(L::LANES) {
         let pair = PairLanes::<L>::new(token, pairs, lane);
-        let PairLanes { link, axial, closest, unit, extent, .. } = &pair;
+        let PairLanes { pair: Pair { link, unit, extent, .. }, axial, closest, .. } = &pair;
         (closest.distance * *unit).store(&mut ranks[0][lane..]);
         store(ranks, 1, lane, pair.placed(closest.point1));
         store(ranks, 4, lane, pair.placed(closest.point2));
