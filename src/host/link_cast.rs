@@ -124,13 +124,14 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         if stop_at_start {
             return Ok(Some(start.hit(ShapeCastStatus::PenetratingOrWithinTargetDist)));
         }
-        let Some(core) = self.core(link)? else { return Ok(None) };
+        let Some(core) = self.core(link, start.touching)? else { return Ok(None) };
         let start = self.at(self.start_time, &core)?;
         self.advance(&core, start)
     }
 
-    /// What must not touch the wall if the link does at the start: nothing if it is through already.
-    fn core(&self, link: &ModifiedCylinder) -> Result<Option<ModifiedCylinder>, Unsupported> {
+    /// What must not touch the wall if the link does at the start: nothing if it is through already. Room counts that the
+    /// whole link can tell from a touch: a core thinner than that would be nothing to the iterations.
+    fn core(&self, link: &ModifiedCylinder, touching: Real) -> Result<Option<ModifiedCylinder>, Unsupported> {
         let inset = link.radius().min(0.25 * link.length());
         let trimmed = [0, 1].map(|end| match link.caps()[end] {
             Cap::Round => centre(link, end),
@@ -140,7 +141,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             |radius| ModifiedCylinder::capsule(trimmed[0], trimmed[1], radius).map_err(|_| Unsupported);
         let start = self.at(self.start_time, &capsule(0.0)?)?;
         let radius = 0.5 * start.distance.min(link.radius());
-        if radius > 2.0 * start.touching { capsule(radius).map(Some) } else { Ok(None) }
+        if radius > 2.0 * touching { capsule(radius).map(Some) } else { Ok(None) }
     }
 
     /// The first moment from this on at which the two touch.

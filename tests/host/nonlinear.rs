@@ -5,7 +5,7 @@ use crate::scene::tube;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus};
-use parry_continuum::parry::shape::{HalfSpace, Shape, Triangle};
+use parry_continuum::parry::shape::{HalfSpace, Shape, SharedShape, Triangle};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 /// A motion from a place to near another, sometimes straight, sometimes still, sometimes spinning fast.
@@ -131,6 +131,40 @@ fn what_touches_at_the_start_does_not_get_through() {
         }
     }
     assert!(held > 500 && free > 100, "{held} held, {free} free");
+}
+
+/// A ball whose centre is all but on a wall has no room that could be told from none. Where there is some, half of it is left.
+#[test]
+fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
+    let dispatcher = ContinuumDispatcher::default();
+    let walls = [
+        SharedShape::cuboid(0.75, 0.5, 0.5),
+        SharedShape::cylinder(0.875, 0.75),
+        SharedShape::cone(0.5, 0.75),
+    ];
+    for (wall, at) in walls.iter().zip([Vector::X * 0.75, Vector::X * 0.75, Vector::Y * -0.5]) {
+        let (out, still) = (at.normalize(), NonlinearRigidMotion::constant_position(Pose::IDENTITY));
+        for room in [0.0, 1e-15, 1.5e-13, 1e-12, 1e-10, 1e-7, 1e-3, 0.1] {
+            let centre = at + out * room;
+            let ball = ModifiedCylinder::capsule(centre, centre, 0.25).unwrap();
+            let comes = NonlinearRigidMotion { linvel: -out, ..still };
+            for stop in [true, false] {
+                let hits = [
+                    dispatcher.cast_shapes_nonlinear(&comes, &ball, &still, &**wall, 0.0, 1.0, stop),
+                    dispatcher.cast_shapes_nonlinear(&still, &**wall, &comes, &ball, 0.0, 1.0, stop),
+                ];
+                for hit in hits {
+                    let time = hit.unwrap().map(|hit| hit.time_of_impact);
+                    if stop {
+                        assert_eq!(time, Some(0.0), "{out} {room}");
+                    } else if room >= 1e-3 {
+                        let off = time.map_or(1.0, |time| (time - 0.5 * room).abs());
+                        assert!(off < 1e-4, "{out} {room} {time:?}");
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// How far the link reaches below the origin, by its definition.
