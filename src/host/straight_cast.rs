@@ -244,7 +244,7 @@ impl<'a> Way<'a> {
             // come from beyond the range of both.
             let may_meet =
                 closing > 0.0 && next <= options.max_time_of_impact && is_within_reach(velocity * next);
-            if !may_meet {
+            if !may_meet || self.has_passed(wall, velocity * next, options.target_distance, largest) {
                 return Ok(None);
             }
             if next <= time {
@@ -255,6 +255,16 @@ impl<'a> Way<'a> {
             contact = finite(wall.contact(velocity * time)?)?;
         }
         Ok(Some(self.hit(contact, time, status)))
+    }
+
+    /// Whether the wall, moved so far, has the link behind it for good. Until then it was clear. (A velocity that is all but along
+    /// the plane between the two leads far away, where iterations tell nothing any more.)
+    fn has_passed<W: Wall>(&self, wall: &W, shift: Vector, target: Real, largest: Real) -> bool {
+        let Some(way) = unit(self.velocity) else { return false };
+        let passed = wall.begins(way) + shift.dot(way) - self.link.local_support_point(way).dot(way);
+        let places = [shift, self.link.start(), self.link.end()].into_iter();
+        let largest = places.map(|place| place.abs().max_element()).fold(largest, Real::max);
+        passed > target.max(0.0) + ROUNDING * largest
     }
 
     /// What rounding can do to a distance after the wall, whose largest coordinate is given, has moved.

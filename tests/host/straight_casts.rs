@@ -7,7 +7,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{QueryDispatcher, ShapeCastOptions, ShapeCastStatus};
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
-use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
+use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 /// What a hit may be early by, for shapes of size one: the share of the size at which a link touches.
 const EARLY: Real = 1e-8;
@@ -312,4 +312,37 @@ mod as_parry_asks {
             assert!((hit.normal2 - Vector::Y).length() < 1e-9, "{height}: {hit:?}");
         }
     }
+}
+
+/// Rounding makes a velocity along the plane between two lead towards it, far away. They never meet.
+#[test]
+fn what_moves_along_the_plane_between_two_never_meets() {
+    let (mut random, mut asked) = (Random::new(173), 0);
+    for _ in 0..500 {
+        let radius = random.between(0.1, 1.0);
+        let out = Vector::X * random.between(0.2, 0.8).sqrt() + Vector::Y * random.between(-1.0, 1.0);
+        let axis = (out + Vector::Z * random.between(-1.0, 1.0)).normalize();
+        // The barrel of the wall, which stands along y, and the rim of the link are 0.01 apart along x.
+        let reach = radius * (Vector::X - axis * axis.x).length();
+        let start = Vector::new(0.11 + 0.01 + reach, random.between(-0.9, 0.9), 0.0);
+        let link = ModifiedCylinder::new(start, start + axis, radius, [Cap::Flat, Cap::Round]).unwrap();
+        let frame = random.pose(2.0);
+        let link = link.transformed(&frame.inverse());
+        let walls = [SharedShape::cylinder(0.98, 0.11), SharedShape::cuboid(0.11, 0.98, 0.5)];
+        for wall in &walls {
+            for way in [Vector::Y, -Vector::Y] {
+                let there = frame.rotation.inverse() * way;
+                let cast = |pos12: &Pose, velocity, g1: &dyn Shape, g2: &dyn Shape| {
+                    let options = ShapeCastOptions::default();
+                    ContinuumDispatcher::default().cast_shapes(pos12, velocity, g1, g2, options)
+                };
+                asked += 1;
+                for hit in [cast(&frame, way, &**wall, &link), cast(&frame.inverse(), there, &link, &**wall)]
+                {
+                    assert!(matches!(hit, Ok(None)), "{link:?} {frame:?} {hit:?}");
+                }
+            }
+        }
+    }
+    assert_eq!(asked, 2000);
 }
