@@ -207,3 +207,57 @@ fn the_least_distance_of_a_manifold_is_the_contacts() {
         assert!(compared > 300, "{kind:?} {compared}");
     }
 }
+
+/// What is nearer than this may count as touching at the start of a nonlinear cast: 1e-5 of the sizes.
+const NONLINEAR_TOUCH: Real = 1e-4;
+
+/// Along the way between the closest points, at speed 1, the two meet after just that distance; the opposite way convex ones
+/// never do.
+#[test]
+fn casts_along_the_way_between_meet_after_the_distance() {
+    let dispatcher = ContinuumDispatcher::default();
+    for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {
+        let slack = tolerance(kind).max(3e-9);
+        let (mut apart, mut overlapping) = (0, 0);
+        each(kind, 305, |asked, distance| {
+            let Asked { pos12, g1, g2, .. } = *asked;
+            let contact = asked.contact(Real::MAX).unwrap().unwrap();
+            let way = contact.normal1;
+            for stop_at_penetration in [true, false] {
+                let options = ShapeCastOptions { stop_at_penetration, ..Default::default() };
+                let cast = |way| dispatcher.cast_shapes(&pos12, way, g1, g2, options).unwrap();
+                let still = |way: Vector, start: Pose| NonlinearRigidMotion {
+                    linvel: way,
+                    ..NonlinearRigidMotion::constant_position(start)
+                };
+                let end = 2.0 * distance + 1.0;
+                let (rests, comes) = (still(Vector::ZERO, Pose::IDENTITY), still(-way, pos12));
+                let turning =
+                    dispatcher.cast_shapes_nonlinear(&rests, g1, &comes, g2, 0.0, end, stop_at_penetration);
+                let turning = turning.unwrap().map(|hit| hit.time_of_impact);
+                if distance > 10.0 * slack {
+                    apart += 1;
+                    let time = cast(-way).map(|hit| hit.time_of_impact);
+                    let in_time = time.is_some_and(|time| (time - distance).abs() <= slack);
+                    asked.assert(in_time, ("straight", distance, time));
+                    // Of others another part may lie that way.
+                    let both_convex = g1.is_convex() && g2.is_convex();
+                    asked.assert(!both_convex || cast(way).is_none(), ("away", distance));
+                    // Where they count as touching, what is cast is the core.
+                    if stop_at_penetration || distance > NONLINEAR_TOUCH {
+                        let not_late = turning.is_some_and(|time| time <= distance + slack);
+                        asked.assert(not_late, ("nonlinear", distance, turning));
+                    }
+                } else if contact.dist < -10.0 * slack && stop_at_penetration {
+                    overlapping += 1;
+                    for way in [way, -way] {
+                        let time = cast(way).map(|hit| hit.time_of_impact);
+                        asked.assert(time == Some(0.0), ("overlapping", contact.dist, time));
+                    }
+                    asked.assert(turning == Some(0.0), ("overlapping, nonlinear", contact.dist, turning));
+                }
+            }
+        });
+        assert!(apart > 150 && overlapping > 100, "{kind:?} {apart} {overlapping}");
+    }
+}
