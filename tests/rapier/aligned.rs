@@ -1,8 +1,8 @@
 //! Aligned scenes: rods across and along the free edge of a plate and on boxes made of triangles, and tubes on one axis
-//! that are pushed together. Nothing passes and nothing trembles, as with parry's capsule.
+//! that are pushed together. Nothing passes and nothing trembles, as with parry's capsule and cylinder.
 
 use crate::drop::world;
-use parry_continuum::parry::math::{Real, Vector};
+use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::{Cuboid, TriMesh};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
@@ -11,7 +11,7 @@ const RADIUS: Real = 0.25;
 const CAPS: [[Cap; 2]; 4] =
     [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]];
 
-/// Rods 2 long around the origin, along a unit vector: links with all caps, a chain of two, parry's capsule.
+/// Rods 2 long around the origin, along a unit vector: links with all caps, a chain of two, parry's capsule and cylinder.
 fn rods(along: Vector) -> Vec<(String, SharedShape)> {
     let link = |caps: [Cap; 2]| ModifiedCylinder::new(-along, along, RADIUS, caps).unwrap();
     let mut rods: Vec<_> =
@@ -20,6 +20,10 @@ fn rods(along: Vector) -> Vec<(String, SharedShape)> {
         Chain::from_centreline(&[-along, Vector::ZERO, along + 0.02 * Vector::Y], &[RADIUS; 2]).unwrap();
     rods.push(("chain".into(), SharedShape::new(chain)));
     rods.push(("parry's capsule".into(), SharedShape::capsule(-along, along, RADIUS)));
+    // Which stands along y.
+    let turned = Pose::from_rotation(Rot3::from_rotation_arc(Vector::Y, along));
+    let cylinder = SharedShape::compound(vec![(turned, SharedShape::cylinder(1.0, RADIUS))]);
+    rods.push(("parry's cylinder".into(), cylinder));
     rods
 }
 
