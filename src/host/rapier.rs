@@ -40,7 +40,7 @@
 //! if one of their colliders has `ActiveCollisionTypes::KINEMATIC_FIXED`. A robot inside a closed mesh needs
 //! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: the one-sided flag discards every contact from within.
 
-use crate::ContinuumDispatcher;
+use super::ContinuumDispatcher;
 use parry3d_f64::math::Real;
 use rapier3d_f64::dynamics::IntegrationParameters;
 use rapier3d_f64::geometry::NarrowPhase;
