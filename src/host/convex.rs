@@ -43,12 +43,6 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     /// # Errors
     /// [`Unsupported`] for what the inner dispatcher refuses.
     pub fn distance(&self) -> Result<Real, Unsupported> {
-        let [g1, g2] = self.shapes;
-        let distance = self.inner.distance(self.pos12, g1, g2)?.distance;
-        // parry's own says so too where it has not converged.
-        if distance > 0.0 {
-            return Ok(distance);
-        }
         Ok(match self.closest_points(Real::MAX)? {
             ClosestPoints::WithinMargin(point1, point2) => (point1 - self.pos12 * point2).length(),
             _ => 0.0,
@@ -63,18 +57,19 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let found = self.inner.closest_points(self.pos12, g1, g2, within)?;
         match found {
             ClosestPoints::WithinMargin(point1, point2) => {
-                let is_beyond = (point1 - self.pos12 * point2).length() > max_dist;
-                Ok(if is_beyond { ClosestPoints::Disjoint } else { found })
+                let way = self.pos12 * point2 - point1;
+                let distance = way.length();
+                if !self.is_kept_by_a_plane(way, distance)
+                    && let Some(contact) = self.contact(Real::MAX)?
+                    && contact.dist <= 0.5 * distance
+                {
+                    return Ok(closest_points_of(&contact, max_dist));
+                }
+                Ok(if distance > max_dist { ClosestPoints::Disjoint } else { found })
             }
             ClosestPoints::Disjoint if !self.are_apart_by(within) => {
-                let Some(contact) = self.contact_of_layers()? else { return Ok(found) };
-                Ok(if contact.dist <= 0.0 {
-                    ClosestPoints::Intersecting
-                } else if contact.dist <= max_dist {
-                    ClosestPoints::WithinMargin(contact.point1, contact.point2)
-                } else {
-                    ClosestPoints::Disjoint
-                })
+                let contact = self.contact_of_layers()?;
+                Ok(contact.map_or(found, |contact| closest_points_of(&contact, max_dist)))
             }
             _ => Ok(found),
         }
@@ -94,7 +89,14 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?;
         }
         let found = match found {
-            Some(contact) if contact.dist > 0.0 => Some(contact),
+            Some(contact) if contact.dist > 0.0 => {
+                if self.is_kept_by_a_plane(contact.normal1, contact.dist) {
+                    Some(contact)
+                } else {
+                    let gap = self.gap(contact.normal1);
+                    self.contact_of_layers()?.filter(|other| other.dist > gap).or(Some(contact))
+                }
+            }
             Some(contact) => self.least(contact)?,
             None => self.contact_of_closest()?,
         };
@@ -203,6 +205,23 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         (core.unwrap_or(*link), depth)
     }
 
+    /// Whether a plane across `way` keeps the two apart by what GJK says, but for half of it. Of shapes that touch it may say
+    /// that they are as far apart as they are large.
+    ///
+    /// The way between points that are close to each other is turned by what rounding moves these, as a share of the
+    /// distance, and the gap falls by as large a share of the shapes. GJK itself may turn it by more: so a way without a
+    /// plane is a reason to ask further, and no proof.
+    fn is_kept_by_a_plane(&self, way: Vector, distance: Real) -> bool {
+        let turned = || {
+            let size = largest(self.pos12, self.shapes[0], self.shapes[1]);
+            ROUNDING * size * (size / distance).min(1.0 / Real::EPSILON)
+        };
+        unit(way).is_none_or(|normal| {
+            let gap = self.gap(normal);
+            gap > 0.5 * distance || gap + turned() > 0.5 * distance
+        })
+    }
+
     /// Whether some simple direction proves that the two are further apart.
     fn are_apart_by(&self, margin: Real) -> bool {
         let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
@@ -229,5 +248,16 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     /// A direction of the link's in the first's frame.
     fn placed(&self, direction: Vector) -> Vector {
         if self.link_is_first { direction } else { self.pos12.rotation * direction }
+    }
+}
+
+/// The closest points of a contact within `max_dist`.
+fn closest_points_of(contact: &Contact, max_dist: Real) -> ClosestPoints {
+    if contact.dist <= 0.0 {
+        ClosestPoints::Intersecting
+    } else if contact.dist <= max_dist {
+        ClosestPoints::WithinMargin(contact.point1, contact.point2)
+    } else {
+        ClosestPoints::Disjoint
     }
 }

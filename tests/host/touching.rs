@@ -2,9 +2,9 @@
 
 use crate::draw::Draw;
 use continuum_testing::Random;
-use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::query::{QueryDispatcher, ShapeCastHit, ShapeCastOptions};
-use parry_continuum::parry::shape::{Ball, Cuboid, Shape, TriMesh, Triangle};
+use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
+use parry_continuum::parry::query::{PointQuery, QueryDispatcher, ShapeCastHit, ShapeCastOptions};
+use parry_continuum::parry::shape::{Ball, Cuboid, Cylinder, Shape, TriMesh, Triangle};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 /// The hit of a link at rest and a wall that moves, in both orders.
@@ -161,5 +161,37 @@ fn a_wall_that_hardly_comes_nearer_is_never_met() {
         for hit in casts(&link, &Triangle::from(corners), Vector::ZERO, Vector::new(-slow, 1.0, 0.0), true) {
             assert!(hit.is_none(), "{slow}");
         }
+    }
+}
+
+/// parry's GJK says of these that they are 0.452 apart.
+#[test]
+fn a_cylinder_that_touches_a_link_is_at_no_distance() {
+    let link = ModifiedCylinder::cylinder(
+        Vector::new(-0.362683682027401, -0.47298806277025496, 0.04843458040430093),
+        Vector::new(-0.31261149484969064, -1.4712674581462153, 0.07894728003982576),
+        0.39311729705502696,
+    );
+    let (link, cylinder) = (link.unwrap(), Cylinder::new(0.625, 0.2595046944848895));
+    let [x, y, z] = [-0.000870899718993708, -0.4945719644633502, 0.02931797819938096];
+    let pose = Pose::from_parts(
+        Vector::new(-0.7285175182121935, -0.6327893541345702, -0.4827618196418877),
+        Rotation::from_xyzw(x, y, z, 0.8686416232571652),
+    );
+    // From one to the other and back they come nearer, and are never nearer than the two are.
+    let (mut on_link, mut on_cylinder) = (link.start(), Vector::ZERO);
+    for _ in 0..1000 {
+        on_cylinder = cylinder.project_point(&pose, on_link, true).point;
+        on_link = link.project_local_point(on_cylinder, true).point;
+    }
+    let no_more = (on_link - on_cylinder).length();
+    assert!(no_more < 1e-3, "{no_more}");
+    let dispatcher = ContinuumDispatcher::default();
+    let shapes: [&dyn Shape; 2] = [&link, &cylinder];
+    for ([g1, g2], pose) in [(shapes, pose), ([shapes[1], shapes[0]], pose.inverse())] {
+        let distance = dispatcher.distance(&pose, g1, g2).unwrap().distance;
+        assert!(distance <= no_more + 1e-5, "{distance} {no_more}");
+        let contact = dispatcher.contact(&pose, g1, g2, Real::MAX).unwrap().unwrap();
+        assert!(contact.dist <= no_more + 1e-5 && contact.dist > -1e-3, "{contact:?}");
     }
 }

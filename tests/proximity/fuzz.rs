@@ -77,7 +77,6 @@ fn motions() {
 }
 
 #[test]
-#[ignore = "contacts and manifolds break promises where robot and wall are aligned"]
 fn touching() {
     try_bytes("touching", continuum_fuzzing::touching, 300);
 }
