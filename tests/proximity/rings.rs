@@ -54,7 +54,11 @@ fn grows_slowly(mesh: impl Fn(u32) -> TriMesh, axis: [Vector; 2], expected: (Rea
     ];
     for time in engines {
         let [mut few, mut many] = [Duration::MAX; 2];
-        for _ in 0..5 {
+        // More often where the machine has much else to do.
+        for round in 0..30 {
+            if round >= 3 && many < 4 * few {
+                break;
+            }
             for (best, (times, mesh)) in [&mut few, &mut many].into_iter().zip(&meshes) {
                 *best = (*best).min(time(*times, mesh, axis, expected));
             }
