@@ -9,8 +9,12 @@ pub mod kinematics {}
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 
+#[doc = include_str!("../docs/book/threads.md")]
+pub mod threads {}
+
 #[doc = include_str!("../docs/book/inside.md")]
 pub mod inside {}
+
 #[doc = include_str!("../docs/book/control.md")]
 pub mod control {}
 

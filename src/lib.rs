@@ -36,7 +36,10 @@
 //! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side), by the mesh's winding number, proven.
 //! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same answers. The feature
-//!   `gpu` adds `gpu::GpuExhaustive`.
+//!   `gpu` adds `gpu::GpuExhaustive`. The first page of [`proximity`] has a call for each question.
+//! - **The motion.** [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that a [`Motion`] keeps a margin
+//!   all the way.
+//! - **Threads.** Each has a clone of the engine: [`book::threads`].
 //! - **Contacts.** [`within`](proximity::Proximity::within) finds every place where the robot is near the wall, with a
 //!   normal, and how it changes with the joints. [`book::control`] is about controllers.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand a

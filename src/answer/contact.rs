@@ -7,9 +7,9 @@ use std::ops::{Deref, DerefMut};
 
 /// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
 ///
-/// Where the two touch or overlap the distance is 0 and both points are one. Depth and normal belong together then: they
-/// are the least translation that separates the link from this triangle, and `fraction`, `lever`, `feature` and `kink` are
-/// those of the points that part last. It is the way out of that triangle, and not of the wall that it is part of.
+/// Where the two touch or overlap, the distance is 0 and both points are the same. `depth` and `normal` then give the least
+/// translation that separates the link from this triangle, and `fraction`, `lever`, `feature` and `kink` belong to the points
+/// that separate last. This leads out of one triangle, and not out of the wall that it is part of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Contact {
@@ -21,44 +21,50 @@ pub struct Contact {
     pub feature: ContactFeature,
     /// The distance between link and triangle, 0 where they touch or overlap.
     pub distance: Real,
-    /// The distance with a sign: where they overlap, minus the length of the least translation that separates the link
-    /// from this triangle, flat caps and their rims included. Beside the link and beyond a round cap that is the distance
-    /// between axis and triangle less the radius, as long as the axis does not cross the triangle and no flat cap is
-    /// nearer. There is always one; it is that which the dispatcher's `contact` names for link and triangle.
+    /// The distance with a sign. Where the two are apart it is the distance; where they overlap, minus the length of the least
+    /// translation that separates the link from this triangle. It is always there, and the same as the dispatcher's
+    /// `contact` gives for link and triangle.
+    ///
+    /// Beside the link and beyond a round cap it is the distance between axis and triangle less the radius, as long as
+    /// the axis does not cross the triangle and no flat cap is nearer.
     pub depth: Option<Real>,
-    /// The unit vector from the wall to the robot. Where they overlap a translation of the link by `-depth` along it
-    /// separates the two. Beside the link and beyond a round cap it leads from the triangle to the link's axis; at a flat
-    /// cap, and where the axis crosses the triangle, to the side that is nearer. There is none where the opposite way out
-    /// is as short, as far as rounding can tell (16 u of the extent): where the axis lies in the plane of the triangle and
-    /// meets it, neither side is the robot's.
+    /// The unit vector from the wall to the robot. Where they overlap, moving the link by `-depth` along it separates the two.
+    ///
+    /// Beside the link and beyond a round cap it points from the triangle to the link's axis. At a flat cap, and where the axis
+    /// crosses the triangle, it points to the nearer side. There is none where the opposite way out is as short, up to
+    /// rounding (16 u of the extent): the axis then lies in the plane of the triangle and meets it, and neither side is the
+    /// robot's.
     pub normal: Option<Vector>,
     /// The two closest points, and where they are. The arc length is that of `fraction`.
     pub witness: Witness,
-    /// From the point of the axis at `fraction` to the link's closest point, or the one that parts last: the arm on which
-    /// a turn of the link moves that point.
+    /// From the point of the axis at `fraction` to the link's closest point, or the one that separates last. A turn of the link
+    /// moves that point by this arm.
     pub lever: Vector,
-    /// Whether other points of the two are as near, as far as rounding can tell: an edge or a face along the link, or
-    /// one across a flat cap; or, where they overlap, another way out is as short. The distance, or the depth, then has a
-    /// kink: its derivative depends on the direction of the motion, and what is computed is that for one of the points. A
-    /// triangle without area counts as one too, because its corners can move against one another.
+    /// Whether the distance, or the depth, has a kink here: its derivative depends on the direction of the motion, and the one
+    /// that is computed is that of the points named here. Up to rounding, this is where
+    ///
+    /// - other points are as near: an edge or a face lies along the link, or across a flat cap;
+    /// - another way out is as short, where the two overlap;
+    /// - the triangle has no area, so that its corners can move against one another.
     pub kink: bool,
 }
 
 impl Contact {
-    /// How fast the distance changes with a joint q, or with time: the derivative of [`depth`](Self::depth), which is the
-    /// [`distance`](Self::distance) where they are apart. The wall stands still.
+    /// How fast the distance changes with a joint q, or with time, while the wall stands still: the derivative of
+    /// [`depth`](Self::depth), which is the [`distance`](Self::distance) where the two are apart.
     ///
-    /// `velocity` is dc/dq, that of the centreline's point at [`arc_length`](Witness::arc_length), and `angular_velocity`
-    /// is how the link turns there, dt/dq = angular_velocity x t for its direction t; both in the mesh's frame. A turn
-    /// about the link's own axis has no effect. Beside the link and beyond a round cap only the velocity counts; at a
-    /// flat cap the turn moves the closest point on its lever:
+    /// - `velocity` is dc/dq, the velocity of the centreline's point at [`arc_length`](Witness::arc_length).
+    /// - `angular_velocity` is how the link turns there: dt/dq = angular_velocity x t for its direction t. A turn about the
+    ///   link's own axis has no effect.
+    ///
+    /// Both are in the mesh's frame. Beside the link and beyond a round cap only the velocity counts. At a flat cap the turn
+    /// moves the closest point too:
     ///
     /// ```text
     /// normal . (velocity + angular_velocity x lever)
     /// ```
     ///
-    /// There is none where there is no normal. At a [`kink`](Self::kink) it is the derivative for one of the points that
-    /// are as near.
+    /// `None` where there is no normal. At a [`kink`](Self::kink) this is the derivative for one of several points.
     ///
     /// ```
     /// use parry_continuum::Chain;

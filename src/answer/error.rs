@@ -189,7 +189,7 @@ pub enum ProximityError {
     Device(#[from] DeviceFailure),
 }
 
-/// How a GPU failed. Each engine on that GPU tells of it, by the query that comes next; the one after that may succeed.
+/// How a GPU failed. The next query of each engine on that GPU returns it; the one after that may succeed.
 #[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]

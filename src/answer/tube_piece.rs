@@ -12,7 +12,7 @@ pub struct TubePiece {
     pub section: u32,
     /// The arc lengths on the centreline between which it lies.
     pub arc_lengths: [Real; 2],
-    /// A convex body that holds it. By how much its radius is larger than the section's tells how coarse it is.
+    /// A convex body that holds it. The more its radius exceeds the section's, the coarser it is.
     pub body: ModifiedCylinder,
     /// The piece is at least this far from the mesh. It is no more than the answer needed, so often less than there is.
     pub lower: Real,

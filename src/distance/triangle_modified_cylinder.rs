@@ -71,7 +71,7 @@ pub fn triangle_capsule<T: Scalar>(
     triangle_modified_cylinder(triangle, start, end, radius, [neither, neither])
 }
 
-/// What the axis alone tells of a link and a triangle, in coordinates from the link's start.
+/// What the axis alone decides of a link and a triangle, in coordinates from the link's start.
 #[derive(Clone, Copy)]
 pub(crate) struct Axial<T: Scalar> {
     /// F^2, the squared distance between axis and triangle.

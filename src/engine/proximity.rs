@@ -7,13 +7,15 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// An engine that answers proximity queries between a robot and the mesh it was built for.
 ///
-/// `pose` is the robot's in the mesh's frame, and answers are in that frame too. Distances are to the mesh's
-/// surface and unsigned: a link that touches nothing may be on either side of it. All engines give the same
-/// distances. Of triangles that are as close as one another, touching ones included, [`BvhSearch`](super::BvhSearch) and
-/// [`Exhaustive`](super::Exhaustive) name the lowest, and of links that share it the lowest, on any number of threads.
+/// `pose` is the robot's pose in the mesh's frame, and answers are in that frame too. Distances are to the mesh's surface and
+/// unsigned: a link that touches nothing may be on either side of it.
 ///
-/// The batches take many robots, such as a planner's samples, and answer in their order on all cores. Each robot has a
-/// `Result` of its own: one that is refused costs the others nothing.
+/// All engines give the same distances. Where several triangles are equally close, or touch, [`BvhSearch`](super::BvhSearch)
+/// and [`Exhaustive`](super::Exhaustive) name the one with the lowest number, and of the links that share it the lowest, on
+/// any number of threads.
+///
+/// The batches take many robots, such as a planner's samples, and answer them on all cores, in the order given. Each robot has
+/// a `Result` of its own: one that is refused costs the others nothing.
 ///
 /// A query that returns an error leaves `out` empty.
 ///
@@ -73,8 +75,8 @@ pub trait Proximity: Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// A bound below zero asks for nothing: in the example above the room is below zero where a margin is violated, and
-    /// what must keep less away than that cannot be tighter.
+    /// A bound below zero asks for nothing, and the answer is `None`. In the example above it is below zero where one margin is
+    /// violated by more than another mesh's margin: that mesh cannot be tighter.
     ///
     /// # Errors
     /// The bound is NaN, the pose is not finite, or it moves a link out of range.
@@ -99,16 +101,19 @@ pub trait Proximity: Engine {
         self.ask_clears(PlacedRobot::new(robot, pose)?, margin)
     }
 
-    /// Every contact at most `margin` away: where the distance between a link and the mesh has a local minimum, link by
-    /// link and nearest first. `out` is cleared first.
+    /// Every contact at most `margin` away, link by link and nearest first: where the distance between a link and the mesh has
+    /// a local minimum. `out` is cleared first.
     ///
-    /// A place of the mesh is a local minimum for a link if no way on the mesh leads from it to a nearer one without
-    /// first leading farther away. So a wall that bends towards the link is one contact, however many triangles it has,
-    /// and a link in a narrow lumen has one on each side; every closest point that [`per_link`](Proximity::per_link)
-    /// finds within the margin is among them, or another place as near on the same piece of wall. Where a piece of wall
-    /// is equally near as far as rounding can tell, it is one contact; and so is a connected piece of wall inside the
-    /// link, named by the triangle nearest to the axis. Triangles are joined where they have corners at the same place,
-    /// whether they share an index or not.
+    /// A place of the mesh is a local minimum for a link if every way on the mesh to a nearer place first leads farther away.
+    ///
+    /// - A wall that bends towards the link is one contact, however many triangles it has.
+    /// - A link in a narrow lumen has a contact on each side.
+    /// - A piece of wall that is equally near everywhere, up to rounding, is one contact.
+    /// - A connected piece of wall inside the link is one contact. It names the triangle nearest to the axis.
+    /// - The closest point that [`per_link`](Proximity::per_link) finds is among them if it is within the margin, or another
+    ///   place as near on the same piece of wall.
+    ///
+    /// Triangles are joined where they have corners at the same place, whether they share an index or not.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -130,8 +135,8 @@ pub trait Proximity: Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// `prominence` is by how much farther every way on the mesh from a contact to a nearer place must lead first. It is 0 for
-    /// now, which is every local minimum.
+    /// `prominence` is 0 for now, which reports every local minimum. It will leave out those that are shallow: by how much
+    /// farther every way on the mesh from a contact to a nearer place must first lead.
     ///
     /// # Errors
     /// The margin is negative or NaN, the prominence is not 0, the pose is not finite, or it moves a link out of range.
@@ -209,9 +214,9 @@ pub trait Proximity: Engine {
     /// has now. Give the same robot and pose as to the query.
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, or the answer
-    /// does not fit the two: it is about another robot, another pose, or the mesh has moved since. Rounding is allowed
-    /// for, 16 units in the last place of the largest coordinate and the extent of link and triangle.
+    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link out of range. Or the answer
+    /// does not fit the two: it is about another robot or another pose, or the mesh has moved since. It fits if it is off by
+    /// no more than 16 units in the last place of the largest coordinate and of the extent of link and triangle.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -236,8 +241,8 @@ pub trait Proximity: Engine {
         contact(self.mesh(), robot, pose, answer)
     }
 
-    /// [`contact`](Self::contact) of every answer, in order: in a fraction of the time, because they are computed a pack
-    /// at a time. `out` is cleared first.
+    /// [`contact`](Self::contact) of every answer, in order. It takes a fraction of the time, because several are computed at
+    /// once. `out` is cleared first.
     ///
     /// # Errors
     /// Those of the first answer that has one; `out` is then empty.
@@ -266,9 +271,10 @@ pub trait Proximity: Engine {
         contacts(self.mesh(), robot, pose, answers, out)
     }
 
-    /// How an answer's distance changes with the ends of the link, its radius and the triangle's corners, of the mesh that
-    /// the engine has now; nothing where it has no derivative, because the axis meets the triangle, or a flat cap touches
-    /// it. Give the same robot and pose as to the query.
+    /// How an answer's distance changes with the ends of the link, its radius and the triangle's corners, of the mesh that the
+    /// engine has now. Give the same robot and pose as to the query.
+    ///
+    /// `None` where there is no normal, because neither side of the triangle is the robot's: see [`Contact::normal`].
     ///
     /// # Errors
     /// As [`contact`](Self::contact).
@@ -308,6 +314,28 @@ pub trait Proximity: Engine {
 
     /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about the mesh as it was, and
     /// [`contact`](Self::contact) refuses those that no longer fit.
+    ///
+    /// The next question that this engine is asked is about the new vertices. Its clones keep the mesh that they had, and a
+    /// clone made afterwards has the new one. While a clone lives that shares the mesh, the mesh and all that was built for it
+    /// are copied first.
+    ///
+    /// The vertices are copied and what bounds them is fitted to them, on all cores, in a time that grows with the mesh.
+    /// The division of the mesh into nodes stays as it was: build a new engine where the mesh has become another shape, so
+    /// that searches are fast again. What else has to be built depends on the question. Where the table names something, the
+    /// first such question after the move waits for it, unless [`prepare`](super::BvhSearch::prepare) is called before:
+    ///
+    /// | question | what is built after a move |
+    /// |---|---|
+    /// | [`per_link`](Self::per_link), [`minimum`](Self::minimum), [`minimum_within`](Self::minimum_within), tubes and motions | nothing |
+    /// | [`clears`](Self::clears) | nothing, but where the box around the mesh has moved by several cells of a coarse grid: then which space lies on which side of the wall |
+    /// | [`within`](Self::within) | which triangles are joined, if vertices that were at one place have parted or others have met: that is compared once, over all vertices; and near the robot where neighbours of triangles are |
+    /// | [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside) | what each part of the mesh is from far away |
+    /// | any, about what single precision does not resolve | nothing: a second hierarchy that was built is fitted too |
+    ///
+    /// The places of the last answers stay, and the next searches start there. The distances that were known are dropped.
+    ///
+    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles, and the GPU's engine sends the vertices with the
+    /// next query.
     ///
     /// # Errors
     /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
@@ -373,7 +401,7 @@ pub(crate) trait Engine {
     fn move_vertices(&mut self, vertices: &[Vector]);
 }
 
-/// Some triangle, for a robot whose nearest no search tells.
+/// Some triangle, for a robot whose nearest no search finds.
 pub(crate) fn any_triangle(mesh: &Mesh, robot: PlacedRobot) -> LinkProximity {
     let link = robot.link(0);
     link.answer(0, &link.measure(0, mesh.corners(0)))

@@ -44,7 +44,7 @@ impl Candidates {
     /// Adds the candidates of the next so many links, as kernels/collect.wgsl wrote them for this submission.
     ///
     /// # Errors
-    /// It did not write them: what is there tells nothing.
+    /// It did not write them: what is there says nothing.
     pub(super) fn read(
         &mut self,
         mesh: &DeviceMesh,

@@ -4,7 +4,7 @@
 use crate::answer::DeviceFailure;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// From the gravest on: what follows from a graver failure tells less than that.
+/// From the gravest on: what follows from a graver failure says less than that.
 const KINDS: [DeviceFailure; 3] = [DeviceFailure::Lost, DeviceFailure::OutOfMemory, DeviceFailure::Refused];
 
 /// The failures of a device, shared by its callbacks and its users.
@@ -31,7 +31,7 @@ impl Failures {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tells all users of a failure. What is no kind of its own here counts as a refusal.
+    /// Passes a failure on to all users. What is no kind of its own here counts as a refusal.
     pub(super) fn report(&self, failure: DeviceFailure) {
         let mut log = self.lock();
         log.reported += 1;

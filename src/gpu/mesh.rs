@@ -36,7 +36,7 @@ pub(super) struct Part {
 
 impl DeviceMesh {
     /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether the device has that
-    /// room, its failures tell.
+    /// room, its failures show.
     pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
         let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision.size())) as usize;
         let mut places = vec![u32::MAX; mesh.vertices().len()];
@@ -55,7 +55,7 @@ impl DeviceMesh {
     }
 
     /// Sends the vertices where that is called for: only they travel, the rest is computed on the device. Whether they
-    /// arrive, the query that follows tells.
+    /// arrive, the query that follows reports it.
     pub(super) fn update(&mut self, gpu: &Opened, frame: &SearchFrame, mesh: &Mesh) {
         if std::mem::replace(&mut self.is_current, true) {
             return;

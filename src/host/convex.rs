@@ -122,7 +122,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Ok(Some(Contact { dist, point2, ..contact }))
     }
 
-    /// The contact by the closest points, if these tell a direction, or by the layers.
+    /// The contact by the closest points, if these give a direction, or by the layers.
     fn contact_of_closest(&self) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
         if let ClosestPoints::WithinMargin(point1, point2) =
@@ -139,7 +139,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         self.contact_of_layers()
     }
 
-    /// The contact along the normal that the link without a layer tells. It separates the two.
+    /// The contact along the normal that the link without a layer gives. It separates the two.
     fn contact_of_layers(&self) -> Result<Option<Contact>, Unsupported> {
         let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes()) else {
             return Ok(None);
@@ -168,7 +168,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             if best.is_none_or(|(most, ..)| gap > most) {
                 best = Some((gap, normal, ends[usize::from(!self.link_is_first)]));
             }
-            // Thicker layers tell no more.
+            // Thicker layers show no more.
             if (ends[1] - ends[0]).dot(normal) > 0.5 * depth && depth > rounding {
                 break;
             }

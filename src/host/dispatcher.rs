@@ -21,12 +21,13 @@ use parry3d_f64::query::{
 };
 use parry3d_f64::shape::Shape;
 
-/// Answers parry's queries for links and chains, and passes the rest to `L`.
+/// Answers parry's queries for links and chains, and passes all other pairs to `L`.
 ///
-/// It is a *root* dispatcher: give it to parry or rapier as it is, not at the end of a chain of dispatchers,
-/// because parry's own dispatcher never comes back from within a composite shape. Put yours in as `L`.
+/// It is a *root* dispatcher: give it to parry or rapier as it is, and put a dispatcher of your own inside, as `L`. It must
+/// not stand at the end of a chain of dispatchers, because parry's own never asks the others about the parts of a composite
+/// shape.
 ///
-/// A link, or a chain, in either order against a
+/// What is answered for a link or a chain against another shape, in either order:
 ///
 /// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
 /// |---|---|---|---|---|
@@ -38,33 +39,43 @@ use parry3d_f64::shape::Shape;
 /// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
-/// Numbers are for shapes of size one: parry's tolerances are absolute, so in other units it is off by another share.
-/// They are those that `tests/host/pairs.rs` and `tests/host/depths.rs` enforce. The translation that separates a link
-/// from another convex shape is longer than the shortest that was found by a search of all directions by at most 1e-12 for a
-/// round link against a round link or a `Capsule`, 1e-6 for other links and a `Cylinder`, for a `Cuboid`, a `ConvexPolyhedron` and a
-/// `RoundCuboid`, and 0.01 for a `Cone` and a `RoundCylinder`. A shape that is no more than a line, such as a capsule of radius 0,
-/// counts as a segment, and any other capsule as a link. Links too large or too small for parry's iterations, beyond
-/// 2^50 or below 2^-200, are refused in the last column.
+/// Numbers are for shapes of size one. parry's tolerances are absolute, so in another unit of length the relative error is
+/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column links too large or
+/// too small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
 ///
-/// The least `dist` of a manifold is the one that `contact` names, unless a mesh's normal constraints have turned the
-/// normal. Nothing beyond a prediction is returned, be it negative, which asks for an overlap as deep; of a manifold that
-/// means its nearest point.
+/// **The shortest translation.** The one that separates a link from another convex shape may be longer than the shortest that
+/// a search of all directions finds. It is longer by at most
 ///
-/// Distances are to the triangles themselves, unsigned: 0 for a link that touches or crosses one. Touching is
-/// `Intersecting`, and a margin is kept only by what is further away than it. A nonlinear cast that does not stop at
-/// the start answers for what touches there when the link's core would meet the other shape: half of what keeps the
-/// link from being through is left then.
+/// - 1e-12 for a round link against a round link or a `Capsule`;
+/// - 1e-6 for other links, and for a `Cylinder`, a `Cuboid`, a `ConvexPolyhedron` and a `RoundCuboid`;
+/// - 0.01 for a `Cone` and a `RoundCylinder`.
 ///
-/// Every shape that consists of others (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
-/// [`Chain`](crate::Chain)) is taken apart with this dispatcher at each step, and `L` is asked only about
-/// pairs that cannot be taken apart. The sub-shape ids of an answer name the link, the triangle or the part
-/// on either side.
+/// A shape that is no more than a line, such as a capsule of radius 0, counts as a segment, and any other capsule as a link.
+///
+/// **Distances** are to the triangles themselves and unsigned: 0 for a link that touches or crosses one. Touching is
+/// `Intersecting`, and a margin is kept only by what is farther away than it.
+///
+/// **Predictions.** Nothing that is farther away than the prediction is returned. A negative prediction asks for an overlap at
+/// least as deep. Of a manifold it is the nearest point that counts.
+///
+/// **Manifolds.** The least `dist` of a manifold is that of `contact`, unless a mesh's normal constraints have turned the
+/// normal.
+///
+/// **Nonlinear casts** that do not stop at the start ignore what touches there until the link's core would meet the other
+/// shape. At that time half of what keeps the link from passing through is left.
+///
+/// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`, [`Chain`](crate::Chain)) are taken apart
+/// by this dispatcher at each level. `L` is asked only about pairs that cannot be taken apart. The sub-shape ids of an
+/// answer name the link, the triangle or the part of each side.
 ///
 /// # Errors
-/// [`Unsupported`] when any pair within the query is, so that a missing pair never reads as a free one. Also
-/// for poses, velocities or visited triangles that are not finite or beyond 1e150, for a rotation that is not of unit
-/// length, for a margin that is NaN, for height fields and voxels of a negative scale, and for the queries that parry has
-/// not got for voxels.
+/// [`Unsupported`] if any pair within the query is, so that a pair that cannot be answered never looks like a free one. Also
+/// if
+///
+/// - a pose, a velocity or a triangle that is visited is not finite or beyond 1e150;
+/// - a rotation is not of unit length, or a margin is NaN;
+/// - a height field or voxels have a negative scale;
+/// - parry has no such query for voxels.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -79,7 +90,7 @@ use parry3d_f64::shape::Shape;
 #[derive(Clone, Debug)]
 pub struct ContinuumDispatcher<L = DefaultQueryDispatcher>(pub L);
 
-/// For parry's own dispatcher alone, which is no `Default` itself.
+/// With parry's own dispatcher inside, which has no `Default` of its own.
 impl Default for ContinuumDispatcher {
     fn default() -> Self {
         Self(DefaultQueryDispatcher)

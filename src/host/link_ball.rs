@@ -53,7 +53,7 @@ fn of_link(pos12: &Pose, link: &ModifiedCylinder, radius: Real) -> Result<Contac
     let largest = in_range(centre)?.max(in_range(link.start())?).max(in_range(link.end())?);
     let found = nearest(link, centre).ok_or(Unsupported)?;
     let out = if found.is_inside { found.point - centre } else { centre - found.point };
-    // Of two points that are one but for rounding the way between them tells nothing.
+    // Of two points that are one but for rounding the way between them has no direction.
     let is_known = found.signed_distance.abs() > ROUNDING * largest;
     let of_surface = || feature::normal(link, found.feature, found.point);
     let normal = if is_known { unit(out) } else { of_surface().or(unit(out)) };

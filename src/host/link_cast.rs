@@ -37,7 +37,7 @@ const ROUNDING: Real = 64.0 * Real::EPSILON;
 const MOST_STEPS: usize = 200;
 
 /// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the other a half-space,
-/// in either order. `dispatcher` tells the contacts with walls other than triangles and half-spaces.
+/// in either order. `dispatcher` gives the contacts with walls other than triangles and half-spaces.
 ///
 /// # Errors
 /// [`Unsupported`] for what is not finite, out of range, or refused by the dispatcher.

@@ -1,6 +1,6 @@
 //! The contact manifold of a link and a half-space: what the link stands on (see [`footing`](super::footing)), and how
 //! high each of these points is over the plane. The lowest has the height of the link's lowest point: where a flat cap all
-//! but lies on the plane, no more than rounding tells which of its rim's points that is.
+//! but lies on the plane, rounding alone decides which of its rim's points that is.
 //!
 //! Where the nearest is within the prediction, all count, so that the host sees what a fast link is about to reach.
 

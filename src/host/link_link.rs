@@ -5,7 +5,7 @@
 //! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the other's axis, which is a
 //!    triangle without a height to the narrow phase, less the other's radius.
 //!
-//! [`foot`](super::foot) tells where that is exact. Where the axes of two round links come so close that the way between
+//! [`foot`](super::foot) derives where that is exact. Where the axes of two round links come so close that the way between
 //! them gives no direction, the normal is that of [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the
 //! other link, have no closed form here.
 
@@ -44,7 +44,7 @@ pub(super) enum Answer {
 }
 
 /// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0: where an axis lies in the other
-/// link, no distance tells how deep they overlap.
+/// link, no distance says how deep they overlap.
 pub(super) fn touch(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,

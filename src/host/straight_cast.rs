@@ -7,7 +7,7 @@
 //! their distance as a function of time, of which these steps are Newton's: they come from the safe side and do not pass the
 //! first root.
 //!
-//! Where g is not above e, n tells nothing: the two touch. At the start, and if the host does not stop there, they are let go
+//! Where g is not above e, n says nothing: the two touch. At the start, and if the host does not stop there, they are let go
 //! when they part along n; but only if n is known. Points that are close to one another have no direction between them, and
 //! two that may part or not are held.
 //!
@@ -65,7 +65,7 @@ pub(super) fn cast_triangle(
 }
 
 /// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no such pair.
-/// `dispatcher` tells their contacts.
+/// `dispatcher` gives their contacts.
 ///
 /// # Errors
 /// [`Unsupported`] for what is out of range or refused by the dispatcher.

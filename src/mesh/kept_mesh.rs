@@ -66,7 +66,7 @@ impl Mesh {
         check_all(vertices)
     }
 
-    /// Takes over vertices that were checked.
+    /// Moves the vertices to these places, which were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         let shares = self.vertices.chunks_mut(Mesh::SHARE).zip(vertices.chunks(Mesh::SHARE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));

@@ -9,7 +9,7 @@
 //! any other is measured again in double precision. So every search returns the double-precision answer.
 //!
 //! It does so in good time only while `error` is small beside the triangles. A single triangle that reaches far out
-//! makes the frame coarse for all, and a link far from the mesh has a large reach. [`SearchLink::is_resolved`](crate::pair::SearchLink::is_resolved) tells, and
+//! makes the frame coarse for all, and a link far from the mesh has a large reach. [`SearchLink::is_resolved`](crate::pair::SearchLink::is_resolved) finds that out, and
 //! the engines then search in double precision.
 
 use super::kept_mesh::Mesh;
@@ -28,7 +28,7 @@ pub(crate) struct SearchFrame {
     pub least: Real,
 }
 
-/// How many triangles tell what is typical.
+/// How many triangles show what is typical.
 const SAMPLE: usize = 1023;
 
 impl SearchFrame {

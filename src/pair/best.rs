@@ -60,7 +60,7 @@ impl Best {
             && (distance > 0.0 || triangle < self.below)
     }
 
-    /// Takes over a triangle if it is the best so far.
+    /// Keeps a triangle if it is the best so far.
     pub(crate) fn take(&mut self, other: Nearest) -> bool {
         let is_better = self.is_worse_than(other.distance, other.triangle);
         if is_better {

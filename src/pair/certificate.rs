@@ -40,7 +40,7 @@ impl LinkProximity {
     /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query: a mesh of
     /// your own, which need not be the engine's. Where
     /// [`set_vertices`](crate::proximity::Proximity::set_vertices) moved that one, make it of
-    /// [`vertices`](crate::proximity::Proximity::vertices) and [`triangles`](super::Proximity::triangles).
+    /// [`vertices`](crate::proximity::Proximity::vertices) and [`triangles`](crate::proximity::Proximity::triangles).
     ///
     /// # Errors
     /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, a vertex of

@@ -47,7 +47,7 @@ impl PlacedPair {
     }
 }
 
-/// Adds the contacts of `answers`, each at the place that `place` tells.
+/// Adds the contacts of `answers`, each at the place that `place` gives.
 pub(crate) fn add_contacts(
     level: Level,
     answers: &[LinkProximity],

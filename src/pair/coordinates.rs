@@ -46,7 +46,7 @@ impl<T: Scalar> Placed<T> {
         let extent = a.largest().max(b.largest()).max(c.largest()).max(extent);
         let scale = extent.power_of_two_to_unity();
         let end = along * scale;
-        // A length whose square vanishes beside the triangle tells no direction.
+        // A length whose square vanishes beside the triangle gives no direction.
         let axis = Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
         Pair {
             triangle: [a * scale, b * scale, c * scale],

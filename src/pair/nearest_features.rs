@@ -13,7 +13,7 @@
 //! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and once more when it is seen
 //! from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther apart or nearer than they should be, and what is
 //! computed of them errs by less than 9 u more. A gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however
-//! many digits, is that of the rounding. There, and where the two overlap and a flat cap is near, the features tell:
+//! many digits, is that of the rounding. There, and where the two overlap and a flat cap is near, the features decide:
 //! see `distance/depth/way_out.rs`.
 //!
 //! # Kinks
@@ -51,7 +51,7 @@ const FAR: Real = 16.0;
 /// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each of their ends.
 const OVER_EACH_OTHER: Real = 16.0 * TIE;
 
-/// What there is to tell of a link and a triangle, directions in the mesh's frame and lengths in its unit.
+/// What there is to say of a link and a triangle, directions in the mesh's frame and lengths in its unit.
 pub(crate) struct NearestFeatures {
     pub link: LinkFeature,
     pub triangle: TriangleFeature,
@@ -109,7 +109,7 @@ pub(crate) struct NearestParts<T: Scalar> {
     pub gap: T,
     /// Whether the closest point is one of a flat cap.
     pub at_flat_cap: T::Mask,
-    /// Whether the features tell more than these points (see the head of this file).
+    /// Whether the features say more than these points (see the head of this file).
     pub asks_way_out: T::Mask,
 }
 
@@ -162,7 +162,7 @@ impl<T: Scalar> NearestParts<T> {
         }
     }
 
-    /// Whether more than these numbers tell is needed: the features, or more digits.
+    /// Whether more than these numbers is needed: the features, or more digits.
     #[inline(always)]
     pub(crate) fn needs_closer_look(
         &self,
@@ -400,7 +400,7 @@ fn has_area<T: Scalar>(face: &Face<T>) -> T::Mask {
     (longest.norm_squared() * longest.x.lit(TIE)).lt(face.across.norm())
 }
 
-/// The part of a link by what [`NearestParts`] tells of its caps.
+/// The part of a link by what [`NearestParts`] has of its caps.
 pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
     match (start, end) {
         (true, _) => LinkFeature::StartCap,
@@ -409,7 +409,7 @@ pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
     }
 }
 
-/// The part of a triangle by what [`NearestParts`] tells of its corners and edges.
+/// The part of a triangle by what [`NearestParts`] has of its corners and edges.
 pub(crate) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> TriangleFeature {
     let first = |parts: [bool; 3]| (0..).zip(parts).find(|(_, is_nearest)| *is_nearest).map(|(part, _)| part);
     let corner = first(corners).map(TriangleFeature::Vertex);

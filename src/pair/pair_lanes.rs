@@ -1,8 +1,8 @@
 //! Pairs of links and triangles in double precision, a pack at a time, each in coordinates of its own: those of
 //! [`coordinates`](super::coordinates), with the same bits on every instruction set.
 
-use crate::distance::lanes::Pack;
 use super::coordinates::{Pair, Placed};
+use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Closest, Face, Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};
 

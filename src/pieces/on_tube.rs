@@ -6,7 +6,7 @@
 //! nearest place, any point q of the centreline will do as a bound: x is at most |x - q| - r away.
 //!
 //! What remains is an x ahead of a flat face whose centre is the nearest place. Then, and whenever it is nearer, the
-//! face itself tells: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
+//! face itself decides: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
 //! than the face's centre, that centre is not the nearest place.
 //!
 //! Where the centreline leads back to x, though, the discs around q may be nearer than the face, even if the face's centre is

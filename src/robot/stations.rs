@@ -297,7 +297,7 @@ impl<'a> Course<'a> {
 /// share is proportional to the steps, and mostly near it elsewhere. Also their share.
 fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, Real) {
     let (mut good, mut bad) = ((1, 0.0), (most + 1, 0.0));
-    // One step is always good, and its share of 0 tells nothing.
+    // One step is always good, and its share of 0 says nothing.
     let mut steps = guess.max(2).min(most);
     for _ in 0..PROBES {
         let probed = share(steps);

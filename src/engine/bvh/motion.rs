@@ -11,21 +11,23 @@ use parry3d_f64::math::Real;
 impl BvhSearch {
     /// Whether a motion keeps more than `margin` away from the mesh at every time from 0 to 1.
     ///
-    /// The decision `Clear` is proven for all times, given the speeds that the motion states, all rounding included. It is so although
-    /// distances are unsigned and a robot may be clear on both sides of a wall: what is proven is that no point gets
-    /// there. `Contact` names a shape that is at most the margin away. `Undecided` is the answer only where some shape's
-    /// clearance is above the margin by no more than `resolution`, which is a length; and at the moment at which an end of
-    /// a link or section, one radius behind a flat face, becomes flat or round, if that is what comes near.
+    /// - `Clear`: no point of the robot comes as near as the margin at any time. This is proven from the speeds that the motion
+    ///   states, rounding included. A robot that passes through a wall is never `Clear`, although it may be far from the wall
+    ///   on both sides.
+    /// - `Contact`: the answer names a shape that is at most the margin away, and its time.
+    /// - `Undecided`: some shape is farther away than the margin by no more than `resolution`, which is a length. There is one
+    ///   other case: an end of a link or section that lies one radius behind a flat face turns from flat to round, and it is
+    ///   this end that comes near.
     ///
-    /// The work is a query for each shape that the proof takes: one if the motion is small beside the room that it has,
-    /// and more where it passes close by. Only the pieces that are not proven yet are looked at again.
+    /// The work is one tube query for each shape that the proof needs. One shape is enough where the motion is small beside
+    /// the room that it has, and more are needed where it passes close by. Only the pieces of the robot that are not proven
+    /// yet are looked at again.
     ///
-    /// The stated speeds are trusted. [`verify_motion`](crate::verify_motion) tries them: call it in your tests.
+    /// The stated speeds are trusted. Let your tests check them by [`verify_motion`](crate::verify_motion).
     ///
-    /// The query allocates nothing once its memory has grown; making the shapes may. [`LinearMotion`](crate::LinearMotion)
-    /// and [`RigidMotion`](crate::RigidMotion) make theirs in memory that is used again, and so can a motion of one's own
-    /// through [`Tube::set_samples`](crate::Tube::set_samples). [`BendingMotion`](crate::BendingMotion) allocates a few times
-    /// for each shape.
+    /// The query allocates nothing once its memory has grown. Making the shapes may: [`LinearMotion`](crate::LinearMotion) and
+    /// [`RigidMotion`](crate::RigidMotion) reuse their memory, [`BendingMotion`](crate::BendingMotion) allocates a few times
+    /// for each shape, and a motion of your own reuses memory if it calls [`Tube::set_samples`](crate::Tube::set_samples).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};
@@ -46,9 +48,10 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, or the resolution so fine that rounding hides it; the motion has no
-    /// shape at some time, its sections change, or a stated speed is not finite; the robot is out of range; the samples of
-    /// a shape do not allow an answer as fine as the resolution; or the motion is too fast for it.
+    /// - The margin or the resolution is negative or NaN.
+    /// - The resolution is finer than rounding, than the samples of a shape allow, or than a motion so fast can be divided.
+    /// - The motion has no shape at some time, its sections change, or a stated speed is not finite.
+    /// - The robot is out of range.
     pub fn clears_motion(
         &mut self,
         motion: &impl Motion,
@@ -60,11 +63,14 @@ impl BvhSearch {
         self.context().motion(motion, margin, resolution).clears()
     }
 
-    /// When a motion first comes as close to the mesh as `margin`, between two times.
+    /// When a motion first comes as close to the mesh as `margin`: between the two times of the answer's
+    /// [`interval`](MotionAnswer::interval).
     ///
-    /// The answer and its errors are as those of [`clears_motion`](Self::clears_motion). Between the two times, the place
-    /// that touches moves by no more than the resolution; they are farther apart only if the motion comes within the
-    /// resolution of the margin before.
+    /// Until the first time the margin is kept, which is proven. At the second time a shape does not keep it, which the answer
+    /// names. Between the two, the place that touches moves by no more than the resolution. They are farther apart only if the
+    /// motion comes within the resolution of the margin before.
+    ///
+    /// Decisions mean what they do for [`clears_motion`](Self::clears_motion).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};

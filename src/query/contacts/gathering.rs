@@ -12,7 +12,7 @@ use crate::search::hierarchy::{Traversal, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// Adds to `found` every triangle that may be at most `bound` from the link. `across` tells which lie on a slope; it is for
+/// Adds to `found` every triangle that may be at most `bound` from the link. `across` shows which lie on a slope; it is for
 /// single precision.
 pub(super) fn gather<E: Lane>(
     mut traversal: Traversal<E>,
@@ -45,7 +45,7 @@ fn visit<E: Lane, L: Pack<Element = E>>(
 struct Gathering<'a, E> {
     level: Level,
     searched: &'a SearchLink<E>,
-    /// Tells which lie on a slope.
+    /// Shows which lie on a slope.
     across: Option<&'a Across<E>>,
     found: &'a mut NearTriangles,
     /// Those that wait, in rows like those of a leaf.
@@ -127,7 +127,7 @@ impl<'a, E: Lane> Gathering<'a, E> {
         self.computed
     }
 
-    /// Takes over those that wait and may be within the limit.
+    /// Adds to those found those that wait and may be within the limit.
     #[inline(never)] // compiled once for all that search
     fn look_closely(&mut self, limit: E) {
         dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd, limit));

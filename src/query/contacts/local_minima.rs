@@ -37,7 +37,7 @@
 //!
 //! # What need not be measured
 //! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and
-//! that one is nearer by far more than 2 t. The search can tell so, from a look at the neighbour (`slopes`) or from all
+//! that one is nearer by far more than 2 t. The search can see that, from a look at the neighbour (`slopes`) or from all
 //! that it found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far
 //! more than 2 t, so that no piece ever ends for being that of D. So is one whose nearest point is on an f that it shares
 //! with another that is left out: at d(f) it joins that one, which is in such a piece from a distance on that is no
@@ -130,12 +130,12 @@ impl Default for Lowest {
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<'a> {
     pub mesh: &'a Mesh,
-    /// Where each triangle stands in the leaves of the search, if it tells of slopes.
+    /// Where each triangle stands in the leaves of the search, if it knows slopes.
     pub place_of: &'a [u32],
 }
 
 impl<'a> Wall<'a> {
-    /// Without a search that tells of slopes.
+    /// Without a search that knows slopes.
     pub(crate) fn of(mesh: &'a Mesh) -> Self {
         Self { mesh, place_of: &[] }
     }

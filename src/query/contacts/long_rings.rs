@@ -34,7 +34,7 @@ impl<K: Default> LongRings<K> {
 
     /// What is known of the ring around a part of a triangle in question, the triangle itself included.
     ///
-    /// At the first question `add` takes over every triangle of the ring, with its place among those in question.
+    /// At the first question `add` gets every triangle of the ring, with its place among those in question.
     pub(crate) fn around(
         &mut self,
         shared: &SharedParts,

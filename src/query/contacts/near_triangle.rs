@@ -1,4 +1,4 @@
-//! What a search tells of the triangles that may be within a margin of a link, before they are measured.
+//! What a search knows of the triangles that may be within a margin of a link, before they are measured.
 
 use crate::mesh::{BLOCK, PART_WITHOUT};
 use parry3d_f64::math::Real;
@@ -98,7 +98,7 @@ impl NearLink<'_> {
         self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// Whether a triangle certainly lies on a slope. `place_of` tells where each triangle of the mesh stands in the leaves
+    /// Whether a triangle certainly lies on a slope. `place_of` says where each triangle of the mesh stands in the leaves
     /// of the search; where there are none, nothing does.
     #[inline(always)]
     pub(crate) fn is_on_slope(&self, index: &Index, place_of: &[u32], triangle: u32) -> bool {

@@ -11,7 +11,7 @@ use crate::search::hierarchy::{MeshSearch, Searched};
 use crate::threads::Lazy;
 use parry3d_f64::math::Real;
 
-/// A search that tells which triangles lie on a slope towards a neighbour.
+/// A search that sees which triangles lie on a slope towards a neighbour.
 pub(crate) struct ContactSearch<'a> {
     pub search: MeshSearch<'a>,
     /// Begun at the first question.

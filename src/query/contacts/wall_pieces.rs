@@ -123,7 +123,7 @@ impl Default for Around {
 }
 
 impl Around {
-    /// Takes over a triangle that is in question.
+    /// Adds a triangle that is in question.
     #[inline(always)]
     fn add(&mut self, place: u32, lower: Real) {
         if place == LEFT_OUT {

@@ -155,7 +155,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         sections.clear();
         intervals.clear();
         failed.clear();
-        // The first shape tells its pieces.
+        // The first shape gives its pieces.
         intervals.push_back(Interval { times: [0.0, 1.0], pieces: 0..0 });
     }
 

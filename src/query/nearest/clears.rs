@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin.
 //!
 //! What the last query proved may still hold for a robot that has moved a little. If not, a search for a little more than
-//! the margin tells the next queries as well, where robots move little. A robot that is new is asked about first where it
+//! the margin helps the next queries too, where robots move little. A robot that is new is asked about first where it
 //! seems to pass through the wall.
 
 use super::joint::{JointSearch, Pairs};

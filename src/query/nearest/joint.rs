@@ -4,7 +4,7 @@
 //! Of any other the larger is parted, and each half meets the other. So what a run of links is far from is never looked
 //! at again for one of its links. The first link and triangle that are near enough for certain end the search: those
 //! whose distance in the precision of the search is below the margin by more than rounding can do. Those of which it
-//! cannot tell are measured in double precision.
+//! cannot decide are measured in double precision.
 
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
@@ -31,7 +31,7 @@ pub(crate) struct Pairs<E> {
     runs: Vec<Run<E>>,
     query: u64,
     waiting: Vec<Pair<E>>,
-    /// The links and triangles of which the precision of the search cannot tell.
+    /// The links and triangles that the precision of the search cannot decide.
     doubtful: Vec<(u32, u32)>,
     /// The link and the leaf of the last triangle that was near enough.
     last: Option<(u32, u32)>,
@@ -76,7 +76,7 @@ struct Pair<E> {
     apart: E,
 }
 
-/// What the precision of the search tells.
+/// What the precision of the search can decide.
 enum Verdict {
     /// Nothing is within the margin, unless it is doubtful.
     Doubtful,

@@ -59,7 +59,7 @@ struct MinimumSearch<'a> {
     kept: &'a mut KeptDistances,
     bound: Real,
     best: Option<OfLink>,
-    /// By how much searches are wider than the bound, for what they tell the next query.
+    /// By how much searches are wider than the bound, so that the next query knows more.
     wider: Option<Real>,
 }
 
@@ -138,7 +138,7 @@ impl<'a> MinimumSearch<'a> {
     /// Whether no link of a run improves on the best; false where that is not clear from its capsule.
     fn all_are_farther(&mut self, capsule: &BoundingCapsule, links: Range<usize>) -> bool {
         let in_question = self.kept.in_question(links.clone(), self.bound);
-        // The capsule of many links tells little about a few of them.
+        // The capsule of many links says little about a few of them.
         if 2 * in_question <= links.len() {
             return in_question == 0;
         }
@@ -182,7 +182,7 @@ impl<'a> MinimumSearch<'a> {
         }
     }
 
-    /// Takes over the triangle nearest to a link, if any is near enough.
+    /// Keeps the triangle nearest to a link, if it is near enough.
     fn take(&mut self, link: usize, nearest: Option<Nearest>) {
         let Some(nearest) = nearest else { return };
         let found = (link, nearest);

@@ -78,7 +78,7 @@ impl RoughSides {
         sides
     }
 
-    /// Takes over a triangle, in units of cells.
+    /// Adds a triangle, in units of cells.
     fn note(&mut self, [a, b, c]: [Vector; 3]) {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         for centroid in centroids([a, b, c], self.count) {
@@ -137,7 +137,7 @@ impl RoughSides {
         x + self.count * (y + self.count * z)
     }
 
-    /// Cells that are on no side yet take over that of their nearest neighbours.
+    /// Cells that are on no side yet get that of their nearest neighbours.
     fn spread(&mut self) {
         let Self { count, cells, .. } = self;
         let (across, last) = (*count * *count, *count - 1);

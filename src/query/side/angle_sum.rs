@@ -1,4 +1,4 @@
-//! The sum of solid angles, and the side that it tells.
+//! The sum of solid angles, and the side that it proves.
 
 use crate::answer::Side;
 use crate::distance::Scalar;
@@ -16,7 +16,7 @@ pub(crate) struct SolidAngle {
 }
 
 impl SolidAngle {
-    /// The side that the sum of all solid angles tells; none where a smaller error might.
+    /// The side that the sum of all solid angles proves; none where a smaller error might.
     pub(crate) fn side(self) -> Option<Side> {
         // What rounding took from the sum of the errors.
         let error = self.error * (1.0 + 1e-6);

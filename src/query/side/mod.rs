@@ -5,7 +5,7 @@
 //! mesh winds around every point a whole number of times: never around those outside.
 //!
 //! `solid_angle` is that of a triangle, `far_field` that of many triangles far away (after Barill et al., "Fast winding
-//! numbers for soups and clouds", 2018), and both bound their error. `angle_sum` adds them up and tells the side.
+//! numbers for soups and clouds", 2018), and both bound their error. `angle_sum` adds them up and decides on the side.
 
 mod angle_sum;
 mod far_field;

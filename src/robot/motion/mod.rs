@@ -18,15 +18,19 @@ pub use verify::verify_motion;
 use super::{COORDINATE_LIMIT, NotRigid, RobotError, Tube, rigid};
 use parry3d_f64::math::{Pose, Real};
 
-/// A motion: the robot's shape and pose at each time t from 0 to 1, and a promise of how fast it moves.
+/// A motion: the robot's shape and pose at each time t from 0 to 1, and an upper bound on how fast it moves.
 ///
-/// Points of the centreline correspond by their section and by their share of its length, both from the base to the
-/// tip. So the number of sections and their radii stay the same; a section that is not out yet has a tiny length. Where
-/// the radii do not change, neither do the flat ends: the robot's two ends, and the wider side of each step in radius. The
-/// model may not change on the way, say from capsules to fitted caps.
+/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use. For a motion of your own, implement the two
+/// methods. What is proven of a motion relies on the bounds that it states, so let your tests check them by
+/// [`verify_motion`].
 ///
-/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use. A motion of one's own needs bounds on its speed, and what is
-/// proven of it relies on them: [`verify_motion`] tries them.
+/// Two shapes of a motion must be comparable:
+///
+/// - They have the same number of sections, with the same radii. A section that is not extended yet has a tiny length.
+/// - A point of the centreline is the same point at all times if it is in the same section, at the same share of the
+///   section's length.
+/// - The flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the model may not change on
+///   the way, from capsules to fitted caps for example.
 ///
 /// ```
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
@@ -58,27 +62,27 @@ use parry3d_f64::math::{Pose, Real};
 pub trait Motion {
     /// Makes `tube` the robot's shape at time `t`, and gives its pose in the mesh's frame.
     ///
-    /// `tube` holds some shape from before; [`Tube::set_samples`] and [`Tube::set_chain`] use its memory again. An error
-    /// that was stated by [`Tube::with_error`] is forgotten: each shape states its own.
+    /// `tube` holds an earlier shape. [`Tube::set_samples`] and [`Tube::set_chain`] reuse its memory. An error that was stated
+    /// by [`Tube::with_error`] is dropped before the call: each shape states its own.
     ///
     /// # Errors
-    /// There is no such shape. Queries pass the error on.
+    /// There is no such shape. [`RobotError::NoShape`] is for kinematics that fail. Queries pass the error on.
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError>;
 
-    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame, anywhere between two shares of a
-    /// section and at any time between two times.
+    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame: between two shares of a section's
+    /// length, and between two times.
     ///
-    /// Shares and times are from 0 to 1, the lower one first. The two shares, as the two times, may be equal. Bounds
-    /// that are too large cost time; one that is too small makes answers wrong.
+    /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound that is too large costs time.
+    /// One that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
 }
 
-/// How fast a centreline moves, per unit of the motion's time: over the whole motion, so far, if it moved evenly.
+/// How fast a centreline moves, per unit of the motion's time. At a steady speed this is how far it moves from t = 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
     /// The speed of its points, in units of length.
     pub point: Real,
-    /// The speed at which its direction turns, in rad. The rim of a disc moves by so much times the radius relative to
+    /// The speed at which its direction turns, in rad. Times the radius, this is how fast the rim of a disc moves relative to
     /// the disc's centre.
     pub turn: Real,
 }

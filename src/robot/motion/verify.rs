@@ -1,9 +1,9 @@
 //! Whether a motion keeps to the speeds that it states.
 //!
-//! What one step shows is little: a point between samples is known to their deviation, every point to the stated error,
-//! and where steps are fine, a motion of any speed stays within that. So shapes far apart in time are compared too, 1, 2, 4
-//! and so on steps apart and with the first shape: the way that was stated for the steps between adds up, and what is
-//! not known of two shapes counts once.
+//! A single fine step shows little. A point between samples is known only to their deviation, and every point only to the
+//! stated error; in a short time a motion of any speed stays within that. So shapes far apart in time are compared too: 1, 2,
+//! 4 and more steps apart, and with the first shape. The ways that were stated for the steps between them add up, and what is
+//! unknown of the two shapes counts once.
 
 use super::sampled::{Moved, Sampled, SampledPlace, places};
 use super::{Motion, Sections, rigid_pose};
@@ -11,16 +11,21 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// Tries the speeds that a motion states, at `steps` even steps of its time and nine places in each section, and at samples.
+/// Checks the speeds that a motion states, by its shapes at `steps` even steps of its time. Call it in your tests.
 ///
-/// From one step to the next no point may move farther than its stated speed allows, and no direction may turn more; nor
-/// on the way of 2, 4, 8 and more steps, or from the beginning. A bound that is too low only for a moment, or only between
-/// two places, shows in steps that are fine enough.
+/// Points are compared at nine places in each section, and at its samples. From one shape to the next no point may move
+/// farther than the stated speed allows, and no direction may turn more. The same holds for shapes that are 2, 4, 8 and more
+/// steps apart, and for each shape and the first. A bound that is too low only for a moment, or only between two places, shows
+/// if the steps are fine enough. Steps cannot be too fine.
 ///
-/// What the shapes leave open cannot be held against a motion: a stated error ([`Tube::with_error`](crate::Tube::with_error)),
-/// twice, and between samples how far the curve may be from their lines. A stated speed that is too low is found if it
-/// makes more of a difference than that, at some place from some shape to a later one. Steps as short as one likes do no
-/// harm. At samples that keep their shares of the section, and where the curve is a function, only the stated error is left.
+/// Some of what moves may be an error of the shapes, which does not count against the motion:
+///
+/// - the error that the tube states for itself ([`Tube::with_error`](crate::Tube::with_error)), twice;
+/// - between samples, how far the curve may be from the lines between them. This is 0 at samples that keep their shares of
+///   the section, and where the curve is a function.
+///
+/// A speed that is too low is found if it makes a larger difference than these, at some place, from some shape to a later
+/// one.
 ///
 /// # Errors
 /// The first time and place at which the motion is faster than stated, with both speeds; a shape that cannot be made; or

@@ -67,7 +67,7 @@ impl Tube {
     }
 
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
-    /// `lasting` tells of flat ends that are not so by the radii alone.
+    /// `lasting` knows flat ends that are not so by the radii alone.
     fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {
         let (mut points, mut arcs, mut segments) = std::mem::take(&mut self.curve).into_samples();
         points.clear();

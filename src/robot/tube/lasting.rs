@@ -59,7 +59,7 @@ impl Tube {
         }
     }
 
-    /// Marks the flat ends that stay so for a time: `moves(section, end)` tells by how much that end of a section moves
+    /// Marks the flat ends that stay so for a time: `moves(section, end)` is by how much that end of a section moves
     /// in it at most. By how much those that may not stay so move, with their limits, is returned.
     pub(crate) fn hold_faces(&mut self, moves: impl Fn(usize, usize) -> Real) -> Real {
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;

@@ -9,7 +9,7 @@ use crate::threads::each;
 const SPHERE_ROWS: usize = 4;
 /// Rows of a block that hold its triangles: three vertices and the dual basis.
 const FACE_ROWS: usize = 15;
-/// How many blocks one thread takes over at a time.
+/// How many blocks one thread works on at a time.
 const SHARE: usize = 64;
 
 /// The triangles of a mesh, near one, with what is computed once for each.
@@ -28,7 +28,7 @@ impl<E: Lane> Blocks<E> {
         blocks
     }
 
-    /// Takes over where the triangles are.
+    /// Fills the blocks with the triangles as they are now.
     pub(crate) fn refill(&mut self, mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) {
         self.frame = SearchFrame::new(mesh);
         let blocks = mesh.len().div_ceil(BLOCK);

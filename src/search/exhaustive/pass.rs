@@ -33,7 +33,7 @@ impl<T: Kernels> Triangles<T> {
             .get_or_build(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
     }
 
-    /// Takes over that the vertices of the mesh have moved.
+    /// Fills the blocks anew after the vertices of the mesh have moved.
     pub(crate) fn refill(&mut self, level: Level) {
         self.blocks.refill(&self.mesh, |faces, spheres| T::prepare(level, faces, spheres));
         if let Some(double) = self.double.get_mut() {

@@ -68,7 +68,7 @@ impl SharedBound {
         self.touching.load(Ordering::Relaxed)
     }
 
-    /// Takes over that a triangle touches.
+    /// Notes that a triangle touches.
     fn touch(&self, triangle: u32) {
         self.touching.fetch_min(triangle, Ordering::Relaxed);
         self.shrink_to(0.0);
@@ -90,7 +90,7 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Takes over what another thread found.
+    /// Adds what another thread found.
     pub(crate) fn merge(&mut self, other: &Findings) {
         self.work += other.work;
         self.within.extend(&other.within);

@@ -47,7 +47,7 @@ impl<L: Pack> NodeBounds<L> {
     /// neither errs by more than three times the link's `error`, which is 64: see
     /// [`SearchLink::limit_of_bounds`](crate::pair::SearchLink::limit_of_bounds).
     ///
-    /// The plane is left out where it tells nothing.
+    /// The plane is left out where it excludes nothing.
     #[inline(always)]
     pub(crate) fn squared_distances(&self, link: &LinkLanes<L>, plane_tells: bool) -> L {
         let third = self.normal.cross(self.tangent);

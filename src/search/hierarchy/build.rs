@@ -13,7 +13,7 @@ use fearless_simd::Level;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// How many leaves one thread takes over at a time.
+/// How many leaves one thread works on at a time.
 const SHARE: usize = 64;
 
 /// The hierarchy of a mesh.
@@ -74,7 +74,7 @@ impl<E: Lane> WideBvh<E> {
         self.leaves[child.leaves(|node| self.nodes[node].leaves.clone())].iter().flat_map(Leaf::triangles)
     }
 
-    /// Takes over the positions of the vertices; the division stays.
+    /// Fits all bounds to where the vertices are now; the division stays.
     pub(crate) fn refit(&mut self, level: Level, mesh: &Mesh) {
         self.frame = SearchFrame::new(mesh);
         let frame = &self.frame;
@@ -90,7 +90,7 @@ impl<E: Lane> WideBvh<E> {
     }
 }
 
-/// Bounds the children of nodes. `below` tells which leaves are below a node.
+/// Bounds the children of nodes. `below` says which leaves are below a node.
 #[inline(always)]
 fn bound_children<L: Pack>(
     token: L::Token,
@@ -136,7 +136,7 @@ fn full_subtree(count: usize) -> usize {
     unit
 }
 
-/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child. `most` tells how many
+/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child. `most` says how many
 /// children may come of them.
 fn middle(count: usize, most: usize, unit: usize) -> Option<usize> {
     (most > 1 && count > unit).then(|| (count / 2).next_multiple_of(unit).min(count - 1))

@@ -101,7 +101,7 @@ impl MeshSearch<'_> {
         resolved!(self, capsule, |traversal, searched| traversal.may_meet(&searched, bound, below), true)
     }
 
-    /// Some triangle, for a link whose nearest no search tells.
+    /// Some triangle, for a link whose nearest no search finds.
     pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
         link.measure(0, self.hierarchy.mesh.corners(0))
     }

@@ -31,7 +31,7 @@ impl Child {
         if packed & Self::LEAF == 0 { Self::Node(packed) } else { Self::Leaf(packed & !Self::LEAF) }
     }
 
-    /// The leaves below, or it alone; `of_node` tells those of a node.
+    /// The leaves below, or it alone; `of_node` gives those of a node.
     pub(crate) fn leaves(self, of_node: impl Fn(usize) -> Range<usize>) -> Range<usize> {
         match self {
             Self::Node(node) => of_node(node as usize),
@@ -158,7 +158,7 @@ impl<E: Lane> Leaf<E> {
         (0..BLOCK).filter(is_first).map(|lane| self.triangles[lane])
     }
 
-    /// Takes over where the triangles are.
+    /// Fills the leaf with the triangles as they are now.
     pub(crate) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
         for lane in 0..BLOCK {
             place_face(frame, mesh, self.triangles[lane], &mut self.rows, lane);

@@ -2,7 +2,7 @@
 //!
 //! Once a link kept more than a distance, or exactly it. No point of the link now is farther from all points of the link
 //! then than [`Origin::moved_to`] tells, so the link keeps what is left. What it keeps does not depend on the robot that
-//! it is a part of: any may follow. The same is true of the capsule around all links, which tells of a robot far from the
+//! it is a part of: any may follow. The same is true of the capsule around all links, which serves for a robot far from the
 //! wall at a glance.
 
 use super::outline::{Origin, Outline, ROUNDING};
@@ -88,7 +88,7 @@ impl KeptDistances {
         wider
     }
 
-    /// Takes over whether what the last query kept, if anything, speaks for this one about so many links.
+    /// Notes whether what the last query kept, if anything, is of use to this one about so many links.
     pub(crate) fn judge_speaking(&mut self, count: usize, bound: Real) {
         if self.is_new && SHARE_THAT_PAYS * self.in_question(0..count, bound) > (SHARE_THAT_PAYS - 1) * count
         {
@@ -97,7 +97,7 @@ impl KeptDistances {
         }
     }
 
-    /// Takes over how many nodes and leaves this query about so many links has visited.
+    /// Notes how many nodes and leaves this query about so many links has visited.
     pub(crate) fn judge_cost(&mut self, visited: u64, links: usize) {
         if self.is_new {
             if !self.widening.went_with(visited + (links / LINKS_FOR_A_NODE) as u64) {
@@ -116,7 +116,7 @@ impl KeptDistances {
         self.links.get(link)?.triangle
     }
 
-    /// Takes over that all of these links keep `apart` or more.
+    /// Notes that all of these links keep `apart` or more.
     pub(crate) fn keep(
         &mut self,
         robot: PlacedRobot,
@@ -137,7 +137,7 @@ impl KeptDistances {
         }
     }
 
-    /// Takes over what keeps `apart` or more.
+    /// Notes what keeps `apart` or more.
     pub(crate) fn keep_all(&mut self, robot: PlacedRobot, apart: Real, known: KeepsAway, reach: Real) {
         self.links.clear();
         self.capsule = None;
@@ -153,7 +153,7 @@ impl KeptDistances {
         self.widening.paid();
     }
 
-    /// Takes over that a wider search met something.
+    /// Notes that a wider search met something.
     pub(crate) fn miss(&mut self) {
         self.links.clear();
         self.capsule = None;

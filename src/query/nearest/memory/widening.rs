@@ -2,7 +2,7 @@
 //!
 //! A search for a little more costs little more. How much more pays follows from how far the robot moves from one query to
 //! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
-//! more rarely. Whether it pays tells what queries with it and one without it have cost.
+//! more rarely. Whether it pays is seen from what queries with it and one without it have cost.
 
 use super::outline::{Origin, Outline, ROUNDING};
 use crate::pair::PlacedRobot;
@@ -65,12 +65,12 @@ impl Widening {
         Some(self.queries * Origin::new(before, reach).moved_to(&now) + 4.0 * rounding)
     }
 
-    /// Takes over what a query without a wider search has cost.
+    /// Notes what a query without a wider search has cost.
     pub(crate) fn went_without(&mut self, cost: u64) {
         self.plain_cost = Some(self.plain_cost.map_or(cost, |before| (3 * before + cost) / 4));
     }
 
-    /// Takes over what a query with a wider search has cost. False if the next one is better off without it, and without what
+    /// Notes what a query with a wider search has cost. False if the next one is better off without it, and without what
     /// it has found.
     ///
     /// The first of a row pays for the others. These must not cost more than as many queries without it, and one.
@@ -94,18 +94,18 @@ impl Widening {
         true
     }
 
-    /// Takes over that the last wider search paid.
+    /// Notes that the last wider search paid.
     pub(crate) fn paid(&mut self) {
         self.last_rest = 0;
     }
 
-    /// Takes over that wider searches do not pay.
+    /// Notes that wider searches do not pay.
     pub(crate) fn failed(&mut self) {
         (self.trial_cost, self.tried, self.trials) = (0, 0, 0);
         self.rest_longer(REST_WITHOUT_PAY);
     }
 
-    /// Takes over that the last wider search met what a search less wide may not meet.
+    /// Notes that the last wider search met what a search less wide may not meet.
     pub(crate) fn too_wide(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
         self.rest_longer(REST_AFTER_MEETING);
