@@ -92,7 +92,7 @@ pub use robot::{
     pose_from_matrix, simplify, stations, verify_motion,
 };
 
-/// Runs the code in the README.
-#[cfg(doctest)]
+/// Runs the code in the README, where rapier is among it.
+#[cfg(all(doctest, feature = "rapier"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_fuzzing::chain_mesh(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_testing::fuzz::chain_mesh(bytes));

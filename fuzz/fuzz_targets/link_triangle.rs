@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_fuzzing::link_triangle(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_testing::fuzz::link_triangle(bytes));

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_fuzzing::tube(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| continuum_testing::fuzz::tube(bytes));

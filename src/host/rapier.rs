@@ -30,7 +30,7 @@
 //! # What rapier cannot do with custom shapes
 //! | | why | the way round |
 //! |---|---|---|
-//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and give them back to their colliders after loading: `tests/rapier/saved.rs` |
+//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and give them back to their colliders after loading: [below](#saving-a-world-with-robots) |
 //! | load a `NarrowPhase` | it comes back with parry's dispatcher, whose answers for links are near and not exact, and wrong beside a half-space | call [`install`] after loading |
 //! | `KinematicCharacterController` | it always asks parry's dispatcher | move a kinematic body and ask [`ContinuumDispatcher`] for the way that is free |
 //! | draw in the debug renderer | it draws boxes and contacts, and nothing for a custom shape itself | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
@@ -39,6 +39,8 @@
 //! `narrow_phase.query_dispatcher()` for the installed one. A kinematic robot and a fixed wall are compared only
 //! if one of their colliders has `ActiveCollisionTypes::KINEMATIC_FIXED`. A robot inside a closed mesh needs
 //! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: the one-sided flag discards every contact from within.
+#![cfg_attr(feature = "serde-serialize", doc = "")]
+#![cfg_attr(feature = "serde-serialize", doc = include_str!("../../docs/book/saving.md"))]
 
 use super::ContinuumDispatcher;
 use parry3d_f64::math::Real;

@@ -23,6 +23,7 @@ mod point_ray;
 mod points;
 mod rays;
 mod scene;
+#[cfg(feature = "serde-serialize")]
 mod serialised;
 mod shape;
 mod small_gaps;

@@ -1,10 +1,8 @@
-//! What a user meets first: the programs, and under which terms all of it may be used.
+//! What holds of the package as a whole: its licences, pages, names and layers, and that no thread waits in vain.
 
 mod layers;
 mod licences;
 mod links;
-mod my_robot;
-mod programs;
 mod public_names;
 mod reading_lists;
 mod sources;

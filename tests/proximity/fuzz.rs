@@ -1,6 +1,6 @@
 //! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something (fuzz/corpus).
 
-use continuum_testing::Random;
+use continuum_testing::{Random, fuzz};
 use std::fs;
 use std::path::Path;
 
@@ -33,50 +33,50 @@ fn corpus(name: &str) -> impl Iterator<Item = Vec<u8>> {
 
 #[test]
 fn link_triangle() {
-    try_bytes("link_triangle", continuum_fuzzing::link_triangle, 3000);
+    try_bytes("link_triangle", fuzz::link_triangle, 3000);
 }
 
 #[test]
 fn chain_mesh() {
-    try_bytes("chain_mesh", continuum_fuzzing::chain_mesh, 400);
+    try_bytes("chain_mesh", fuzz::chain_mesh, 400);
 }
 
 #[test]
 fn constructors() {
-    try_bytes("constructors", continuum_fuzzing::constructors, 3000);
+    try_bytes("constructors", fuzz::constructors, 3000);
 }
 
 #[test]
 fn dispatcher() {
-    try_bytes("dispatcher", continuum_fuzzing::dispatcher, 1000);
+    try_bytes("dispatcher", fuzz::dispatcher, 1000);
 }
 
 #[test]
 fn mesh_file() {
-    try_bytes("mesh_file", continuum_fuzzing::mesh_file, 3000);
+    try_bytes("mesh_file", fuzz::mesh_file, 3000);
 }
 
 #[test]
 fn root_finders() {
-    try_bytes("root_finders", continuum_fuzzing::root_finders, 2000);
+    try_bytes("root_finders", fuzz::root_finders, 2000);
 }
 
 #[test]
 fn tube() {
-    try_bytes("tube", continuum_fuzzing::tube, 1000);
+    try_bytes("tube", fuzz::tube, 1000);
 }
 
 #[test]
 fn coherence() {
-    try_bytes("coherence", continuum_fuzzing::coherence, 1000);
+    try_bytes("coherence", fuzz::coherence, 1000);
 }
 
 #[test]
 fn motions() {
-    try_bytes("motions", continuum_fuzzing::motions, 200);
+    try_bytes("motions", fuzz::motions, 200);
 }
 
 #[test]
 fn touching() {
-    try_bytes("touching", continuum_fuzzing::touching, 300);
+    try_bytes("touching", fuzz::touching, 300);
 }

@@ -8,7 +8,6 @@ mod drop;
 mod fast;
 mod long;
 mod rest;
-mod saved;
 mod setup;
 mod soft;
 mod units;

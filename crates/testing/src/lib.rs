@@ -5,12 +5,15 @@
 //! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`Random`], the same anywhere |
 //! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
-//! | programs | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
+//! | the fuzzer | `fuzz`, bodies that take any bytes (feature `fuzz`) |
+//! | around | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
 
 mod arcs;
 mod cases;
 pub mod certificate;
 pub mod disc_problems;
+#[cfg(feature = "fuzz")]
+pub mod fuzz;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod kernels;

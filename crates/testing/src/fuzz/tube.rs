@@ -1,7 +1,7 @@
 //! A tube and a mesh: bounds that hold, and nothing that panics.
 
-use crate::source::Source;
-use continuum_testing::Arcs;
+use super::source::Source;
+use crate::Arcs;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};

@@ -1,9 +1,9 @@
 //! The dispatcher where robots and walls are aligned and touch: what scenes are made of, and random poses never reach.
 //! Whatever is asked, in either order and again, is the same answer.
 
-use crate::source::Source;
-use continuum_testing::Random;
-use continuum_testing::placements::{Placement, Wall};
+use super::source::Source;
+use crate::Random;
+use crate::placements::{Placement, Wall};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,

@@ -1,22 +1,7 @@
-//! The example programs as a user meets them: bad input gives one line and an error code, good input a picture.
+//! Every program: what it refuses, what it prints and what it draws.
 
-use continuum_testing::programs::{self, colours, file, place, read, room};
-use std::path::PathBuf;
-
-/// An example program, which is built first.
-pub fn example(name: &str) -> PathBuf {
-    programs::example(env!("CARGO_MANIFEST_DIR"), name, if cfg!(feature = "gpu") { "gpu" } else { "" })
-}
-
-/// The output of an example that succeeds.
-pub fn succeed(name: &str, arguments: &[&str]) -> String {
-    programs::succeed(example(name), arguments)
-}
-
-/// An example must refuse these arguments with one line that says this.
-pub fn refuse(name: &str, arguments: &[&str], expected: &str) {
-    programs::refuse(example(name), arguments, expected);
-}
+use crate::{refuse, succeed};
+use continuum_testing::programs::{colours, file, place, read, room};
 
 /// A place for a picture in a directory that is a file.
 fn beside(file: &str) -> String {

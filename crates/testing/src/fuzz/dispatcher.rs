@@ -1,9 +1,9 @@
 //! The dispatcher between a robot and every kind of shape that parry has: an answer or a refusal, never a panic and
 //! never a NaN, whatever the pose, the margin and the options. Of aligned pairs that touch more is asked.
 
-use crate::source::Source;
-use continuum_testing::Random;
-use continuum_testing::placements::{Placement, Wall};
+use super::source::Source;
+use crate::Random;
+use crate::placements::{Placement, Wall};
 use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,

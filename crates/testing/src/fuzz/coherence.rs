@@ -1,7 +1,7 @@
 //! One engine in a long loop beside a fresh one for each question: what was asked before changes no answer, nor do vertices
 //! that moved, and every margin means the same everywhere.
 
-use crate::source::Source;
+use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Exhaustive, LinkProximity, Proximity};

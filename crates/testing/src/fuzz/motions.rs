@@ -1,7 +1,7 @@
 //! Motions beside the shapes that they pass: tiny turns and long ways, from starts that touch. What is proven clear is clear
 //! at every time that is looked at.
 
-use crate::source::Source;
+use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity};

@@ -1,6 +1,6 @@
 //! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to change.
 
-use crate::programs::{example, refuse, succeed};
+use crate::{example, refuse, succeed};
 use continuum_testing::programs::{file, room, run};
 
 /// A quarter turn that brings x to y and y to -x, and a shift.
@@ -39,7 +39,7 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     let bounds: Vec<f64> = curve.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     assert!(bounds[0] <= 4.0 && 4.0 <= bounds[1] && bounds[1] - bounds[0] <= 0.0100001, "{out}");
     // The files that come with the example.
-    let data = |name: &str| format!("{}/examples/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let data = |name: &str| format!("{}/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let [wall, shape, pose] = ["wall.stl", "shape.csv", "pose.txt"].map(data);
     let readme = ["--mesh", &wall, "--centreline", &shape, "--pose", &pose];
     let clearance = minimum(&readme);

@@ -1,8 +1,8 @@
 //! One link and one triangle: the narrow phase keeps to its bounds in both precisions.
 
-use crate::source::Source;
-use continuum_testing::narrow_phase::triangle_modified_cylinder;
-use continuum_testing::precision::{Precision, extent, vector};
+use super::source::Source;
+use crate::narrow_phase::triangle_modified_cylinder;
+use crate::precision::{Precision, extent, vector};
 use parry_continuum::distance::Closest;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Certificate;

@@ -1,6 +1,6 @@
 //! Any numbers for robots: an error, or a robot that is sound.
 
-use crate::source::Source;
+use super::source::Source;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::{Cap, Chain, ModifiedCylinder, simplify, stations};
 

@@ -1,6 +1,6 @@
 //! A robot and a mesh: all engines give the answer that the certificate proves.
 
-use crate::source::Source;
+use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Certificate, Exhaustive, LinkProximity, Proximity};

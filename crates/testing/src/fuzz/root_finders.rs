@@ -1,6 +1,6 @@
 //! Any polynomial: each finder gives all roots, each of which solves it, or says that it does not.
 
-use crate::source::Source;
+use super::source::Source;
 use polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};
 
 /// A root's residual, as a share of the sum of the magnitudes of the terms, stays below the square root of rounding.
