@@ -14,6 +14,7 @@ mod growth;
 mod latency;
 mod moving;
 mod planner;
+mod rare;
 mod search;
 
 use clap::Parser;
@@ -80,7 +81,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
     let growth = growth::chapter(effort, &options.out)?;
     let (latency, after_other_work) = latency::chapter(effort)?;
-    for chapter in [search, planner, latency, exhaustive, growth, moving::chapter(effort)?, memory] {
+    let rare = rare::chapter(effort, &mut goals)?;
+    for chapter in [search, planner, latency, rare, exhaustive, growth, moving::chapter(effort)?, memory] {
         page.push('\n');
         page.push_str(&chapter);
     }
