@@ -330,7 +330,7 @@ pub trait Proximity: Engine {
     /// | [`clears`](Self::clears) | nothing, but where the box around the mesh has moved by several cells of a coarse grid: then which space lies on which side of the wall |
     /// | [`within`](Self::within) | which triangles are joined, if vertices that were at one place have parted or others have met: that is compared once, over all vertices; and near the robot where neighbours of triangles are |
     /// | [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside) | what each part of the mesh is from far away |
-    /// | any, about what single precision does not resolve | nothing: a second hierarchy that was built is fitted too |
+    /// | any, about what single precision does not resolve | nothing: a second hierarchy that was built is fitted too, which made the move take two to three times as long |
     ///
     /// The places of the last answers stay, and the next searches start there. The distances that were known are dropped.
     ///

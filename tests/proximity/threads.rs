@@ -1,7 +1,7 @@
 //! Nothing hangs: fresh engines that many threads ask at once, far and near, in batches and from a caller's own tasks.
 //!
 //! Each question is asked of an engine that has built nothing yet, so that threads meet in what it builds. Luck decides
-//! how they meet; that no build uses the pool is told without luck by `proximity/lazy.rs` and `tests/package/threads.rs`.
+//! how they meet; that no build uses the pool is shown without luck by `src/threads/lazy.rs` and `tests/package/threads.rs`.
 //! `PARRY_CONTINUUM_ROUNDS` names more rounds, such as a thousand.
 
 use continuum_testing::{Random, answered};

@@ -3,8 +3,8 @@
 //! An interval of time is judged by its middle shape. Points of a piece that move at V or slower are within tau V of
 //! where they are at the middle, tau being half of the interval; so if a body around the piece, as it is then, keeps more
 //! than margin + tau V away, the piece keeps the margin during the whole interval. Its points then are those of the same
-//! shares of its section: what bodies hold of them, besides the discs and the balls of the moment, is told in
-//! `tube::outer` and in `moment`. Pieces that fail are looked at again in what is left of the interval on either side: a
+//! shares of its section: what bodies hold of them, besides the discs and the balls of the moment, is derived in
+//! `pieces::outer` and in `moment`. Pieces that fail are looked at again in what is left of the interval on either side: a
 //! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
 //! fails, and not the motion, the piece is halved instead, in the same shape.
 //!
