@@ -52,15 +52,14 @@ where
         check_margin(prediction)?;
         check_scale(g1)?;
         check_scale(g2)?;
+        let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
         // Boxes are loosened by the prediction, which parry wants positive, and by what rounding can have taken from the
         // meeting of two that touch.
-        let has_boxes = has_parts(g1) || has_parts(g2);
+        let has_boxes = is_robot && (has_parts(g1) || has_parts(g2));
         let rounding = if has_boxes { range::rounding_of_boxes(pos12, g1, g2) } else { 0.0 };
         let loose = prediction.max(0.0) + rounding;
-        let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
         if !robot_mesh_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
-            let within = if is_robot { loose } else { prediction.max(0.0) };
-            self.update_by_parts(pos12, (g1, g2), within, manifolds, workspace)?;
+            self.update_by_parts(pos12, (g1, g2), loose, manifolds, workspace)?;
             if is_robot || prediction < 0.0 {
                 leave_out_beyond(prediction, manifolds);
             }

@@ -1,5 +1,6 @@
 //! The range of numbers that is answered.
 
+use crate::Chain;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::Unsupported;
@@ -41,10 +42,19 @@ pub(super) fn largest(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
 
 /// What rounding can have taken from the meeting of the boxes of two shapes and of their parts; 0 for shapes without
 /// bounds. A box's corner is a sum of four products, or a vertex that is moved: a few units in the last place of the
-/// largest coordinate each.
+/// largest coordinate each. A turn makes no coordinate larger than a length, which is less than twice the largest before.
 pub(super) fn rounding_of_boxes(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
-    let largest = largest(pos12, g1, g2).max(pos12.translation.abs().max_element());
+    let largest = reach(g1).max(2.0 * reach(g2) + pos12.translation.abs().max_element());
     if largest <= COORDINATE_LIMIT { 16.0 * Real::EPSILON * largest } else { 0.0 }
+}
+
+/// No coordinate of a shape in its own frame is larger.
+fn reach(shape: &dyn Shape) -> Real {
+    if let Some(chain) = shape.as_shape::<Chain>() {
+        return chain.reach(); // its box would ask every link
+    }
+    let bounds = shape.compute_local_aabb();
+    bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
 /// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares

@@ -179,6 +179,16 @@ impl Chain {
         &self.link_tree
     }
 
+    /// No coordinate of its links is larger.
+    pub(crate) fn reach(&self) -> Real {
+        let within = |ends: [Vector; 2], radius| ends[0].abs().max(ends[1].abs()).max_element() + radius;
+        match (self.link_tree.first(), self.links.first()) {
+            (Some(LinkNode::Inner { bound, .. }), _) => within([bound.start, bound.end], bound.radius),
+            (_, Some(link)) => within([link.start(), link.end()], link.radius()),
+            _ => 0.0,
+        }
+    }
+
     /// How long the links before a link are, together.
     pub(crate) fn length_before(&self, link: usize) -> Real {
         self.lengths_before.get(link).copied().unwrap_or_default()
