@@ -3,7 +3,7 @@
 use super::answered::{corners, placed_link, transformed_link};
 use super::contacts_together::{PlacedPair, try_add_contacts};
 use super::nearest::Nearest;
-use super::nearest_features::NearestFeatures;
+use super::nearest_features::{Measured, NearPair, NearestFeatures};
 use super::placed_link::PlacedLink;
 use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError, Witness};
 use crate::mesh::Mesh;
@@ -21,9 +21,10 @@ pub(crate) fn contact(
     pose: &Pose,
     answer: &LinkProximity,
 ) -> Result<Contact, ProximityError> {
-    let (link, corners) = near(mesh, robot, pose, answer)?;
+    let (link, corners, measured) = near(mesh, robot, pose, answer)?;
     let (length, before) = (length(link.along()), robot.length_before(answer.link as usize));
-    Ok(contact_of(answer, length, before, &NearestFeatures::of(&link, corners)))
+    let found = measured.features(|| NearPair::exactly(&link, corners));
+    Ok(contact_of(answer, length, before, &found))
 }
 
 /// Answers about this mesh as contacts.
@@ -46,12 +47,12 @@ pub(crate) fn contacts(
         Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
     };
     let check = |answer: &LinkProximity, place: &PlacedPair, measured: &Nearest| {
-        answer.check_fit_of(measured, &place.link(), place.corners)
+        answer.check_fit_of(measured, || place.link(), place.corners)
     };
     try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
 }
 
-/// The link and the corners of the triangle that an answer is about, which it fits.
+/// The link and the corners of the triangle that an answer is about, which it fits, and both measured.
 ///
 /// # Errors
 /// They do not exist, the pose is not finite or moves the link out of range, or the answer does not fit.
@@ -60,11 +61,12 @@ pub(crate) fn near(
     robot: &Chain,
     pose: &Pose,
     answer: &LinkProximity,
-) -> Result<(PlacedLink, [Vector; 3]), ProximityError> {
+) -> Result<(PlacedLink, [Vector; 3], Measured), ProximityError> {
     let link = placed_link(answer, robot, pose)?;
     let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
-    answer.check_fit(&link, corners)?;
-    Ok((link, corners))
+    let measured = Measured::new(&link, corners);
+    answer.check_fit_of(&measured.nearest(&link, answer.triangle), || link, corners)?;
+    Ok((link, corners, measured))
 }
 
 /// The contact of an answer about a link of the given length. `before` is that of the links before it.

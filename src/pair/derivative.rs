@@ -1,7 +1,7 @@
 //! How a distance changes with the points that link and triangle are made of; the formulas are those of [`Derivative`].
 
 use super::contact::near;
-use super::nearest_features::{NearPair, NearestFeatures};
+use super::nearest_features::NearPair;
 use crate::answer::{Derivative, LinkProximity, ProximityError};
 use crate::distance::{DoubleDouble, Scalar, Vec3};
 use crate::mesh::Mesh;
@@ -18,15 +18,15 @@ pub(crate) fn derivative(
     pose: &Pose,
     answer: &LinkProximity,
 ) -> Result<Option<Derivative>, ProximityError> {
-    let (link, corners) = near(mesh, robot, pose, answer)?;
-    let (nearest, exact) = (NearPair::of(&link, corners), NearPair::exactly(&link, corners));
-    let found = if nearest.parts.asks_way_out || exact.parts.asks_way_out {
-        nearest.parting().derivative(|number| number)
-    } else {
-        exact.derivative(DoubleDouble::rounded)
-    };
+    let (link, corners, measured) = near(mesh, robot, pose, answer)?;
+    let way_out = || measured.pair.parting().derivative(|number| number);
+    if measured.pair.parts.asks_way_out {
+        return Ok(way_out());
+    }
+    let exact = NearPair::exactly(&link, corners);
+    let found = if exact.parts.asks_way_out { way_out() } else { exact.derivative(DoubleDouble::rounded) };
     // One place decides what is a kink.
-    let kink = NearestFeatures::of(&link, corners).kink;
+    let kink = measured.features(|| exact).kink;
     Ok(found.map(|found| Derivative { kink, ..found }))
 }
 

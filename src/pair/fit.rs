@@ -20,7 +20,7 @@ impl LinkProximity {
     /// # Errors
     /// It is not.
     pub(crate) fn check_fit(&self, link: &PlacedLink, corners: [Vector; 3]) -> Result<(), ProximityError> {
-        self.check_fit_of(&link.measure(self.triangle, corners), link, corners)
+        self.check_fit_of(&link.measure(self.triangle, corners), || *link, corners)
     }
 
     /// The same, where the two are measured already.
@@ -31,14 +31,14 @@ impl LinkProximity {
     pub(crate) fn check_fit_of(
         &self,
         measured: &Nearest,
-        link: &PlacedLink,
+        link: impl FnOnce() -> PlacedLink,
         corners: [Vector; 3],
     ) -> Result<(), ProximityError> {
         // Every engine gives what is measured, bit for bit.
         let is_that = self.distance == measured.distance
             && self.on_mesh == measured.on_mesh
             && self.on_robot == measured.on_robot;
-        if is_that { Ok(()) } else { self.check_nearly_fits(measured.distance, link, corners) }
+        if is_that { Ok(()) } else { self.check_nearly_fits(measured.distance, &link(), corners) }
     }
 
     /// The same for an answer that was rounded, or found in another way.

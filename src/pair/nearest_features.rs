@@ -32,7 +32,8 @@
 //!
 //! The corners of a triangle without area can move against one another: it counts as a kink too.
 
-use super::coordinates::place_exactly;
+use super::coordinates::{Pair, place_exactly};
+use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use crate::answer::{LinkFeature, TriangleFeature};
 use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
@@ -69,20 +70,47 @@ pub(crate) struct NearestFeatures {
 impl NearestFeatures {
     /// Of a link and a triangle in the mesh's frame.
     pub(crate) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
-        let near = NearPair::of(link, corners);
-        let unit = link.pair(corners).unit;
-        if near.parts.asks_way_out {
-            return near.parting().features(unit, |number| number);
+        Measured::new(link, corners).features(|| NearPair::exactly(link, corners))
+    }
+}
+
+/// A link and a triangle in the mesh's frame, measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Measured {
+    /// Of which no kink is known.
+    pub pair: NearPair<Real>,
+    closest: Closest<Real>,
+    /// What 1 is in the mesh's unit.
+    unit: Real,
+}
+
+impl Measured {
+    pub(crate) fn new(link: &PlacedLink, corners: [Vector; 3]) -> Self {
+        let Pair { triangle, link, unit, .. } = link.pair(corners);
+        let (pair, closest, _) = NearPair::new(triangle, link);
+        Self { pair, closest, unit }
+    }
+
+    /// What [`PlacedLink::measure`] gives of the same two.
+    pub(crate) fn nearest(&self, link: &PlacedLink, triangle: u32) -> Nearest {
+        Pair::report(self.unit, link.start(), triangle, self.closest)
+    }
+
+    /// What there is to tell. `exactly` is asked for the pair with more digits where these are too few.
+    pub(crate) fn features(&self, exactly: impl FnOnce() -> NearPair<DoubleDouble>) -> NearestFeatures {
+        let Self { pair, unit, .. } = self;
+        if pair.parts.asks_way_out {
+            return pair.parting().features(*unit, |number| number);
         }
-        if !near.parts.needs_digits(&near.triangle, &near.face, &near.link) {
-            return near.features(unit, |number| number);
+        if !pair.parts.needs_digits(&pair.triangle, &pair.face, &pair.link) {
+            return pair.features(*unit, |number| number);
         }
-        let exact = NearPair::exactly(link, corners);
+        let exact = exactly();
         if exact.parts.asks_way_out {
-            return near.parting().features(unit, |number| number);
+            return pair.parting().features(*unit, |number| number);
         }
-        let depth = near.parts.depth * unit;
-        Self { depth, ..exact.features(unit, DoubleDouble::rounded) }
+        let depth = pair.parts.depth * unit;
+        NearestFeatures { depth, ..exact.features(*unit, DoubleDouble::rounded) }
     }
 }
 
@@ -235,6 +263,7 @@ fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
 }
 
 /// A link and a triangle, and what is nearest of them.
+#[derive(Clone, Copy)]
 pub(crate) struct NearPair<T: Scalar> {
     pub link: Link<T>,
     pub parts: NearestParts<T>,
@@ -247,21 +276,21 @@ impl NearPair<DoubleDouble> {
     /// With about 32 digits.
     pub(crate) fn exactly(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         let (triangle, link) = place_exactly(link, corners);
-        let (pair, apart) = Self::new(triangle, link);
+        let (pair, _, apart) = Self::new(triangle, link);
         Self { kink: pair.is_kink(pair.parts.normal, apart, pair.parts.at_flat_cap), ..pair }
     }
 }
 
 impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
-    /// Of which no kink is known, and how far the axis is from the triangle.
-    fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, T) {
+    /// Of which no kink is known, with its closest points and how far the axis is from the triangle.
+    fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, Closest<T>, T) {
         let face = Face::new(triangle);
         let axial = Axial::new(&link, &face);
         let closest =
             if axial.beyond_flat_cap() { axial.with_caps(&link, &face) } else { axial.without_caps(&link) };
         let parts = NearestParts::new(&triangle, &link, &axial, &closest);
         let apart = if parts.at_flat_cap { axial.axis_squared.sqrt() } else { parts.gap };
-        (Self { link, parts, kink: false, face, triangle }, apart)
+        (Self { link, parts, kink: false, face, triangle }, closest, apart)
     }
 
     /// The same with `f64`, in the mesh's frame, where 1 is `unit`.
@@ -362,12 +391,6 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
 }
 
 impl NearPair<Real> {
-    /// Of which no kink is known.
-    pub(crate) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
-        let pair = link.pair(corners);
-        Self::new(pair.triangle, pair.link).0
-    }
-
     /// The same on the way out of the triangle, or where a gap is none.
     pub(crate) fn parting(mut self) -> Self {
         let [a, b, c] = self.triangle;
