@@ -49,6 +49,7 @@ impl SearchFrame {
         Self { centre: low + (high - low) * 0.5, scale, typical: *typical * scale, least }
     }
 
+    #[inline(always)] // for every corner of the mesh, each time that it moves
     pub(crate) fn point<E: Lane>(&self, point: Vector) -> Vec3<E> {
         round((point - self.centre) * self.scale)
     }

@@ -10,6 +10,7 @@ use parry3d_f64::math::Vector;
 pub(crate) const BLOCK: usize = 16;
 
 /// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has them.
+#[inline(always)] // where the block's length is known, no place in it is checked
 pub(crate) fn place_face<E: Lane>(
     frame: &SearchFrame,
     mesh: &Mesh,
@@ -49,6 +50,7 @@ pub(crate) fn place_points<E: Lane>(frame: &SearchFrame, points: [Vector; 3], ro
     put(points.map(|point| frame.point(point)), rows, lane);
 }
 
+#[inline(always)]
 fn put<E: Lane>(points: [Vec3<E>; 3], rows: &mut [E], lane: usize) {
     for (number, point) in points.into_iter().enumerate() {
         for (axis, value) in <[E; 3]>::from(point).into_iter().enumerate() {

@@ -120,6 +120,7 @@ impl RoughSides {
     }
 
     /// 1 before the wall and -1 behind it, 0 close to it.
+    #[inline(always)] // a few joints each time
     fn side(&self, point: Vector) -> Votes {
         let [point] = self.in_cells([point]);
         let votes = self.cells[self.cell(point)];
