@@ -59,7 +59,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             ClosestPoints::WithinMargin(point1, point2) => {
                 let way = self.pos12 * point2 - point1;
                 let distance = way.length();
-                if !self.is_kept_by_a_plane(way, distance)
+                let is_plain = unit(way).is_some_and(|normal| self.is_plain(normal, distance));
+                if !is_plain
                     && let Some(contact) = self.contact(Real::MAX)?
                     && contact.dist <= 0.5 * distance
                 {
@@ -89,22 +90,15 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?;
         }
         let found = match found {
-            Some(contact) if contact.dist > 0.0 => {
-                if self.is_kept_by_a_plane(contact.normal1, contact.dist) {
-                    Some(contact)
-                } else {
-                    let gap = self.gap(contact.normal1);
-                    self.contact_of_layers()?.filter(|other| other.dist > gap).or(Some(contact))
-                }
-            }
+            Some(contact) if self.is_plain(contact.normal1, contact.dist) => Some(contact),
             Some(contact) => self.least(contact)?,
             None => self.contact_of_closest()?,
         };
         Ok(found.filter(|contact| contact.dist <= prediction))
     }
 
-    /// The contact of an overlap, or a better one. Of shapes that all but touch EPA may say that they overlap by as much as
-    /// their size, and of others less than separates them.
+    /// The contact of an overlap, or of what is not plain, or a better one. Of shapes that all but touch EPA may say that they
+    /// overlap by as much as their size, and of others less than separates them.
     fn least(&self, contact: Contact) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
         let points = self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?;
@@ -130,8 +124,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             && let Some(normal) = unit(self.pos12 * point2 - point1)
         {
             let dist = (self.pos12 * point2 - point1).dot(normal);
-            // Rounding turns the way between points that are close to each other.
-            if self.gap(normal) > 0.5 * dist {
+            if self.is_plain(normal, dist) {
                 let normal2 = self.pos12.rotation.inverse() * -normal;
                 return Ok(Some(Contact::new(point1, point2, normal, normal2, dist)));
             }
@@ -205,21 +198,12 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         (core.unwrap_or(*link), depth)
     }
 
-    /// Whether a plane across `way` keeps the two apart by what GJK says, but for half of it. Of shapes that touch it may say
-    /// that they are as far apart as they are large.
-    ///
-    /// The way between points that are close to each other is turned by what rounding moves these, as a share of the
-    /// distance, and the gap falls by as large a share of the shapes. GJK itself may turn it by more: so a way without a
-    /// plane is a reason to ask further, and no proof.
-    fn is_kept_by_a_plane(&self, way: Vector, distance: Real) -> bool {
-        let turned = || {
-            let size = largest(self.pos12, self.shapes[0], self.shapes[1]);
-            ROUNDING * size * (size / distance).min(1.0 / Real::EPSILON)
-        };
-        unit(way).is_none_or(|normal| {
-            let gap = self.gap(normal);
-            gap > 0.5 * distance || gap + turned() > 0.5 * distance
-        })
+    /// Whether the two are apart and a plane across the unit vector from one to the other keeps them so by what GJK says, but
+    /// for half of it. Of shapes that touch GJK may say that they are as far apart as they are large, and of those that
+    /// overlap that they all but touch. Where it is right rounding may still have turned the way between points that are
+    /// close to each other: what is not plain is asked about further.
+    fn is_plain(&self, normal: Vector, distance: Real) -> bool {
+        distance > 0.0 && self.gap(normal) > 0.5 * distance
     }
 
     /// Whether some simple direction proves that the two are further apart.

@@ -195,3 +195,22 @@ fn a_cylinder_that_touches_a_link_is_at_no_distance() {
         assert!(contact.dist <= no_more + 1e-5 && contact.dist > -1e-3, "{contact:?}");
     }
 }
+
+/// parry's GJK says of the box and the link that they are 2.2e-16 apart.
+#[test]
+fn a_ball_whose_centre_is_on_a_face_overlaps_by_its_radius() {
+    let half_extents = Vector::new(0.4444861098339822, 0.43188743191262113, 0.8714537360499094);
+    let (centre, radius) = (Vector::new(half_extents.x, 0.5568854890372149, half_extents.z), 0.125);
+    let link = ModifiedCylinder::capsule(centre, centre, radius).unwrap();
+    let cuboid = Cuboid::new(half_extents);
+    let turned = Rotation::from_xyzw(0.0, 0.0, 0.479425538604203, 0.8775825618903728);
+    let pose = Pose::from_parts(turned * (Vector::X * (2.0 * half_extents.x)), turned);
+    // Farther than the radius from all other faces.
+    let seen = pose.inverse_transform_point(centre).abs();
+    assert!(seen.z == half_extents.z && (half_extents - seen).truncate().min_element() > radius, "{seen}");
+    let shapes: [&dyn Shape; 2] = [&link, &cuboid];
+    for ([g1, g2], pose) in [(shapes, pose), ([shapes[1], shapes[0]], pose.inverse())] {
+        let contact = ContinuumDispatcher::default().contact(&pose, g1, g2, Real::MAX).unwrap().unwrap();
+        assert!((contact.dist + radius).abs() < 1e-12, "{contact:?}");
+    }
+}
