@@ -1,6 +1,8 @@
 //! Why there is no answer. Each message names the value at fault and what to change.
 
 use crate::robot::RobotError;
+#[cfg(feature = "gpu")]
+use gpu_batch::DeviceFailure;
 use parry3d_f64::math::Real;
 use strum::IntoStaticStr;
 use thiserror::Error;
@@ -189,26 +191,6 @@ pub enum ProximityError {
     Device(#[from] DeviceFailure),
 }
 
-/// How a GPU failed. The next query of each engine on that GPU returns it; the one after that may succeed.
-#[cfg(feature = "gpu")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error, IntoStaticStr)]
-#[strum(serialize_all = "snake_case")]
-#[non_exhaustive]
-pub enum DeviceFailure {
-    /// It was reset or removed. It answers nothing more.
-    #[error("the GPU was lost (reset, removed, or out of time); build a new engine, or use one on the CPU")]
-    Lost,
-    /// Its memory does not hold what the query needs. A smaller one may succeed.
-    #[error("the GPU is out of memory; ask for fewer robots at once, or use an engine on the CPU")]
-    OutOfMemory,
-    /// Its driver refused a command.
-    #[error("the GPU's driver refused a command; update the driver, or use an engine on the CPU")]
-    Refused,
-    /// It did not write its answer.
-    #[error("the GPU did not answer; update its driver, or use an engine on the CPU")]
-    Unanswered,
-}
-
 impl MeshError {
     /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
     pub fn kind(&self) -> &'static str {
@@ -227,13 +209,5 @@ impl ProximityError {
             Self::Device(error) => error.kind(),
             other => other.into(),
         }
-    }
-}
-
-#[cfg(feature = "gpu")]
-impl DeviceFailure {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
-    pub fn kind(&self) -> &'static str {
-        self.into()
     }
 }

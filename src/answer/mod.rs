@@ -21,10 +21,10 @@ pub use clearance::Clearance;
 pub use contact::Contact;
 pub use decision::Decision;
 pub use derivative::Derivative;
-#[cfg(feature = "gpu")]
-pub use error::DeviceFailure;
 pub use error::{MeshError, ProximityError};
 pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
+#[cfg(feature = "gpu")]
+pub use gpu_batch::DeviceFailure;
 pub use inside_answer::InsideAnswer;
 pub use link_proximity::LinkProximity;
 pub use motion_answer::MotionAnswer;

@@ -47,8 +47,6 @@ pub(crate) use disc_solver::{Convex, DiscSolver};
 pub(crate) use dispatch::dispatch;
 pub(crate) use face::Face;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
-#[cfg(feature = "gpu")]
-pub(crate) use scalar::CBRT_BITS_F32;
 pub(crate) use scalar::Mask;
 pub(crate) use triangle_modified_cylinder::Axial;
 

@@ -107,7 +107,7 @@ impl<T> Mask<T> for bool {
 
 /// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of the exponent's
 /// bias, less what centres the error.
-pub(crate) const CBRT_BITS_F32: u32 = 0x2a51_0554;
+pub(super) const CBRT_BITS_F32: u32 = 0x2a51_0554;
 /// As [`CBRT_BITS_F32`].
 pub(super) const CBRT_BITS_F64: u64 = 0x2a9f_7893_782d_a1ce;
 

@@ -1,13 +1,11 @@
 //! The buffers of a query, which serve every query of the same shape.
 
-use super::Precision;
-use super::clock::{Clock, READINGS};
 use super::layout::{BLOCK_BOUNDS, CAPACITY, LinkRecord, Round, SLOT};
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
 use super::plan::Plan;
-use super::record::Record;
-use wgpu::{BindGroup, Buffer, BufferUsages};
+use gpu_batch::wgpu::{self, BindGroup, Buffer, BufferUsages};
+use gpu_batch::{Clock, Precision, READINGS, Record};
 
 /// Buffers that serve any query with this plan, of at most these sizes.
 pub(super) struct Buffers {
@@ -40,7 +38,7 @@ impl Buffers {
         let rounds = links.div_ceil(u64::from(plan.links_per_round));
         let blocks: u64 = mesh.parts.iter().map(|part| u64::from(plan.blocks(part.triangles))).sum();
         let found = Self::found_size(plan.links_per_submission, mesh);
-        let distances = Self::distances_size(plan.links_per_submission, mesh, device.precision);
+        let distances = Self::distances_size(plan.links_per_submission, mesh, device.precision());
 
         let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
@@ -48,7 +46,7 @@ impl Buffers {
             rounds * parts * device.uniform_stride::<Round>(),
             BufferUsages::UNIFORM | BufferUsages::COPY_DST,
         );
-        let link_buffer = device.buffer(links * LinkRecord::size(device.precision), up);
+        let link_buffer = device.buffer(links * LinkRecord::size(device.precision()), up);
         let limits = device.buffer(links * 4, up);
         let block_bounds =
             device.buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
@@ -63,7 +61,7 @@ impl Buffers {
                 let round = wgpu::BufferBinding {
                     buffer: &rounds,
                     offset: 0,
-                    size: std::num::NonZeroU64::new(Round::size(device.precision)),
+                    size: std::num::NonZeroU64::new(Round::size(device.precision())),
                 };
                 device.group(
                     &gpu.query_layout,

@@ -4,7 +4,7 @@ use super::Precision;
 use super::buffers::Buffers;
 use super::layout::{CAPACITY, SLOT};
 use super::mesh::DeviceMesh;
-use crate::answer::DeviceFailure;
+use gpu_batch::DeviceFailure;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 

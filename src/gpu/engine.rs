@@ -1,25 +1,26 @@
 //! Exhaustive proximity on the GPU.
 
-use super::device::Adapter;
 use super::link::DeviceLink;
 use super::mesh::DeviceMesh;
 use super::opened::Gpu;
 use super::plan::Tuning;
 use super::query::Query;
+#[cfg(feature = "laboratory")]
 use super::wgsl::CONVEX;
-use super::{GpuError, Precision};
-use crate::answer::{Contact, DeviceFailure, LinkProximity, ProximityError};
+use super::{Adapter, GpuError, Precision};
+use crate::answer::{Contact, LinkProximity, ProximityError};
 use crate::engine::{Engine, Proximity, placed};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::query::contacts::contacts_by_all_triangles;
 use crate::robot::Chain;
+use gpu_batch::DeviceFailure;
+use gpu_batch::wgpu::ComputePipeline;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::iter::once;
 use std::ops::Range;
 use std::time::Duration;
-use wgpu::ComputePipeline;
 
 /// Proximity queries that visit every triangle, on the GPU.
 ///
@@ -102,7 +103,7 @@ impl GpuExhaustive {
     }
 
     pub(super) fn tuned(gpu: &Gpu, mesh: Mesh, tuning: Tuning) -> Result<Self, GpuError> {
-        let mut watch = gpu.0.device.failures.watch();
+        let mut watch = gpu.0.device.watch();
         let on_device = DeviceMesh::new(&gpu.0, &mesh, tuning.part);
         match watch.check() {
             Ok(()) => {}

@@ -1,6 +1,6 @@
 //! What the host and the shaders both know: sizes, and records.
 
-use super::record::record;
+use gpu_batch::record;
 use parry3d_f64::math::Real;
 
 /// Threads of a workgroup of a query.
@@ -13,10 +13,6 @@ pub(super) const SAMPLES: u32 = 1 << 14;
 pub(super) const CAPACITY: u32 = 64;
 /// Words of a link and part: what says that it was written, how many candidates there are, and their triangles.
 pub(super) const SLOT: u32 = 2 + CAPACITY;
-/// Threads of a workgroup of a batch.
-pub(super) const BATCH_THREADS: u32 = 64;
-/// Numbers before the answer of a batch: the one of its submission.
-pub(super) const ANSWER_HEAD: u32 = 1;
 /// Bytes for the bounds of a block and a link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;
 
@@ -27,43 +23,35 @@ pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
 
 record! {
     /// What the kernels know of the links of a round and a part of the mesh.
-    Round {
+    pub(super) struct Round {
         /// The first link, and how many there are.
-        first_link: u32,
-        links: u32,
+        pub first_link: u32,
+        pub links: u32,
         /// How many links a workgroup takes, and how many triangles each of its threads.
-        links_at_once: u32,
-        triangles_at_once: u32,
+        pub links_at_once: u32,
+        pub triangles_at_once: u32,
         /// The triangles of this part, its first block of all blocks, and how many blocks all parts have.
-        triangles: u32,
-        first_block: u32,
-        blocks: u32,
+        pub triangles: u32,
+        pub first_block: u32,
+        pub blocks: u32,
         /// Where the candidates of the first link and this part go.
-        first_slot: u32,
+        pub first_slot: u32,
         /// The number of the submission.
-        submission: u32,
+        pub submission: u32,
     }
 }
 
 record! {
     /// What shaders/shared/query.wgsl reads of a link.
-    LinkRecord {
-        start: [Real; 3],
-        length: Real,
+    pub(super) struct LinkRecord {
+        pub start: [Real; 3],
+        pub length: Real,
         /// From the start, as the axis.
-        end: [Real; 3],
-        radius: Real,
-        axis: [Real; 3],
-        error: Real,
-        flat_start: Real,
-        flat_end: Real,
-    }
-}
-
-record! {
-    /// What kernels/batch.wgsl reads first.
-    Head {
-        problems: u32,
-        submission: u32,
+        pub end: [Real; 3],
+        pub radius: Real,
+        pub axis: [Real; 3],
+        pub error: Real,
+        pub flat_start: Real,
+        pub flat_end: Real,
     }
 }

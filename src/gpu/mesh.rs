@@ -1,13 +1,13 @@
 //! A mesh in a device's memory, in as many parts as its largest buffer calls for.
 
-use super::Precision;
 use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
 use crate::mesh::{Mesh, SearchFrame};
 use crate::threads::each;
-use wgpu::{BindGroup, Buffer, BufferUsages};
+use gpu_batch::Precision;
+use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages};
 
 /// Numbers of a triangle's sphere, and of its face.
 const SPHERE: u64 = 4;
@@ -38,7 +38,7 @@ impl DeviceMesh {
     /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether the device has that
     /// room, its failures show.
     pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
-        let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision.size())) as usize;
+        let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision().size())) as usize;
         let mut places = vec![u32::MAX; mesh.vertices().len()];
         let mut parts = Vec::new();
         let mut first = 0;
@@ -60,23 +60,23 @@ impl DeviceMesh {
         if std::mem::replace(&mut self.is_current, true) {
             return;
         }
-        let mut encoder = gpu.device.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.device.raw().create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&gpu.prepare);
         let mut bytes = Vec::new();
         for part in &self.parts {
-            match gpu.device.precision {
+            match gpu.device.precision() {
                 Precision::F32 => part.write(frame, mesh, f32::to_ne_bytes, &mut bytes),
                 Precision::F64 => part.write(frame, mesh, f64::to_ne_bytes, &mut bytes),
             }
-            gpu.device.queue.write_buffer(&part.vertex_buffer, 0, &bytes);
+            gpu.device.queue().write_buffer(&part.vertex_buffer, 0, &bytes);
             pass.set_bind_group(0, &part.group, &[]);
             let workgroups = part.triangles.div_ceil(THREADS);
-            let wide = workgroups.min(gpu.device.limits.max_compute_workgroups_per_dimension);
+            let wide = workgroups.min(gpu.device.limits().max_compute_workgroups_per_dimension);
             pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
         }
         drop(pass);
-        gpu.device.queue.submit([encoder.finish()]);
+        gpu.device.queue().submit([encoder.finish()]);
     }
 
     /// How many triangles there are.
@@ -105,13 +105,13 @@ impl Part {
         }
 
         let (device, count) = (&gpu.device, triangles.len() as u64);
-        let size = device.precision.size();
+        let size = device.precision().size();
         let uploaded = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let vertex_buffer = device.buffer(vertices.len() as u64 * 3 * size, uploaded);
         let index_buffer = device.buffer(bytes.len() as u64, uploaded);
         let spheres = device.buffer(count * SPHERE * size, BufferUsages::STORAGE);
         let faces = device.buffer(count * FACE * size, BufferUsages::STORAGE);
-        device.queue.write_buffer(&index_buffer, 0, &bytes);
+        device.queue().write_buffer(&index_buffer, 0, &bytes);
         let group = device.group(
             &gpu.prepare_layout,
             &[&vertex_buffer, &index_buffer, &spheres, &faces].map(Buffer::as_entire_binding),

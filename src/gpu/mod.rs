@@ -5,9 +5,6 @@
 //! ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in one go); a single query waits for
 //! the GPU and back, some hundred microseconds.
 //!
-//! A [`Batch`] runs any kernel over many records of numbers on the same [`Gpu`], a thread each, with the texts of
-//! [`wgsl`] to build on.
-//!
 //! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
 //! for both precisions.
 //!
@@ -19,38 +16,30 @@
 //! | `answers`, `measure` | from robots to links, and from candidates to answers in double precision |
 //! | `query` | the four kernels of a query; `plan` deals the pairs to threads, `candidates` reads what comes back |
 //! | `mesh`, `link`, `buffers` | what lies in the device's memory |
-//! | `batch` | any kernel over many records: [`Batch`] |
-//! | `open`, `opened`, `device`, `clock` | the [`Gpu`] itself |
-//! | `failures`, `error` | what can go wrong, and who hears of it |
+//! | `opened`, `error` | the [`Gpu`], and what can go wrong; its device is that of the crate `gpu-batch` |
 //! | `wgsl`, `shaders/` | the kernels' text |
-//! | `layout`, `record` | the sizes and the records that host and shaders share |
+//! | `layout` | the sizes and the records that host and shaders share |
 
 mod answers;
-mod batch;
 mod buffers;
 mod candidates;
-mod clock;
-mod device;
 mod engine;
 mod error;
-mod failures;
+#[cfg(feature = "laboratory")]
+#[doc(hidden)] // for this project's own studies and tests
+pub mod laboratory;
 mod layout;
 mod link;
 mod measure;
 mod mesh;
-mod open;
 mod opened;
 mod plan;
-mod precision;
 mod query;
-mod record;
 #[cfg(test)]
 mod tests;
-pub mod wgsl;
+mod wgsl;
 
-pub use batch::{Batch, BatchKernel};
-pub use device::Adapter;
 pub use engine::GpuExhaustive;
 pub use error::GpuError;
+pub use gpu_batch::{Adapter, DeviceError, Precision};
 pub use opened::Gpu;
-pub use precision::Precision;

@@ -1,8 +1,8 @@
-use super::device::{Adapter, Device};
-use super::wgsl::{CONVEX, Shader};
-use super::{GpuError, Precision};
+use super::GpuError;
+use super::wgsl::{self, CONVEX};
+use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
+use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
 use std::sync::Arc;
-use wgpu::{BindGroupLayout, ComputePipeline};
 
 /// A GPU, opened and with its kernels compiled, which takes a moment; engines for several meshes can share it.
 ///
@@ -11,14 +11,30 @@ use wgpu::{BindGroupLayout, ComputePipeline};
 pub struct Gpu(pub(super) Arc<Opened>);
 
 impl Gpu {
+    /// The fastest GPU of this machine, to search in this precision. The distances are those of double precision either
+    /// way. The environment variables of `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
+    ///
+    /// # Errors
+    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that was asked for.
+    pub fn open(precision: Precision) -> Result<Self, GpuError> {
+        Ok(Self(Arc::new(Opened::new(Device::open(precision)?)?)))
+    }
+
     /// Which GPU it is.
     pub fn adapter(&self) -> &Adapter {
-        &self.0.device.adapter
+        self.0.device.adapter()
     }
 
     /// The numbers with which it searches.
     pub fn precision(&self) -> Precision {
-        self.0.device.precision
+        self.0.device.precision()
+    }
+
+    /// The GPU for other kernels.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
+    pub fn device(&self) -> &Device {
+        &self.0.device
     }
 }
 
@@ -45,19 +61,19 @@ pub(super) struct Opened {
 }
 
 impl Opened {
-    pub(super) fn new(device: Device) -> Result<Self, GpuError> {
-        let (read, write) = (Some(false), Some(true));
-        let prepare_layout = device.layout(&[read, read, write, write]);
-        let query_layout = device.layout(&[None, read, write, read, read, write, write, write]);
-        let precision = device.precision;
-        let prepare = Shader::prepare(precision);
+    pub(super) fn new(device: Device) -> Result<Self, DeviceError> {
+        use Binding::{Read, Uniform, Write};
+        let prepare_layout = device.layout(&[Read, Read, Write, Write]);
+        let query_layout = device.layout(&[Uniform, Read, Write, Read, Read, Write, Write, Write]);
+        let precision = device.precision();
+        let prepare = wgsl::prepare(precision);
         let query = |kernel: Shader| device.compile(kernel.entry_point, &kernel, &query_layout, &[]);
         Ok(Self {
             prepare: device.compile(prepare.entry_point, &prepare, &prepare_layout, &[])?,
-            sample: query(Shader::sample(precision))?,
-            nearest: query(Shader::nearest(precision, CONVEX))?,
-            reduce: query(Shader::reduce(precision))?,
-            collect: query(Shader::collect(precision))?,
+            sample: query(wgsl::sample(precision))?,
+            nearest: query(wgsl::nearest(precision, CONVEX))?,
+            reduce: query(wgsl::reduce(precision))?,
+            collect: query(wgsl::collect(precision))?,
             prepare_layout,
             query_layout,
             device,
@@ -65,8 +81,9 @@ impl Opened {
     }
 
     /// The kernel that computes every pair in full, by this route from a segment to a disc.
-    pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, GpuError> {
-        let kernel = Shader::nearest(self.device.precision, route);
+    #[cfg(feature = "laboratory")]
+    pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, DeviceError> {
+        let kernel = wgsl::nearest(self.device.precision(), route);
         self.device.compile("nearest, every pair", &kernel, &self.query_layout, &[("CULLING", 0.0)])
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(gpu: &Opened, mesh: &DeviceMesh, links: usize, tuning: &Tuning) -> Self {
-        let limits = &gpu.device.limits;
+        let limits = gpu.device.limits();
         let dimension = u64::from(limits.max_compute_workgroups_per_dimension);
         let largest = gpu.device.largest_binding();
         let slot = (u64::from(SLOT) * 4 + u64::from(CAPACITY) * NUMBER) * mesh.parts.len() as u64;

@@ -8,17 +8,14 @@
 
 use super::buffers::Buffers;
 use super::candidates::{Candidate, Candidates};
-use super::clock::{Clock, READINGS};
-use super::failures::Watch;
 use super::layout::Round;
 use super::link::DeviceLink;
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
 use super::plan::{Plan, Tuning};
-use super::record::Record;
-use crate::answer::DeviceFailure;
+use gpu_batch::wgpu::{self, Buffer, CommandEncoder, ComputePipeline};
+use gpu_batch::{Clock, DeviceFailure, READINGS, Record, Watch};
 use std::time::Duration;
-use wgpu::{Buffer, CommandEncoder, ComputePipeline};
 
 /// Memory of the last query, here and on the device, used again.
 pub(super) struct Query {
@@ -65,7 +62,7 @@ impl Query {
         nearest: &ComputePipeline,
     ) -> Result<(), DeviceFailure> {
         self.candidates.clear();
-        self.device_time = gpu.device.tick.map(|_| Duration::ZERO);
+        self.device_time = gpu.device.tick().map(|_| Duration::ZERO);
         // Robots of nearly as many links share a plan, and with it the buffers.
         let plan = Plan::new(gpu, mesh, links.len().next_multiple_of(32), &self.tuning);
         // On failure the buffers are gone, and made anew for the next query.
@@ -91,11 +88,11 @@ impl Query {
         let device = &gpu.device;
         self.submission = self.submission.wrapping_add(2);
         self.upload(gpu, mesh, buffers, links);
-        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let mut encoder = device.raw().create_command_encoder(&Default::default());
         encoder.clear_buffer(&buffers.found, 0, None);
         record_passes(&mut encoder, gpu, mesh, buffers, links.len(), nearest);
         let found = Buffers::found_size(links.len(), mesh);
-        let distances = Buffers::distances_size(links.len(), mesh, device.precision);
+        let distances = Buffers::distances_size(links.len(), mesh, device.precision());
         let (to, end) = (&buffers.readback, READINGS + found);
         encoder.copy_buffer_to_buffer(&buffers.found, 0, to, READINGS, Some(found));
         encoder.copy_buffer_to_buffer(&buffers.distances, 0, to, end, Some(distances));
@@ -105,13 +102,14 @@ impl Query {
         let Self { watch, candidates, device_time, submission, .. } = self;
         device.run_and_read(watch, encoder.finish(), to, end + distances, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
-            *device_time = device_time.zip(device.time_between(readings)).map(|(sum, more)| sum + more);
-            candidates.read(mesh, buffers, device.precision, *submission, links.len(), bytes)
+            *device_time =
+                device_time.zip(Clock::time_between(device, readings)).map(|(sum, more)| sum + more);
+            candidates.read(mesh, buffers, device.precision(), *submission, links.len(), bytes)
         })
     }
 
     fn upload(&mut self, gpu: &Opened, mesh: &DeviceMesh, buffers: &Buffers, links: &[DeviceLink]) {
-        let (queue, plan, precision) = (&gpu.device.queue, &buffers.plan, gpu.device.precision);
+        let (queue, plan, precision) = (gpu.device.queue(), &buffers.plan, gpu.device.precision());
         let bytes = &mut self.bytes;
         let mut write = |buffer: &Buffer, fill: &dyn Fn(&mut Vec<u8>)| {
             bytes.clear();

@@ -5,7 +5,7 @@ use super::sources::sources;
 /// What makes threads wait, and the files that may: each says why nobody waits there for a pool.
 const WAITING: [&str; 9] =
     ["OnceLock", "LazyLock", "Mutex", "RwLock", "Condvar", "Barrier", "mpsc", "Once::", "thread::park"];
-const MAY_WAIT: [&str; 3] = ["src/threads/lazy.rs", "src/robot/chain.rs", "src/gpu/failures.rs"];
+const MAY_WAIT: [&str; 2] = ["src/threads/lazy.rs", "src/robot/chain.rs"];
 
 /// The only file that gives work to a pool.
 const POOL: &str = "src/threads/parallel.rs";

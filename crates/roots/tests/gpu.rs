@@ -1,11 +1,23 @@
 //! The root finders on the GPU: what they call a root is one, and they find nearly all.
+//!
+//! Without a GPU these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
 
-use continuum_testing::{Random, gpu};
-use parry_continuum::gpu::Precision;
+use continuum_testing::Random;
 use polynomial_roots::Complex;
+use polynomial_roots::gpu::gpu_batch::{Device, Precision};
 use polynomial_roots::gpu::{Finder, GpuRoots};
 
 const DEGREES: [usize; 5] = [2, 3, 4, 6, 15];
+const PRECISIONS: [(&str, Precision); 2] = [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
+
+/// The GPU in this precision; None if there is none and none is required.
+fn open(precision: Precision) -> Option<Device> {
+    let opened = Device::open(precision);
+    if std::env::var_os("PARRY_CONTINUUM_REQUIRE_GPU").is_some() {
+        return Some(opened.unwrap());
+    }
+    opened.ok()
+}
 
 /// |p(z)| in units of what rounding the coefficients to the precision does to it.
 fn residual(coefficients: &[f64], root: Complex<f64>, unit: f64) -> f64 {
@@ -29,8 +41,8 @@ fn polynomials(degree: usize, count: usize, precision: Precision) -> Vec<f64> {
 #[test]
 fn what_is_found_are_roots() {
     const COUNT: usize = 400;
-    for (name, precision) in gpu::PRECISIONS {
-        let Some(gpu) = gpu::open(precision) else { continue };
+    for (name, precision) in PRECISIONS {
+        let Some(device) = open(precision) else { continue };
         let unit = if precision == Precision::F32 { 2.0_f64.powi(-24) } else { 2.0_f64.powi(-53) };
         for degree in DEGREES {
             let coefficients = polynomials(degree, COUNT, precision);
@@ -39,7 +51,7 @@ fn what_is_found_are_roots() {
                     continue;
                 }
                 let mut roots = Vec::new();
-                GpuRoots::new(gpu, finder, degree).unwrap().solve(&coefficients, &mut roots).unwrap();
+                GpuRoots::new(&device, finder, degree).unwrap().solve(&coefficients, &mut roots).unwrap();
                 assert_eq!(roots.len(), COUNT * degree);
                 let mut residuals = Vec::new();
                 for (p, roots) in coefficients.chunks(degree + 1).zip(roots.chunks(degree)) {
@@ -75,12 +87,12 @@ fn known_roots_and_lower_degrees() {
     let lower = [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let constant = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let coefficients: Vec<f64> = [known, lower, constant].concat();
-    for (name, precision) in gpu::PRECISIONS {
-        let Some(gpu) = gpu::open(precision) else { continue };
+    for (name, precision) in PRECISIONS {
+        let Some(device) = open(precision) else { continue };
         let tolerance = if precision == Precision::F32 { 1e-4 } else { 1e-12 };
         for finder in [Finder::Bairstow, Finder::Companion, Finder::JenkinsTraub] {
             let mut roots = Vec::new();
-            GpuRoots::new(gpu, finder, 6).unwrap().solve(&coefficients, &mut roots).unwrap();
+            GpuRoots::new(&device, finder, 6).unwrap().solve(&coefficients, &mut roots).unwrap();
             let (known, rest) = roots.split_at(6);
             for (re, im) in [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (-3.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
                 let near = |root: &&Complex<f64>| (root.re - re).hypot(root.im - im) < tolerance;

@@ -2,7 +2,7 @@
 //!
 //! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
 
-use parry_continuum::gpu::{Gpu, GpuError, Precision};
+use parry_continuum::gpu::{DeviceError, Gpu, GpuError, Precision};
 use std::sync::OnceLock;
 
 /// The precisions, with names for messages.
@@ -18,7 +18,9 @@ pub fn open(precision: Precision) -> Option<&'static Gpu> {
             println!("{precision:?}: {}", gpu.adapter());
             Some(gpu)
         }
-        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDoublePrecision { .. })) => {
+        Err(GpuError::Device(
+            error @ (DeviceError::NoAdapter { .. } | DeviceError::NoDoublePrecision { .. }),
+        )) => {
             assert!(!is_required(), "{error}");
             None
         }

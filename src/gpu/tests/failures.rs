@@ -1,14 +1,12 @@
 //! Devices that fail, and drivers that do not do as they are told.
 
 use super::{ball, gpu, robot};
-use crate::answer::{DeviceFailure, ProximityError};
+use crate::answer::ProximityError;
 use crate::engine::{Exhaustive, Proximity};
-use crate::gpu::batch::{Batch, BatchKernel};
-use crate::gpu::device::Device;
 use crate::gpu::opened::{Gpu, Opened};
-use crate::gpu::wgsl::Shader;
 use crate::gpu::{GpuError, GpuExhaustive, Precision};
 use crate::robot::Chain;
+use gpu_batch::{DeviceError, DeviceFailure, Shader, wgpu};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::sync::Arc;
 
@@ -22,15 +20,15 @@ fn a_lost_device_is_an_error_of_every_query() {
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();
     let (robot, pose) = robot(1);
     engine.minimum(&robot, &pose).unwrap();
-    gpu.0.device.device.destroy();
+    gpu.0.device.raw().destroy();
     for _ in 0..2 {
         assert_eq!(engine.minimum(&robot, &pose), Err(ProximityError::Device(DeviceFailure::Lost)));
         // The vertices are as good as others.
         assert_eq!(engine.set_vertices(mesh.vertices()), Ok(()));
     }
     let error = GpuExhaustive::on(&gpu, &mesh).expect_err("an error");
-    assert_eq!(error, GpuError::Device(DeviceFailure::Lost));
-    assert!(error.to_string().contains("build a new engine"), "{error}");
+    assert_eq!(error, GpuError::Device(DeviceError::Failed(DeviceFailure::Lost)));
+    assert!(error.to_string().contains("open it anew"), "{error}");
 }
 
 /// Asks a device for what it cannot do.
@@ -49,7 +47,6 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
     let (robot, pose) = robot(1);
     let expected = Exhaustive::<f64>::new(&mesh).unwrap().minimum(&robot, &pose).unwrap();
     let mut engines = [(); 2].map(|()| GpuExhaustive::on(&gpu, &mesh).unwrap());
-    let mut batch = Batch::new(&gpu, &BatchKernel::new("echo", ECHO, 1, 1)).unwrap();
     for engine in &mut engines {
         assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
     }
@@ -61,8 +58,6 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
         assert!(matches!(failure, DeviceFailure::Refused | DeviceFailure::OutOfMemory), "{failure}");
         assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
     }
-    assert!(batch.run([1.0], |_| {}).is_err());
-    assert_eq!(batch.run([1.0], |_| {}), Ok(()));
     // What failed before an engine was built is none of its business.
     provoke(&gpu);
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();
@@ -113,7 +108,7 @@ fn what_was_not_written_is_no_answer() {
     // Through the wall.
     let robot = Chain::capsules(&[Vector::ZERO, Vector::X * 20.0], &[0.5]).unwrap();
     let mut gpu = Gpu::open(Precision::F32).unwrap();
-    let idle = Shader { entry_point: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
+    let idle = Shader::new("idle", "@compute @workgroup_size(1) fn idle() {}");
     let layout = gpu.0.query_layout.clone();
     let idle = gpu.0.device.compile("idle", &idle, &layout, &[]).unwrap();
     let opened: &mut Opened = Arc::get_mut(&mut gpu.0).unwrap();
@@ -127,45 +122,4 @@ fn what_was_not_written_is_no_answer() {
     Arc::get_mut(&mut gpu.0).unwrap().collect = collect;
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();
     assert_eq!(engine.clears(&robot, &Pose::IDENTITY, 0.1), Ok(false));
-}
-
-/// A kernel that answers a number with itself.
-const ECHO: &str = "fn solve(problem: u32, answer: u32) { answers[answer] = problems[problem]; }";
-
-/// Neither is what an earlier submission wrote.
-#[test]
-fn an_earlier_answer_is_no_answer() {
-    let Some(gpu) = gpu() else { return };
-    let mut batch = Batch::new(gpu, &BatchKernel::new("echo", ECHO, 1, 1)).unwrap();
-    let mut answers = Vec::<Real>::new();
-    batch.run([1.0, 2.0, 3.0], |answer| answers.extend(answer)).unwrap();
-    batch.run([4.0, 5.0, 6.0], |answer| answers.extend(answer)).unwrap();
-    assert_eq!(answers, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-    let idle = Shader { entry_point: "idle", text: "@compute @workgroup_size(1) fn idle() {}".into() };
-    batch.kernel = gpu.0.device.compile("idle", &idle, &batch.layout, &[]).unwrap();
-    assert_eq!(batch.run([7.0, 8.0, 9.0], |_| panic!("an answer")), Err(DeviceFailure::Unanswered));
-}
-
-#[test]
-fn a_shader_that_does_not_compile_is_an_error() {
-    let Some(gpu) = gpu() else { return };
-    let device = &gpu.0.device;
-    let layout = device.layout(&[Some(false), Some(true)]);
-    let kernel = Shader { entry_point: "nonsense", text: "@compute fn nonsense() { return 1; }".into() };
-    match device.compile("nonsense", &kernel, &layout, &[]) {
-        Err(GpuError::Shader { kernel, .. }) if kernel == "nonsense" => {}
-        other => panic!("{other:?}"),
-    }
-}
-
-#[test]
-fn a_machine_without_a_gpu_is_an_error() {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::empty();
-    match Device::open_of(descriptor, Precision::F32).err() {
-        Some(error @ GpuError::NoAdapter { .. }) => {
-            assert!(error.to_string().contains("install a driver"), "{error}");
-        }
-        other => panic!("{other:?}"),
-    }
 }

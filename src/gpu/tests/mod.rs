@@ -3,23 +3,20 @@
 
 mod failures;
 
-use super::batch::{Batch, BatchKernel};
-use super::device::Adapter;
 use super::layout::{FACE_VECTORS, LinkRecord, Round};
-use super::open::{self, OPERANDS};
 use super::opened::Gpu;
 use super::plan::{Plan, Tuning};
-use super::record::Record;
-use super::wgsl::{CONVEX, Shader};
+use super::wgsl::{self, CONVEX};
 use super::{GpuExhaustive, Precision};
 use crate::answer::LinkProximity;
 use crate::engine::{Exhaustive, Proximity};
 use crate::mesh::Mesh;
 use crate::robot::Chain;
+use gpu_batch::Record;
+use gpu_batch::wgpu::naga;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::{Ball, TriMesh};
 use std::sync::OnceLock;
-use wgpu::naga;
 
 /// The GPU of this machine in single precision, if there is one.
 fn gpu() -> Option<&'static Gpu> {
@@ -129,41 +126,11 @@ fn too_many_equals_are_measured_on_the_cpu() {
     assert!(!engine.clears(&robot, &Pose::IDENTITY, 1.5).unwrap());
 }
 
-#[test]
-fn a_batch_answers_whole_problems_in_any_number() {
-    let Some(gpu) = gpu() else { return };
-    let text = "fn solve(problem: u32, answer: u32) { answers[answer] = problems[problem] + problems[problem + 1u]; }";
-    let mut batch = Batch::new(gpu, &BatchKernel::new("sum", text, 2, 1)).unwrap();
-    for count in [0, 1, 2, 5, 1000, 100_001] {
-        let mut answers = Vec::<Real>::new();
-        batch.run((0..count).map(f64::from), |answer| answers.extend(answer)).unwrap();
-        let expected: Vec<_> = (0..count / 2).map(|k| f64::from(4 * k + 1)).collect();
-        assert_eq!(answers, expected);
-    }
-}
-
-/// Quotients and roots as a device in single precision gives them.
-#[test]
-fn single_precision_does_not_pass_for_double() {
-    let adapter = Adapter { name: "a".into(), interface: "b".into(), is_software: true };
-    let results = OPERANDS.iter().flat_map(|&[x, y]| [x / y, x.sqrt()]);
-    let exact: Vec<_> = results.collect();
-    let rounded: Vec<_> = exact.iter().map(|&value| f64::from(value as f32)).collect();
-    let nothing = vec![f64::NAN; exact.len()];
-    assert_eq!(open::compare(&exact, Precision::F64, &adapter), Ok(()));
-    assert_eq!(open::compare(&rounded, Precision::F32, &adapter), Ok(()));
-    for wrong in [rounded, nothing] {
-        let error = open::compare(&wrong, Precision::F64, &adapter).unwrap_err();
-        assert!(error.to_string().contains("use Precision::F32"), "{error}");
-    }
-    assert_eq!(adapter.to_string(), "a (b, in software)");
-}
-
 /// What Rust says of a record's size, WGSL says too.
 #[test]
 fn records_are_as_large_as_shaders_see_them() {
     for precision in [Precision::F32, Precision::F64] {
-        let kernel = Shader::nearest(precision, CONVEX);
+        let kernel = wgsl::nearest(precision, CONVEX);
         let module = naga::front::wgsl::parse_str(&kernel.text).unwrap();
         let mut layouter = naga::proc::Layouter::default();
         layouter.update(module.to_ctx()).unwrap();

@@ -4,9 +4,10 @@
 //! for both precisions.
 
 use crate::{Complex, bairstow, closed_form, companion, jenkins_traub};
-use parry_continuum::gpu::{Batch, BatchKernel, Gpu, GpuError, Precision, wgsl};
-use parry_continuum::proximity::DeviceFailure;
+use gpu_batch::{Batch, Device, DeviceError, DeviceFailure, Kernel, Precision, Shader};
 use std::time::Duration;
+
+pub use gpu_batch;
 
 macro_rules! shaders {
     ($($file:literal),* $(,)?) => { concat!($(include_str!(concat!("shaders/", $file, ".wgsl"))),*) };
@@ -34,7 +35,7 @@ impl Finder {
 /// The method in WGSL for polynomials up to this degree, for kernels that find roots on their way. It declares
 /// `COEFFICIENTS`, `Coefficients` (lowest power first), the function
 /// `approximate(monic: ptr<function, Coefficients>, degree: u32)`, and what that finds: `root_count`, `root_re` and
-/// `root_im`. [`VECTORS`](wgsl::VECTORS) belong to it.
+/// `root_im`. It builds on [`wgsl`](gpu_batch::wgsl).
 pub fn approximate(finder: Finder, precision: Precision, degree: u16) -> String {
     let (name, text) = match finder {
         Finder::ClosedForm => ("closed_form", shaders!("closed_form")),
@@ -107,10 +108,10 @@ impl GpuRoots {
     ///
     /// # Errors
     /// The driver does not compile the kernel.
-    pub fn new(gpu: &Gpu, finder: Finder, degree: usize) -> Result<Self, GpuError> {
+    pub fn new(device: &Device, finder: Finder, degree: usize) -> Result<Self, DeviceError> {
         let degree = degree.clamp(1, usize::from(MOST)) as u16;
-        let text = text(finder, gpu.precision(), degree);
-        Ok(Self { degree: degree.into(), batch: Batch::new(gpu, &kernel(&text, degree))? })
+        let text = text(finder, device.precision(), degree);
+        Ok(Self { degree: degree.into(), batch: Batch::new(device, &kernel(&text, degree))? })
     }
 
     /// The roots of polynomials that stand one after another, each lowest power first: as many as the degree for each,
@@ -138,15 +139,15 @@ impl GpuRoots {
 }
 
 /// The kernel for polynomials of a degree with the text of [`text`].
-fn kernel(text: &str, degree: u16) -> BatchKernel<'_> {
-    BatchKernel::new("find_roots", text, degree + 1, 2 * degree + 1)
+fn kernel(text: &str, degree: u16) -> Kernel<'_> {
+    Kernel::new("find_roots", text, degree + 1, 2 * degree + 1)
 }
 
 fn text(finder: Finder, precision: Precision, degree: u16) -> String {
-    [wgsl::VECTORS, &approximate(finder, precision, degree), shaders!("find_roots")].concat()
+    approximate(finder, precision, degree) + shaders!("find_roots")
 }
 
 /// The whole text of the kernel for polynomials of a degree, for whoever checks it without a GPU.
-pub fn shader(finder: Finder, precision: Precision, degree: u16) -> wgsl::Shader {
+pub fn shader(finder: Finder, precision: Precision, degree: u16) -> Shader {
     kernel(&text(finder, precision, degree), degree).shader(precision)
 }

@@ -4,7 +4,8 @@ use super::measure::{Found, Measured, PAIRS, Problem, scaled};
 use super::problems::Extreme;
 use super::tables::cell;
 use crate::gpu::{GpuPairs, Pair, PairProblem};
-use parry_continuum::gpu::{Gpu, GpuError};
+use gpu_batch::DeviceError;
+use parry_continuum::gpu::Gpu;
 
 /// The pair and the caps of each of the [`KERNELS`](continuum_testing::kernels::KERNELS).
 const PAIR_OF_KERNEL: [(Pair, [bool; 2]); 15] = [
@@ -29,7 +30,7 @@ const PAIR_OF_KERNEL: [(Pair, [bool; 2]); 15] = [
 pub const HEAD: &str = "precision,category,pair,problems,GPU median,GPU worst";
 
 /// The errors of every kernel on the given problems, as [`Found::scalar`].
-pub fn measure<T: Measured>(gpu: &Gpu, problems: &[Problem<T>]) -> Result<Vec<Found>, GpuError> {
+pub fn measure<T: Measured>(gpu: &Gpu, problems: &[Problem<T>]) -> Result<Vec<Found>, DeviceError> {
     let mut found = Vec::new();
     for (kernel, (pair, flat)) in PAIR_OF_KERNEL.into_iter().enumerate() {
         let exact = |problem: &Problem<T>| PairProblem::of(&problem.input.map(Into::into), flat);

@@ -1,6 +1,7 @@
 //! The routes to the disc of a flat cap on the GPU.
 
-use parry_continuum::gpu::{Precision, wgsl};
+use gpu_batch::Precision;
+use parry_continuum::gpu::laboratory::CONVEX;
 use polynomial_roots::gpu::{Finder, approximate};
 
 /// A route to the disc of a flat cap: the paper's are there for comparison.
@@ -16,10 +17,10 @@ pub enum Discs {
 }
 
 impl Discs {
-    /// The route in WGSL, as [`GpuExhaustive::compute_every_pair`](parry_continuum::gpu::GpuExhaustive::compute_every_pair) takes it.
+    /// The route in WGSL, as `GpuExhaustive::compute_every_pair` takes it.
     pub fn route(self, precision: Precision) -> String {
         let finder = match self {
-            Self::Convex => return wgsl::CONVEX.into(),
+            Self::Convex => return CONVEX.into(),
             Self::ClosedForm => Finder::ClosedForm,
             Self::Companion => Finder::Companion,
         };

@@ -1,8 +1,8 @@
 //! Branches against clamps on the GPU, for comparison with the paper's Tables II and III.
 
+use gpu_batch::{Batch, DeviceError, DeviceFailure, Kernel, Precision, Shader};
 use parry_continuum::distance::Vec3;
-use parry_continuum::gpu::{Batch, BatchKernel, Gpu, GpuError, Precision, wgsl};
-use parry_continuum::proximity::DeviceFailure;
+use parry_continuum::gpu::{Gpu, laboratory};
 use std::time::Duration;
 
 /// A distance in one of two forms. Both use the same products; neither is as exact as
@@ -44,8 +44,8 @@ impl GpuForms {
     ///
     /// # Errors
     /// The driver does not compile the kernel.
-    pub fn new(gpu: &Gpu, form: Form) -> Result<Self, GpuError> {
-        Ok(Self(Batch::new(gpu, &kernel(&text(form)))?))
+    pub fn new(gpu: &Gpu, form: Form) -> Result<Self, DeviceError> {
+        Ok(Self(Batch::new(gpu.device(), &kernel(&text(form)))?))
     }
 
     /// The squared distances between the segments of the first and the last two points, or between the first point and
@@ -66,8 +66,8 @@ impl GpuForms {
 }
 
 /// The kernel of a form with this text.
-fn kernel(text: &str) -> BatchKernel<'_> {
-    BatchKernel::new("forms", text, 12, 1)
+fn kernel(text: &str) -> Kernel<'_> {
+    Kernel::new("forms", text, 12, 1)
 }
 
 /// The text of a form's kernel.
@@ -83,10 +83,10 @@ fn text(form: Form) -> String {
 ",
         form.call()
     );
-    [wgsl::VECTORS, include_str!("shaders/forms.wgsl"), &solve].concat()
+    [laboratory::VECTORS, include_str!("shaders/forms.wgsl"), &solve].concat()
 }
 
 /// The whole text of a form's kernel, for whoever checks it without a GPU.
-pub fn shader(form: Form, precision: Precision) -> wgsl::Shader {
+pub fn shader(form: Form, precision: Precision) -> Shader {
     kernel(&text(form)).shader(precision)
 }

@@ -2,9 +2,9 @@
 
 use super::Discs;
 use continuum_testing::kernels::Input;
+use gpu_batch::{Batch, DeviceError, DeviceFailure, Kernel, Precision, Shader};
 use parry_continuum::distance::{Closest, Scalar, Vec3};
-use parry_continuum::gpu::{Batch, BatchKernel, Gpu, GpuError, Precision, wgsl};
-use parry_continuum::proximity::DeviceFailure;
+use parry_continuum::gpu::{Gpu, laboratory};
 use std::time::Duration;
 
 /// A pair of shapes of [`distance`](parry_continuum::distance), and which parts of a [`PairProblem`] they are.
@@ -167,7 +167,7 @@ impl GpuPairs {
     ///
     /// # Errors
     /// The driver does not compile the kernel.
-    pub fn new(gpu: &Gpu, pair: Pair) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, pair: Pair) -> Result<Self, DeviceError> {
         Self::with_discs(gpu, pair, Discs::Convex)
     }
 
@@ -175,9 +175,9 @@ impl GpuPairs {
     ///
     /// # Errors
     /// The driver does not compile the kernel.
-    pub fn with_discs(gpu: &Gpu, pair: Pair, discs: Discs) -> Result<Self, GpuError> {
+    pub fn with_discs(gpu: &Gpu, pair: Pair, discs: Discs) -> Result<Self, DeviceError> {
         let text = text(pair, discs, gpu.precision());
-        Ok(Self { pair, batch: Batch::new(gpu, &kernel(&text))? })
+        Ok(Self { pair, batch: Batch::new(gpu.device(), &kernel(&text))? })
     }
 
     /// The closest points of every problem, in their order, computed in the GPU's precision. `out` is cleared first.
@@ -207,8 +207,8 @@ impl GpuPairs {
 }
 
 /// The kernel of a pair with this text.
-fn kernel(text: &str) -> BatchKernel<'_> {
-    BatchKernel::new("pairs", text, 24, 7)
+fn kernel(text: &str) -> Kernel<'_> {
+    Kernel::new("pairs", text, 24, 7)
 }
 
 /// The text of a pair's kernel.
@@ -221,10 +221,16 @@ fn text(pair: Pair, discs: Discs, precision: Precision) -> String {
 ",
         pair.call()
     );
-    [wgsl::NARROW_PHASE, &discs.route(precision), include_str!("shaders/pairs.wgsl"), &solve].concat()
+    [
+        &laboratory::narrow_phase(precision),
+        &discs.route(precision),
+        include_str!("shaders/pairs.wgsl"),
+        &solve,
+    ]
+    .concat()
 }
 
 /// The whole text of a pair's kernel, for whoever checks it without a GPU.
-pub fn shader(pair: Pair, discs: Discs, precision: Precision) -> wgsl::Shader {
+pub fn shader(pair: Pair, discs: Discs, precision: Precision) -> Shader {
     kernel(&text(pair, discs, precision)).shader(precision)
 }

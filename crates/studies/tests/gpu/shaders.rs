@@ -2,11 +2,11 @@
 //! keeps the rules that no driver checks.
 
 use continuum_studies::gpu::{Discs, Form, Pair, forms, pairs};
+use gpu_batch::{Precision, Shader};
 use naga::back::{PipelineConstants, hlsl, msl, pipeline_constants::process_overrides, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Expression, MathFunction, Module, ShaderStage};
-use parry_continuum::gpu::Precision;
-use parry_continuum::gpu::wgsl::{self, Shader};
+use parry_continuum::gpu::laboratory;
 use polynomial_roots::gpu::{self as roots, Finder};
 use std::path::Path;
 
@@ -14,9 +14,9 @@ const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// Every kernel in a precision.
 fn kernels(precision: Precision) -> Vec<Shader> {
-    let mut kernels = wgsl::kernels(precision);
+    let mut kernels = laboratory::kernels(precision);
     for discs in [Discs::Convex, Discs::ClosedForm, Discs::Companion] {
-        kernels.push(wgsl::every_pair(precision, &discs.route(precision)));
+        kernels.push(laboratory::every_pair(precision, &discs.route(precision)));
         kernels.extend(Pair::ALL.map(|pair| pairs::shader(pair, discs, precision)));
     }
     kernels.extend(Form::ALL.map(|form| forms::shader(form, precision)));

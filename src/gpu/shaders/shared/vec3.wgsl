@@ -1,13 +1,6 @@
-// Vectors: the twin of distance/vec3.rs, and of Scalar::over in distance/scalar.rs.
+// Vectors: the twin of distance/vec3.rs. What distance/scalar.rs has beyond arithmetic precedes every text.
 //
-// A shader may be compiled as if no NaN and no infinity arose, so both arms of every choice are finite and a
-// divisor is replaced before the division.
-
-// dividend / divisor for a positive divisor, 0 for any other. What rounds to 0 on some devices counts as 0.
-fn over(dividend: real, divisor: real) -> real {
-    let positive = SMALLEST_NORMAL <= divisor;
-    return select(real(0.0), dividend, positive) / select(real(1.0), divisor, positive);
-}
+// A shader may be compiled as if no NaN and no infinity arose, so both arms of every choice are finite.
 
 fn norm_squared(v: vec3<real>) -> real {
     return dot(v, v);

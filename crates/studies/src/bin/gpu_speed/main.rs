@@ -19,7 +19,7 @@ mod timed;
 use clap::Parser;
 use continuum_demo::command;
 use continuum_studies::models::models;
-use parry_continuum::gpu::{Gpu, GpuError, Precision};
+use parry_continuum::gpu::{DeviceError, Gpu, GpuError, Precision};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -82,9 +82,9 @@ fn measure(options: &Options) -> Result<(), String> {
         match Gpu::open(precision) {
             Ok(gpu) => opened.push(Opened { name, gpu, tflops: options.tflops.map(|peaks| peaks[place]) }),
             // Single precision alone is worth measuring.
-            Err(error @ (GpuError::NoDoublePrecision { .. } | GpuError::WrongArithmetic { .. }))
-                if !opened.is_empty() =>
-            {
+            Err(GpuError::Device(
+                error @ (DeviceError::NoDoublePrecision { .. } | DeviceError::WrongArithmetic { .. }),
+            )) if !opened.is_empty() => {
                 missing = Some(error.to_string());
             }
             Err(error) => return Err(error.to_string()),

@@ -39,7 +39,7 @@ pub fn chapter(opened: &[Opened], count: usize, enough: Duration, out: &Path) ->
             }
             write!(table, "| {degree} | {finder:?} |").map_err(text)?;
             for opened in opened {
-                let mut roots = GpuRoots::new(&opened.gpu, finder, degree).map_err(text)?;
+                let mut roots = GpuRoots::new(opened.gpu.device(), finder, degree).map_err(text)?;
                 let mut out = Vec::new();
                 let timed = medians(
                     &mut [&mut || {

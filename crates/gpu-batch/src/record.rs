@@ -1,10 +1,9 @@
 //! Records that the host writes and shaders read: one list of their fields makes both, laid out as WGSL says.
 
-use super::Precision;
-use parry3d_f64::math::Real;
+use crate::Precision;
 
 /// What a record is made of.
-pub(super) trait Field {
+pub trait Field {
     /// The type in WGSL, where `real` is a number of the device's precision.
     const WGSL: &'static str;
 
@@ -27,7 +26,7 @@ impl Field for u32 {
     }
 }
 
-impl Field for Real {
+impl Field for f64 {
     const WGSL: &'static str = "real";
 
     fn alignment(precision: Precision) -> usize {
@@ -39,7 +38,7 @@ impl Field for Real {
     }
 }
 
-impl Field for [Real; 3] {
+impl Field for [f64; 3] {
     const WGSL: &'static str = "vec3<real>";
 
     fn alignment(precision: Precision) -> usize {
@@ -52,9 +51,11 @@ impl Field for [Real; 3] {
 }
 
 /// A record that goes to a device.
-pub(super) trait Record: Default {
-    /// Its name and its fields in WGSL.
+pub trait Record: Default {
+    /// Its name in WGSL.
     const NAME: &'static str;
+
+    /// The names and the types of its fields in WGSL.
     const FIELDS: &'static [(&'static str, &'static str)];
 
     /// As a shader reads it.
@@ -74,32 +75,51 @@ pub(super) trait Record: Default {
     }
 }
 
+/// Declares a [`Record`] of fields that are `u32`, `f64` (a `real` of the device's precision) or `[f64; 3]` (a
+/// `vec3<real>`).
+///
+/// ```
+/// use gpu_batch::{Precision, Record, record};
+///
+/// record! {
+///     /// A ball.
+///     pub struct Sphere {
+///         /// Its centre.
+///         pub centre: [f64; 3],
+///         /// Its radius.
+///         pub radius: f64,
+///     }
+/// }
+///
+/// assert_eq!(Sphere::wgsl(), "struct Sphere {\n    centre: vec3<real>,\n    radius: real,\n}\n");
+/// assert_eq!((Sphere::size(Precision::F32), Sphere::size(Precision::F64)), (16, 32));
+/// ```
+#[macro_export]
 macro_rules! record {
-    ($(#[$attribute:meta])* $name:ident { $($(#[$field_attribute:meta])* $field:ident: $kind:ty,)* }) => {
+    ($(#[$attribute:meta])* $record_vis:vis struct $name:ident {
+        $($(#[$field_attribute:meta])* $vis:vis $field:ident: $kind:ty,)*
+    }) => {
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, Default)]
-        pub(super) struct $name {
-            $($(#[$field_attribute])* pub $field: $kind,)*
+        $record_vis struct $name {
+            $($(#[$field_attribute])* $vis $field: $kind,)*
         }
 
-        impl $crate::gpu::record::Record for $name {
+        impl $crate::Record for $name {
             const NAME: &'static str = stringify!($name);
             const FIELDS: &'static [(&'static str, &'static str)] =
-                &[$((stringify!($field), <$kind as $crate::gpu::record::Field>::WGSL)),*];
+                &[$((stringify!($field), <$kind as $crate::Field>::WGSL)),*];
 
-            fn write(&self, precision: $crate::gpu::Precision, to: &mut Vec<u8>) {
-                use $crate::gpu::record::Field;
+            fn write(&self, precision: $crate::Precision, to: &mut Vec<u8>) {
                 let (begin, mut largest) = (to.len(), 1);
                 $(
-                    let alignment = <$kind as Field>::alignment(precision);
+                    let alignment = <$kind as $crate::Field>::alignment(precision);
                     largest = largest.max(alignment);
                     to.resize(begin + (to.len() - begin).next_multiple_of(alignment), 0);
-                    self.$field.write(precision, to);
+                    $crate::Field::write(&self.$field, precision, to);
                 )*
                 to.resize(begin + (to.len() - begin).next_multiple_of(largest), 0);
             }
         }
     };
 }
-
-pub(super) use record;

@@ -1,5 +1,5 @@
-// What numbers in double precision need beyond arithmetic: the twin of distance/scalar.rs. The other shaders say `real`
-// and are one text for both precisions.
+// What numbers in double precision need beyond arithmetic. The other shaders say `real` and are one text for both
+// precisions.
 
 // The cube root of the magnitude within 5 %: a start value, never an answer. There are no bits of an f64 here, so
 // it is taken in single precision; numbers beyond that range do not occur near one.
@@ -14,7 +14,7 @@ fn power_of_two_to_unity(x: real) -> real {
     return select(real(1.0), real(0x1p500lf), abs(x) < real(0x1p-400lf));
 }
 
-// A bound as it is passed between workgroups, in single precision: not above, and not below the number.
+// A bound from 0 up as it is passed between workgroups, in single precision: not above, and not below the number.
 fn from_below(x: real) -> f32 {
     return f32(x * (real(1.0) - real(0x1p-22lf)));
 }

@@ -1,8 +1,5 @@
-use crate::distance::lanes::Lane;
-use parry3d_f64::math::Real;
-
 // Exhaustive: whoever writes kernels for both precisions must see that there are no others.
-/// The numbers with which a GPU searches. The distances it returns are those of double precision either way.
+/// The numbers with which a GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Single precision: fast on every GPU.
@@ -13,23 +10,23 @@ pub enum Precision {
 
 impl Precision {
     /// Bytes of a number.
-    pub(super) fn size(self) -> u64 {
+    pub fn size(self) -> u64 {
         match self {
             Self::F32 => 4,
             Self::F64 => 8,
         }
     }
 
-    /// The number in this precision, as a GPU reads it.
-    pub(super) fn write(self, value: Real, to: &mut Vec<u8>) {
+    /// The nearest number of this precision, as a GPU reads it.
+    pub fn write(self, value: f64, to: &mut Vec<u8>) {
         match self {
-            Self::F32 => to.extend(<f32 as Lane>::round(value).to_ne_bytes()),
+            Self::F32 => to.extend((value as f32).to_ne_bytes()),
             Self::F64 => to.extend(value.to_ne_bytes()),
         }
     }
 
     /// Numbers that a GPU has written.
-    pub(super) fn read(self, from: &[u8]) -> impl Iterator<Item = Real> + '_ {
+    pub fn read(self, from: &[u8]) -> impl Iterator<Item = f64> + '_ {
         let size = self.size() as usize;
         from.chunks_exact(size).map(move |bytes| match *bytes {
             [a, b, c, d] => f32::from_ne_bytes([a, b, c, d]).into(),

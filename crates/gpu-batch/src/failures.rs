@@ -1,7 +1,7 @@
 //! What went wrong on a device. Drivers report at any time, from any thread, and do not say whose command it was: so
 //! everybody who uses the device hears of every failure.
 
-use crate::answer::DeviceFailure;
+use crate::DeviceFailure;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// From the gravest on: what follows from a graver failure says less than that.
@@ -9,7 +9,7 @@ const KINDS: [DeviceFailure; 3] = [DeviceFailure::Lost, DeviceFailure::OutOfMemo
 
 /// The failures of a device, shared by its callbacks and its users.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Failures(Arc<Mutex<Log>>);
+pub(crate) struct Failures(Arc<Mutex<Log>>);
 
 #[derive(Debug, Default)]
 struct Log {
@@ -19,9 +19,9 @@ struct Log {
     last: [u64; KINDS.len()],
 }
 
-/// What one user of a device has heard of its failures.
+/// What one user of a [`Device`](crate::Device) has heard of its failures.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub struct Watch {
     failures: Failures,
     heard: u64,
 }
@@ -32,7 +32,7 @@ impl Failures {
     }
 
     /// Passes a failure on to all users. What is no kind of its own here counts as a refusal.
-    pub(super) fn report(&self, failure: DeviceFailure) {
+    pub(crate) fn report(&self, failure: DeviceFailure) {
         let mut log = self.lock();
         log.reported += 1;
         let kind = KINDS.iter().position(|&kind| kind == failure).unwrap_or(KINDS.len() - 1);
@@ -40,12 +40,12 @@ impl Failures {
     }
 
     /// For a new user, who has to do with nothing that failed before. (But a lost device stays lost.)
-    pub(super) fn watch(&self) -> Watch {
+    pub(crate) fn watch(&self) -> Watch {
         Watch { failures: self.clone(), heard: self.lock().reported }
     }
 
     /// Hears of everything that happens to `device` outside of error scopes.
-    pub(super) fn listen_to(&self, device: &wgpu::Device) {
+    pub(crate) fn listen_to(&self, device: &wgpu::Device) {
         let failures = self.clone();
         device.set_device_lost_callback(move |_, _| failures.report(DeviceFailure::Lost));
         let failures = self.clone();
@@ -58,7 +58,7 @@ impl Watch {
     ///
     /// # Errors
     /// Something has failed.
-    pub(super) fn check(&mut self) -> Result<(), DeviceFailure> {
+    pub fn check(&mut self) -> Result<(), DeviceFailure> {
         let log = self.failures.lock();
         let heard = std::mem::replace(&mut self.heard, log.reported);
         let is_news = |(kind, last): &(DeviceFailure, u64)| {

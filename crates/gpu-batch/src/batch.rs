@@ -1,14 +1,9 @@
 //! Many small problems at once, a thread each.
 
-use super::clock::{Clock, READINGS};
-use super::failures::Watch;
-use super::layout::{ANSWER_HEAD, BATCH_THREADS, Head};
-use super::opened::Gpu;
-use super::record::Record;
-use super::wgsl::Shader;
-use super::{GpuError, Precision};
-use crate::answer::DeviceFailure;
-use parry3d_f64::math::Real;
+use crate::clock::{Clock, READINGS};
+use crate::failures::Watch;
+use crate::record::Record;
+use crate::{Binding, Device, DeviceError, DeviceFailure, Kernel, Precision, record};
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 
@@ -16,61 +11,25 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 const MOST_PROBLEMS: u64 = 1 << 22;
 /// As many submissions have numbers of their own, which single precision holds.
 const SUBMISSIONS: u32 = (1 << f32::MANTISSA_DIGITS) - 1;
+/// Threads of a workgroup.
+pub(crate) const BATCH_THREADS: u32 = 64;
+/// Numbers before an answer: the one of its submission.
+pub(crate) const ANSWER_HEAD: u32 = 1;
 
-/// A function in WGSL that answers one problem, for a [`Batch`].
-#[derive(Clone, Copy, Debug)]
-pub struct BatchKernel<'a> {
-    /// For messages.
-    name: &'a str,
-    text: &'a str,
-    problem: u16,
-    answer: u16,
-}
-
-impl<'a> BatchKernel<'a> {
-    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem from
-    /// `problems[problem]` on, so many as `problem` says here (at least 1), and writes those of its answer from
-    /// `answers[answer]` on, so many as `answer` says. All are of the type `real`, which is `f32` or `f64`.
-    pub const fn new(name: &'a str, text: &'a str, problem: u16, answer: u16) -> Self {
-        Self { name, text, problem, answer }
-    }
-
-    /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
-    pub fn shader(&self, precision: Precision) -> Shader {
-        Shader::batch(precision, self.text, self.problem(), self.answer.into())
-    }
-
-    /// Numbers of a problem.
-    fn problem(&self) -> u32 {
-        u32::from(self.problem).max(1)
+record! {
+    /// What shaders/batch.wgsl reads first.
+    pub(crate) struct Head {
+        problems: u32,
+        submission: u32,
     }
 }
 
 /// A kernel on a GPU that answers many problems at once, a thread each.
-///
-/// ```no_run
-/// use parry_continuum::gpu::{Batch, BatchKernel, Gpu, Precision, wgsl};
-///
-/// let text = [wgsl::NARROW_PHASE, wgsl::CONVEX, "
-///     fn point(place: u32) -> vec3<real> {
-///         return vec3<real>(problems[place], problems[place + 1u], problems[place + 2u]);
-///     }
-///     fn solve(problem: u32, answer: u32) {
-///         let found = segment_segment(
-///             point(problem), point(problem + 3u), point(problem + 6u), point(problem + 9u));
-///         answers[answer] = found.distance;
-///     }"].concat();
-/// let kernel = BatchKernel::new("segment_segment", &text, 12, 1);
-/// let mut batch = Batch::new(&Gpu::open(Precision::F32)?, &kernel)?;
-/// let segments = [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0, 1.0, 2.0]];
-/// batch.run(segments.into_iter().flatten(), |answer| println!("{}", answer[0]))?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Batch {
-    gpu: Gpu,
+    device: Device,
     watch: Watch,
-    pub(super) layout: BindGroupLayout,
-    pub(super) kernel: ComputePipeline,
+    pub(crate) layout: BindGroupLayout,
+    pub(crate) kernel: ComputePipeline,
     /// Numbers of a problem, and of an answer with what comes before it.
     problem: u64,
     answer: u64,
@@ -92,9 +51,9 @@ struct Room {
 
 impl std::fmt::Debug for Batch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { gpu, problem, answer, .. } = self;
+        let Self { device, problem, answer, .. } = self;
         f.debug_struct("Batch")
-            .field("gpu", gpu)
+            .field("device", device)
             .field("problem", problem)
             .field("answer", &(answer - u64::from(ANSWER_HEAD)))
             .finish_non_exhaustive()
@@ -106,19 +65,18 @@ impl Batch {
     ///
     /// # Errors
     /// The driver does not compile it.
-    pub fn new(gpu: &Gpu, kernel: &BatchKernel) -> Result<Self, GpuError> {
-        let device = &gpu.0.device;
-        let layout = device.layout(&[None, Some(false), Some(true)]);
+    pub fn new(device: &Device, kernel: &Kernel) -> Result<Self, DeviceError> {
+        let layout = device.layout(&[Binding::Uniform, Binding::Read, Binding::Write]);
         Ok(Self {
-            watch: device.failures.watch(),
-            kernel: device.compile(kernel.name, &kernel.shader(device.precision), &layout, &[])?,
+            watch: device.watch(),
+            kernel: device.compile(kernel.name, &kernel.shader(device.precision()), &layout, &[])?,
             layout,
             problem: kernel.problem().into(),
-            answer: (ANSWER_HEAD + u32::from(kernel.answer)).into(),
+            answer: kernel.answer().into(),
             submission: 0,
             room: None,
             device_time: None,
-            gpu: gpu.clone(),
+            device: device.clone(),
         })
     }
 
@@ -128,17 +86,16 @@ impl Batch {
     /// The GPU has failed. Answers that `take` has got by then are right.
     pub fn run(
         &mut self,
-        numbers: impl IntoIterator<Item = Real>,
-        mut take: impl FnMut(&[Real]),
+        numbers: impl IntoIterator<Item = f64>,
+        mut take: impl FnMut(&[f64]),
     ) -> Result<(), DeviceFailure> {
-        let gpu = self.gpu.clone();
-        let device = &gpu.0.device;
-        self.device_time = device.tick.map(|_| Duration::ZERO);
+        let device = self.device.clone();
+        self.device_time = device.tick().map(|_| Duration::ZERO);
         let mut bytes = Vec::new();
-        numbers.into_iter().for_each(|number| device.precision.write(number, &mut bytes));
-        let record = self.problem * device.precision.size();
+        numbers.into_iter().for_each(|number| device.precision().write(number, &mut bytes));
+        let record = self.problem * device.precision().size();
         bytes.truncate(bytes.len() - bytes.len() % record as usize);
-        let largest = device.largest_binding() / (self.problem.max(self.answer) * device.precision.size());
+        let largest = device.largest_binding() / (self.problem.max(self.answer) * device.precision().size());
         let most = largest.clamp(1, MOST_PROBLEMS) * record;
         for bytes in bytes.chunks(most as usize) {
             self.submit(bytes, bytes.len() as u64 / record, &mut take)?;
@@ -155,10 +112,9 @@ impl Batch {
         &mut self,
         bytes: &[u8],
         problems: u64,
-        take: &mut impl FnMut(&[Real]),
+        take: &mut impl FnMut(&[f64]),
     ) -> Result<(), DeviceFailure> {
-        let gpu = self.gpu.clone();
-        let device = &gpu.0.device;
+        let device = self.device.clone();
         // On failure the buffers are gone, and made anew for the next problems.
         let room = match self.room.take() {
             Some(room) if room.problems == problems => room,
@@ -167,20 +123,20 @@ impl Batch {
         self.submission = self.submission % SUBMISSIONS + 1;
         let submission = self.submission;
         let mut head = Vec::new();
-        Head { problems: problems as u32, submission }.write(device.precision, &mut head);
-        device.queue.write_buffer(&room.head, 0, &head);
-        device.queue.write_buffer(&room.problem_buffer, 0, bytes);
-        let mut encoder = device.device.create_command_encoder(&Default::default());
+        Head { problems: problems as u32, submission }.write(device.precision(), &mut head);
+        device.queue().write_buffer(&room.head, 0, &head);
+        device.queue().write_buffer(&room.problem_buffer, 0, bytes);
+        let mut encoder = device.raw().create_command_encoder(&Default::default());
         let timestamp_writes = room.clock.as_ref().map(Clock::writes);
         let mut pass =
             encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_pipeline(&self.kernel);
         pass.set_bind_group(0, &room.group, &[0]);
         let workgroups = problems.div_ceil(BATCH_THREADS.into()) as u32;
-        let wide = workgroups.min(device.limits.max_compute_workgroups_per_dimension);
+        let wide = workgroups.min(device.limits().max_compute_workgroups_per_dimension);
         pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
         drop(pass);
-        let size = problems * self.answer * device.precision.size();
+        let size = problems * self.answer * device.precision().size();
         encoder.copy_buffer_to_buffer(&room.answer_buffer, 0, &room.readback, READINGS, Some(size));
         if let Some(clock) = &room.clock {
             clock.copy(&mut encoder, &room.readback);
@@ -188,18 +144,18 @@ impl Batch {
         let (time, answer) = (&mut self.device_time, self.answer as usize);
         device.run_and_read(&mut self.watch, encoder.finish(), &room.readback, READINGS + size, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
-            *time = time.zip(device.time_between(readings)).map(|(sum, more)| sum + more);
-            read(device.precision, bytes, answer, submission, take)
+            *time = time.zip(Clock::time_between(&device, readings)).map(|(sum, more)| sum + more);
+            read(device.precision(), bytes, answer, submission, take)
         })?;
         self.room = Some(room);
         Ok(())
     }
 
     fn make_room(&self, problems: u64) -> Room {
-        let device = &self.gpu.0.device;
-        let size = device.precision.size();
+        let device = &self.device;
+        let size = device.precision().size();
         let head =
-            device.buffer(Head::size(device.precision), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+            device.buffer(Head::size(device.precision()), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let problem_buffer =
             device.buffer(problems * self.problem * size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let answers = problems * self.answer * size;
@@ -220,14 +176,14 @@ fn read(
     bytes: &[u8],
     answer: usize,
     submission: u32,
-    take: &mut impl FnMut(&[Real]),
+    take: &mut impl FnMut(&[f64]),
 ) -> Result<(), DeviceFailure> {
     let mut numbers = Vec::with_capacity(answer);
     for answer in bytes.chunks_exact(answer * precision.size() as usize) {
         numbers.clear();
         numbers.extend(precision.read(answer));
         let (head, numbers) = numbers.split_at(ANSWER_HEAD as usize);
-        if head != [Real::from(submission)] {
+        if head != [f64::from(submission)] {
             return Err(DeviceFailure::Unanswered);
         }
         take(numbers);

@@ -1,0 +1,49 @@
+//! Whether a GPU's double precision deserves the name: Vulkan asks of it no more than of single precision.
+
+use crate::{Adapter, Batch, Device, DeviceError, Kernel, Precision};
+
+/// Dividends and divisors whose quotients and roots need every digit.
+pub(crate) const OPERANDS: [[f64; 2]; 8] = [
+    [1.0, 3.0],
+    [2.0, 7.0],
+    [0.1, 1.1],
+    [1e-12, 3e5],
+    [12_345.678_9, 9.876_543_21],
+    [std::f64::consts::PI, std::f64::consts::E],
+    [1.0 + f64::EPSILON, 1.0 - f64::EPSILON],
+    [5e11, 7e-3],
+];
+
+/// How many units in the last place a result may be off.
+const TOLERANCE: f64 = 4.0;
+
+/// Compares the device's quotients and square roots with the CPU's.
+///
+/// # Errors
+/// They differ by more than a few units in the last place, or the device failed.
+pub(crate) fn check(device: &Device) -> Result<(), DeviceError> {
+    let kernel = Kernel::new("self_test", include_str!("shaders/self_test.wgsl"), 2, 2);
+    let mut got = Vec::new();
+    Batch::new(device, &kernel)?.run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
+    compare(&got, device.precision(), device.adapter())
+}
+
+/// Compares quotients and roots with the CPU's.
+pub(crate) fn compare(got: &[f64], precision: Precision, adapter: &Adapter) -> Result<(), DeviceError> {
+    let unit = match precision {
+        Precision::F32 => f32::EPSILON.into(),
+        Precision::F64 => f64::EPSILON,
+    };
+    let expected = OPERANDS.iter().flat_map(|&[x, y]| {
+        [(x / y, format!("{x:e} / {y:e}")), (x.sqrt(), format!("the square root of {x:e}"))]
+    });
+    for ((expected, operation), &got) in expected.zip(got) {
+        // Written so that NaN fails.
+        let right = (got - expected).abs() <= TOLERANCE * unit * expected;
+        if !right {
+            let adapter = adapter.to_string();
+            return Err(DeviceError::WrongArithmetic { adapter, operation, got, expected });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,253 @@
+//! An opened GPU.
+
+use crate::failures::{Failures, Watch};
+use crate::record::Record;
+use crate::{Adapter, Binding, DeviceError, DeviceFailure, Precision, Shader, arithmetic};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// A GPU, opened in one precision. Copies stand for the same GPU.
+#[derive(Clone)]
+pub struct Device(Arc<Opened>);
+
+/// A device, its queue, and what one has to know of it.
+struct Opened {
+    adapter: Adapter,
+    precision: Precision,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    limits: wgpu::Limits,
+    tick: Option<f32>,
+    failures: Failures,
+}
+
+impl std::fmt::Debug for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Device")
+            .field("adapter", self.adapter())
+            .field("precision", &self.precision())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Device {
+    /// The fastest GPU of this machine, to compute in this precision. The environment variables of `wgpu`, such as
+    /// `WGPU_BACKEND`, narrow the choice.
+    ///
+    /// # Errors
+    /// There is no GPU, its driver refuses it, or it lacks double precision and that was asked for.
+    pub fn open(precision: Precision) -> Result<Self, DeviceError> {
+        let device =
+            Self::open_of(wgpu::InstanceDescriptor::new_without_display_handle().with_env(), precision)?;
+        arithmetic::check(&device)?;
+        Ok(device)
+    }
+
+    /// The fastest GPU of an instance.
+    pub(crate) fn open_of(
+        instance: wgpu::InstanceDescriptor,
+        precision: Precision,
+    ) -> Result<Self, DeviceError> {
+        let instance = wgpu::Instance::new(instance);
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|error| DeviceError::NoAdapter { reason: error.to_string() })?;
+        Self::open_on(&adapter, precision)
+    }
+
+    fn open_on(adapter: &wgpu::Adapter, precision: Precision) -> Result<Self, DeviceError> {
+        let info = adapter.get_info();
+        let named = Adapter {
+            name: info.name,
+            interface: info.backend.to_string(),
+            is_software: info.device_type == wgpu::DeviceType::Cpu,
+        };
+        let mut features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        if precision == Precision::F64 {
+            if !adapter.features().contains(wgpu::Features::SHADER_F64) {
+                return Err(DeviceError::NoDoublePrecision { adapter: named.to_string() });
+            }
+            features |= wgpu::Features::SHADER_F64;
+        }
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("gpu-batch"),
+            required_features: features,
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+            DeviceError::NotOpened { adapter: named.to_string(), reason: error.to_string() }
+        })?;
+        let failures = Failures::default();
+        failures.listen_to(&device);
+        let keeps_time = features.contains(wgpu::Features::TIMESTAMP_QUERY);
+        let tick = keeps_time.then(|| queue.get_timestamp_period());
+        let limits = device.limits();
+        Ok(Self(Arc::new(Opened { adapter: named, precision, device, queue, limits, tick, failures })))
+    }
+
+    /// Which GPU it is.
+    pub fn adapter(&self) -> &Adapter {
+        &self.0.adapter
+    }
+
+    /// The numbers with which it computes.
+    pub fn precision(&self) -> Precision {
+        self.0.precision
+    }
+
+    /// The device as `wgpu` has it.
+    pub fn raw(&self) -> &wgpu::Device {
+        &self.0.device
+    }
+
+    /// Its queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.0.queue
+    }
+
+    /// What it can do.
+    pub fn limits(&self) -> &wgpu::Limits {
+        &self.0.limits
+    }
+
+    /// Nanoseconds of a tick of its clock, if it keeps time.
+    pub fn tick(&self) -> Option<f32> {
+        self.0.tick
+    }
+
+    /// For a new user, who hears of what fails from now on.
+    pub fn watch(&self) -> Watch {
+        self.0.failures.watch()
+    }
+
+    /// Compiles a kernel, with values for its overrides; `name` is for messages.
+    ///
+    /// # Errors
+    /// The driver does not compile it.
+    pub fn compile(
+        &self,
+        name: &str,
+        kernel: &Shader,
+        layout: &wgpu::BindGroupLayout,
+        constants: &[(&str, f64)],
+    ) -> Result<wgpu::ComputePipeline, DeviceError> {
+        let device = self.raw();
+        let scopes = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
+            .map(|filter| device.push_error_scope(filter));
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(kernel.text.as_str().into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(name),
+            bind_group_layouts: &[Some(layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some(kernel.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        });
+        let [validation, internal] = scopes;
+        let (internal, validation) =
+            (pollster::block_on(internal.pop()), pollster::block_on(validation.pop()));
+        match validation.or(internal) {
+            None => Ok(pipeline),
+            Some(error) => Err(DeviceError::Shader {
+                adapter: self.adapter().to_string(),
+                kernel: name.into(),
+                message: error.to_string(),
+            }),
+        }
+    }
+
+    /// A layout of one bind group.
+    pub fn layout(&self, bindings: &[Binding]) -> wgpu::BindGroupLayout {
+        let entries: Vec<_> = (0..).zip(bindings).map(|(number, binding)| binding.entry(number)).collect();
+        self.raw()
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+    }
+
+    /// A bind group: what stands at each place of a layout.
+    pub fn group(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        bindings: &[wgpu::BindingResource],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(bindings)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+            .collect();
+        self.raw().create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// A buffer of at least so many bytes; never empty, because an empty one cannot be bound.
+    pub fn buffer(&self, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let size = size.max(16).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        self.raw().create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// The largest buffer that a kernel can see.
+    pub fn largest_binding(&self) -> u64 {
+        self.limits().max_storage_buffer_binding_size.min(self.limits().max_buffer_size)
+    }
+
+    /// Bytes from one uniform of a kind to the next in a buffer.
+    pub fn uniform_stride<R: Record>(&self) -> u64 {
+        R::size(self.precision()).next_multiple_of(self.limits().min_uniform_buffer_offset_alignment.into())
+    }
+
+    /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they are done.
+    ///
+    /// # Errors
+    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says that there is nothing
+    /// to read.
+    pub fn run_and_read(
+        &self,
+        watch: &mut Watch,
+        commands: wgpu::CommandBuffer,
+        from: &wgpu::Buffer,
+        size: u64,
+        read: impl FnOnce(&[u8]) -> Result<(), DeviceFailure>,
+    ) -> Result<(), DeviceFailure> {
+        watch.check()?;
+        let submission = self.queue().submit([commands]);
+        let failures = self.0.failures.clone();
+        from.map_async(wgpu::MapMode::Read, 0..size, move |mapped| {
+            if mapped.is_err() {
+                failures.report(DeviceFailure::Refused);
+            }
+        });
+        self.wait(submission);
+        watch.check()?;
+        let answer = match from.get_mapped_range(0..size) {
+            Ok(bytes) => read(&bytes),
+            Err(_) => Err(DeviceFailure::Unanswered),
+        };
+        from.unmap();
+        answer
+    }
+
+    fn wait(&self, submission: wgpu::SubmissionIndex) {
+        // `wgpu` panics when it finds a device lost while it waits; here that is an error like any other.
+        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
+        if !matches!(catch_unwind(AssertUnwindSafe(|| self.raw().poll(wait))), Ok(Ok(_))) {
+            self.0.failures.report(DeviceFailure::Lost);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+use crate::batch::{ANSWER_HEAD, BATCH_THREADS, Head};
+use crate::record::Record;
+use crate::{Precision, Shader, wgsl};
+
+/// A function in WGSL that answers one problem, for a [`Batch`](crate::Batch).
+#[derive(Clone, Copy, Debug)]
+pub struct Kernel<'a> {
+    pub(crate) name: &'a str,
+    text: &'a str,
+    problem: u16,
+    answer: u16,
+}
+
+impl<'a> Kernel<'a> {
+    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem from
+    /// `problems[problem]` on, so many as `problem` says here (at least 1), and writes those of its answer from
+    /// `answers[answer]` on, so many as `answer` says. All are of the type `real`, which is `f32` or `f64`. What else the
+    /// text may build on stands in [`wgsl`]. `name` is for messages.
+    pub const fn new(name: &'a str, text: &'a str, problem: u16, answer: u16) -> Self {
+        Self { name, text, problem, answer }
+    }
+
+    /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
+    pub fn shader(&self, precision: Precision) -> Shader {
+        let sizes = [
+            ("THREADS", BATCH_THREADS),
+            ("PROBLEM", self.problem()),
+            ("ANSWER", self.answer()),
+            ("ANSWER_HEAD", ANSWER_HEAD),
+        ];
+        let sizes: String =
+            sizes.iter().map(|(name, size)| wgsl::constant(name, format_args!("{size}u"))).collect();
+        let text =
+            [&wgsl::prelude(precision), &sizes, &Head::wgsl(), self.text, include_str!("shaders/batch.wgsl")];
+        Shader::new("batch", text.concat())
+    }
+
+    /// Numbers of a problem.
+    pub(crate) fn problem(&self) -> u32 {
+        u32::from(self.problem).max(1)
+    }
+
+    /// Numbers of an answer with what comes before it.
+    pub(crate) fn answer(&self) -> u32 {
+        ANSWER_HEAD + u32::from(self.answer)
+    }
+}
