@@ -1,7 +1,6 @@
 //! The range of numbers that is answered.
 
-use crate::Chain;
-use crate::robot::COORDINATE_LIMIT;
+use crate::robot::{COORDINATE_LIMIT, Chain};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, TypedShape};
