@@ -14,6 +14,12 @@ pub(crate) fn check_not_negative(parameter: &'static str, value: Real) -> Result
     if value >= 0.0 { Ok(()) } else { Err(ProximityError::Negative { parameter, value }) }
 }
 
+/// A margin, and how near to it the clearance must be for the answer to stay open.
+pub(crate) fn check_decision(margin: Real, resolution: Real) -> Result<(), ProximityError> {
+    check_margin(margin)?;
+    check_not_negative("resolution", resolution)
+}
+
 /// A bound, which asks for nothing where it is below zero.
 pub(crate) fn check_bound(bound: Real) -> Result<(), ProximityError> {
     if bound.is_nan() { Err(ProximityError::NotANumber { parameter: "bound" }) } else { Ok(()) }

@@ -4,7 +4,7 @@ use super::search::{BvhSearch, Context, Memory};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::pieces::{PlacedTube, TubeInMesh};
 use crate::query::clearance::{TubeMemory, clearance, tube_clears};
-use crate::query::{check_margin, check_not_negative};
+use crate::query::{check_decision, check_not_negative};
 use crate::robot::Tube;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Pose, Real};
@@ -101,8 +101,7 @@ impl BvhSearch {
         margin: Real,
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
-        check_margin(margin)?;
-        check_not_negative("resolution", resolution)?;
+        check_decision(margin, resolution)?;
         self.context().tube_clears(tube, pose, margin, resolution)
     }
 
@@ -136,8 +135,7 @@ impl BvhSearch {
         out: &mut Vec<Result<Decision, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        check_margin(margin)?;
-        check_not_negative("resolution", resolution)?;
+        check_decision(margin, resolution)?;
         self.batch(
             tubes,
             out,

@@ -2,8 +2,8 @@
 
 use super::search::{BvhSearch, Context, Memory};
 use crate::answer::{MotionAnswer, ProximityError};
+use crate::query::check_decision;
 use crate::query::motion::MotionSearch;
-use crate::query::{check_margin, check_not_negative};
 use crate::robot::Motion;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::Real;
@@ -58,8 +58,7 @@ impl BvhSearch {
         margin: Real,
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
-        check_margin(margin)?;
-        check_not_negative("resolution", resolution)?;
+        check_decision(margin, resolution)?;
         self.context().motion(motion, margin, resolution).clears()
     }
 
@@ -95,8 +94,7 @@ impl BvhSearch {
         margin: Real,
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
-        check_margin(margin)?;
-        check_not_negative("resolution", resolution)?;
+        check_decision(margin, resolution)?;
         self.context().motion(motion, margin, resolution).first_contact()
     }
 
@@ -113,8 +111,7 @@ impl BvhSearch {
         out: &mut Vec<Result<MotionAnswer, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        check_margin(margin)?;
-        check_not_negative("resolution", resolution)?;
+        check_decision(margin, resolution)?;
         self.batch(motions, out, MotionAnswer::clear, |context, motion, out| {
             *out = context.motion(motion, margin, resolution).clears();
         });
