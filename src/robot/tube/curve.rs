@@ -176,7 +176,9 @@ impl Curve {
                 // What the curve may turn by, and what the rounding of a few operations can turn the line by.
                 let length = arcs[to] - arcs[from];
                 let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
-                let tilt = section.curvature * length * section.stretch + rounding / length;
+                // A length that vanishes beside those before it, as a sum, says nothing of a direction.
+                let rounded = if length > 0.0 { rounding / length } else { Real::INFINITY };
+                let tilt = section.curvature * length * section.stretch + rounded;
                 let longest = length * section.stretch;
                 let off = 0.5 * section.curvature * longest * longest * (along * (1.0 - along)).max(0.0);
                 PlaceOnCurve { point: a + (b - a) * along, off, direction: direction(b - a), tilt }

@@ -62,7 +62,7 @@ fn check<M: Motion>(
     // Poses are rounded on the way.
     let largest = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(length, f64::max);
     let slack = 1e-12 * largest;
-    assert!(verify_motion(motion, 7).is_ok(), "its own speed is refused{}", problem());
+    assert_eq!(verify_motion(motion, 7), Ok(()), "its own speed is refused{}", problem());
     let margin = match source.below(6) {
         0 => 0.0,
         1 => start,
