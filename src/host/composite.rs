@@ -72,8 +72,10 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
                             ClosestPoints::Disjoint => None,
                             ClosestPoints::Intersecting => Some((0.0, points)),
                             ClosestPoints::WithinMargin(point1, point2) => {
-                                // It is within the margin, however its length is rounded.
-                                Some(((point1 - pos12 * point2).length().min(bound.next_down()), points))
+                                // It is within the margin, however its length is rounded, and of points that
+                                // coincide another part may still say that it is met.
+                                let length = (point1 - pos12 * point2).length().max(Real::MIN_POSITIVE);
+                                Some((length.min(bound.next_down()), points))
                             }
                         })
                     })

@@ -75,7 +75,9 @@ pub enum Touch {
 /// A robot and a wall.
 #[derive(Clone)]
 pub struct Placement {
-    /// A link or a chain.
+    /// The link that touches.
+    pub link: ModifiedCylinder,
+    /// This link, or a chain that begins with it.
     pub robot: SharedShape,
     pub wall: SharedShape,
     /// The wall's pose in the robot's frame.
@@ -120,7 +122,7 @@ impl Random {
         } else {
             SharedShape::new(link)
         };
-        Placement { robot, wall, pose, kind, touch, gap, tilt }
+        Placement { link, robot, wall, pose, kind, touch, gap, tilt }
     }
 
     /// A length: round numbers as often as others.
