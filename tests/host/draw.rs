@@ -2,7 +2,9 @@
 #![allow(dead_code)]
 
 use continuum_testing::Random;
-use parry_continuum::parry::math::{Real, Vector};
+use continuum_testing::placements::Wall;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::shape::{SharedShape, Triangle};
 use parry_continuum::{Cap, ModifiedCylinder};
 
 /// Half the distance from 1 to the next f64.
@@ -23,6 +25,10 @@ pub trait Draw {
     fn caps(&mut self) -> [Cap; 2];
     /// A link of extent about 1, from thin to flat, some along a coordinate axis, some balls and wires.
     fn link(&mut self) -> ModifiedCylinder;
+    /// A link at a wall, and the wall's pose: aligned with it and touching, or all but.
+    fn aligned(&mut self, wall: Wall) -> (ModifiedCylinder, SharedShape, Pose);
+    /// A link and a triangle, and the triangle's pose: aligned, or as often a link near or somewhat inside of any triangle.
+    fn meeting(&mut self) -> (ModifiedCylinder, Triangle, Pose);
 }
 
 impl Draw for Random {
@@ -55,6 +61,21 @@ impl Draw for Random {
         }
         let end = start + axis * self.log_between(1e-3, 2.0);
         ModifiedCylinder::new(start, end, radius, self.caps()).unwrap()
+    }
+
+    fn aligned(&mut self, wall: Wall) -> (ModifiedCylinder, SharedShape, Pose) {
+        let placement = self.placement(wall);
+        (placement.link, placement.wall, placement.pose)
+    }
+
+    fn meeting(&mut self) -> (ModifiedCylinder, Triangle, Pose) {
+        if self.chance(0.5) {
+            let (link, wall, pose) = self.aligned(Wall::Triangle);
+            (link, *wall.as_triangle().unwrap(), pose)
+        } else {
+            let triangle = Triangle::new(self.vector(1.5), self.vector(1.5), self.vector(1.5));
+            (self.link(), triangle, Pose::new(self.vector(1.0), self.direction()))
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::draw::Draw;
 use crate::scene::{floor_field, floor_mesh, heap, tube};
 use continuum_testing::Random;
+use continuum_testing::placements::{Placement, Wall};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::details::NormalConstraints;
 use parry_continuum::parry::query::*;
@@ -41,11 +42,23 @@ fn what_is_near_touches_in_a_manifold() {
             SharedShape::new(tube(&mut random)),
         ];
         let robots: [&dyn Shape; 2] = [&chain, &link];
+        let mut pairs = vec![];
         for (robot, other) in
             robots.into_iter().flat_map(|robot| others.iter().map(move |other| (robot, other)))
         {
             let pose = Pose::new(Vector::new(0.0, random.between(-0.3, 0.5), 0.0), random.direction());
-            for (g1, g2, pos12) in [(robot, &**other, pose.inverse()), (&**other, robot, pose)] {
+            pairs.push((SharedShape(robot.clone_dyn().into()), other.clone(), pose.inverse()));
+        }
+        for kind in [Wall::BoxMesh, Wall::Plate, Wall::HeightField, Wall::Compound, Wall::Chain] {
+            let Placement { robot, wall, pose, .. } = random.placement(kind);
+            // A mesh may refuse what comes from behind.
+            let is_plain = wall.as_trimesh().is_none_or(|mesh| mesh.triangle_normal_constraints(0).is_none());
+            if is_plain {
+                pairs.push((robot, wall, pose));
+            }
+        }
+        for (robot, other, pose) in &pairs {
+            for (g1, g2, pos12) in [(&**robot, &**other, *pose), (&**other, &**robot, pose.inverse())] {
                 let apart = dispatcher.distance(&pos12, g1, g2).unwrap().distance;
                 let found = manifolds(&dispatcher, &pos12, g1, g2, 0.02).unwrap();
                 let points: Vec<_> =

@@ -9,12 +9,14 @@ use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
 use parry_continuum::parry::shape::SupportMap;
 
-/// A point around, inside or on a link, at times on its axis line or very far away.
+/// A point around, inside or on a link, at times on its axis line or very far away, and as often where pieces of its surface
+/// meet: on a rim, in the plane of a cap, above a seam between barrel and round cap, a little off or not.
 pub fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let surface = surface_point(random, link);
     let t = random.between(-0.5, 1.5);
     let on_axis = link.start() * (1.0 - t) + link.end() * t;
-    match random.index(6) {
+    match random.index(12) {
+        6.. => on_a_seam(random, link),
         0 => on_axis,
         1 => surface + random.direction() * random.log_between(1e-9, 1e-3),
         2 => surface + random.direction() * random.log_between(1e2, 1e6),
@@ -22,6 +24,24 @@ pub fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
         4 => on_axis * 0.5 + surface * 0.5,
         _ => surface + random.vector(2.0),
     }
+}
+
+/// A point in the plane through an end of a link: on its axis, its rim, inside or outside of it, or a little off.
+fn on_a_seam(random: &mut Random, link: &ModifiedCylinder) -> Vector {
+    let axis = (link.end() - link.start()).normalize_or(Vector::X);
+    let side = if random.chance(0.5) { axis.any_orthonormal_vector() } else { across(random, axis) };
+    let end = if random.chance(0.5) { link.start() } else { link.end() };
+    let point = end + side * (link.radius() * [0.0, 0.5, 1.0, 1.0, 2.0][random.index(5)]);
+    match random.index(3) {
+        0 => point + axis * random.log_between(1e-16, 1e-3) * [1.0, -1.0][random.index(2)],
+        1 => point + side * random.log_between(1e-16, 1e-3) * [1.0, -1.0][random.index(2)],
+        _ => point,
+    }
+}
+
+/// A unit vector across another.
+fn across(random: &mut Random, axis: Vector) -> Vector {
+    axis.cross(random.direction()).normalize_or(axis.any_orthonormal_vector())
 }
 
 /// How far `link` reaches along `direction`, by the support map that `tests/host/shape.rs` checks.
@@ -35,6 +55,14 @@ pub fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
     let origin = point_near(random, link);
     let target = surface_point(random, link);
     let axis = link.end() - link.start();
+    // Along the barrel, grazing it or its rims, or in the plane of a cap.
+    if random.chance(0.5) && axis != Vector::ZERO {
+        let side = across(random, axis.normalize());
+        let seam = on_a_seam(random, link);
+        let way = [axis.normalize(), side, axis.normalize().cross(side)][random.index(3)];
+        let back = [0.0, 1.0, 3.0][random.index(3)];
+        return Ray::new(seam - way * back, way * [1.0, 0.5, 3.0][random.index(3)]);
+    }
     let direction = match random.index(5) {
         0 if axis != Vector::ZERO => axis * if random.chance(0.5) { 1.0 } else { -1.0 },
         1 => axis.cross(random.direction()) + random.direction() * 1e-9,
