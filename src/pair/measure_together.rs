@@ -76,7 +76,10 @@ fn report(link: &PlacedLink, triangle: u32, answers: &Answers, lane: usize) -> N
 }
 
 /// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
-fn narrowed(level: Level, count: usize) -> Level {
+fn narrowed(
+    level: Level,
+    #[cfg_attr(not(any(target_arch = "x86", target_arch = "x86_64")), expect(unused))] count: usize,
+) -> Level {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if 2 * count <= TOGETHER
         && let Some(avx2) = level.as_avx2()

@@ -1,0 +1,8 @@
+// Runs a program that was compiled for wasm32-wasip1: `node wasi.mjs program.wasm`.
+
+import { readFile } from "node:fs/promises";
+import { WASI } from "node:wasi";
+
+const wasi = new WASI({ version: "preview1" });
+const program = await WebAssembly.compile(await readFile(process.argv[2]));
+wasi.start(await WebAssembly.instantiate(program, wasi.getImportObject()));
