@@ -27,7 +27,7 @@ pub fn plane_disc<T: Scalar>(
 
 /// The disc's point nearest to a plane.
 #[derive(Clone, Copy)]
-pub(crate) struct Nearest<T> {
+pub(crate) struct NearestOnPlane<T> {
     pub point: Vec3<T>,
     pub distance: T,
 }
@@ -39,7 +39,7 @@ pub(crate) fn from_centre<T: Scalar>(
     plane_normal: Vec3<T>,
     disc_normal: Vec3<T>,
     radius: T,
-) -> Nearest<T> {
+) -> NearestOnPlane<T> {
     let radial = plane_normal.along(disc_normal, -plane_normal.dot(disc_normal));
     let slope = radial.norm();
     // How far out along the radial direction the plane is met, unless the rim comes first.
@@ -48,7 +48,7 @@ pub(crate) fn from_centre<T: Scalar>(
     let direction = radial * slope.one().over(slope);
     // Back into the disc's plane: a remainder as short as its own rounding points anywhere.
     let direction = direction.along(disc_normal, -direction.dot(disc_normal));
-    Nearest {
+    NearestOnPlane {
         point: direction * height.lt(height.zero()).select(-out, out),
         distance: (-radius).mul_add(slope, reach).max(reach.zero()),
     }

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use crate::query::contacts::{LocalMinima, RobotContacts, Wall};
 use crate::robot::Chain;
-use crate::search::exhaustive::{Aim, Kernels, Pass, Triangles};
+use crate::search::exhaustive::{Kernels, Pass, Sought, Triangles};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -112,7 +112,11 @@ impl<T: SearchPrecision> Exhaustive<T> {
         self.work
     }
 
-    fn run<'a>(&mut self, robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>, aim: Aim) {
+    fn run<'a>(
+        &mut self,
+        robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
+        aim: Sought,
+    ) {
         self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
     }
 
@@ -121,7 +125,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
     fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
-        aim: Aim,
+        aim: Sought,
         out: &mut [Result<A, ProximityError>],
         mut answer: impl FnMut(&Self, PlacedRobot, usize, &mut Result<A, ProximityError>),
     ) {
@@ -173,7 +177,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        self.run(once(Ok(robot)), Aim::EachLink);
+        self.run(once(Ok(robot)), Sought::EachLink);
         out.extend(self.pass.answers(0));
         Ok(())
     }
@@ -183,12 +187,12 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        self.run(once(Ok(robot)), Aim::Least(bound));
+        self.run(once(Ok(robot)), Sought::Least(bound));
         Ok(self.least(0))
     }
 
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
-        self.run(once(Ok(robot)), Aim::Within(margin));
+        self.run(once(Ok(robot)), Sought::Within(margin));
         Ok(self.pass.is_clear(0))
     }
 
@@ -203,7 +207,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
             let end = first + count;
-            *work += pass.run(level, culling, triangles, once(Ok(robot)), first..end, Aim::Every(margin));
+            *work += pass.run(level, culling, triangles, once(Ok(robot)), first..end, Sought::Every(margin));
             let Some(within) = pass.within() else {
                 count = count.div_ceil(2);
                 continue;
@@ -224,7 +228,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(Vec::new()));
-        self.run_batch(robots, Aim::EachLink, out, |engine, _, number, out| {
+        self.run_batch(robots, Sought::EachLink, out, |engine, _, number, out| {
             let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
             links.clear();
             links.extend(engine.pass.answers(number));
@@ -239,7 +243,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(LinkProximity::unanswered()));
-        self.run_batch(robots, Aim::Least(Real::INFINITY), out, |engine, robot, number, out| {
+        self.run_batch(robots, Sought::Least(Real::INFINITY), out, |engine, robot, number, out| {
             let least = engine.least(number);
             *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), robot)));
         });
@@ -253,7 +257,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(false));
-        self.run_batch(robots, Aim::Within(margin), out, |engine, _, number, out| {
+        self.run_batch(robots, Sought::Within(margin), out, |engine, _, number, out| {
             *out = Ok(engine.pass.is_clear(number));
         });
         Ok(())

@@ -1,7 +1,7 @@
 //! From robots to answers: the links go to the device, and what it leaves in question is measured here.
 
 use super::GpuExhaustive;
-use super::candidates::Candidate;
+use super::candidates::CandidateTriangle;
 use super::link::DeviceLink;
 use super::measure::{least_distance, nearest_of, nearest_of_all};
 use super::mesh::DeviceMesh;
@@ -51,7 +51,7 @@ impl GpuExhaustive {
     }
 
     /// What the device knows of a link: its candidates, if it could tell all that matter.
-    fn candidates(&self, place: usize) -> Option<(&DeviceLink, &[Candidate])> {
+    fn candidates(&self, place: usize) -> Option<(&DeviceLink, &[CandidateTriangle])> {
         let number = self.links[place].1?;
         let link = &self.device_links[number];
         let (candidates, too_many) = self.query.candidates(number);

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// A triangle that may be the nearest, and its distance from the axis as the device computed it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
+pub(super) struct CandidateTriangle {
     pub triangle: u32,
     pub distance: Real,
 }
@@ -18,7 +18,7 @@ pub(super) struct Candidate {
 /// The candidates of all links.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
-    all: Vec<Candidate>,
+    all: Vec<CandidateTriangle>,
     links: Vec<OfLink>,
 }
 
@@ -36,7 +36,7 @@ impl Candidates {
     }
 
     /// The candidates of a link by triangle, and whether there are more.
-    pub(super) fn of(&self, link: usize) -> (&[Candidate], bool) {
+    pub(super) fn of(&self, link: usize) -> (&[CandidateTriangle], bool) {
         let OfLink { range, too_many } = &self.links[link];
         (&self.all[range.clone()], *too_many)
     }
@@ -72,7 +72,7 @@ impl Candidates {
                 let computed = precision.read(&distances[slot * slot_bytes..][..slot_bytes]);
                 for (place, distance) in computed.take(count as usize).enumerate() {
                     let triangle = part.first + word(first + 2 + place);
-                    self.all.push(Candidate { triangle, distance });
+                    self.all.push(CandidateTriangle { triangle, distance });
                 }
             }
             // They come in any order.

@@ -15,12 +15,12 @@ pub(super) struct DeviceLink {
     pub record: LinkRecord,
     /// What a triangle's distance from the axis must not exceed to be of interest.
     pub limit: f32,
-    searched: Searched,
+    searched: DeviceSearch,
 }
 
 /// A link in the precision of the search.
 #[derive(Debug)]
-enum Searched {
+enum DeviceSearch {
     Single(SearchLink<f32>),
     Double(SearchLink<f64>),
 }
@@ -35,15 +35,15 @@ impl DeviceLink {
         precision: Precision,
     ) -> Option<Self> {
         Some(match precision {
-            Precision::F32 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Single)?,
-            Precision::F64 => Self::of(SearchLink::new(link, frame)?, bound, Searched::Double)?,
+            Precision::F32 => Self::of(SearchLink::new(link, frame)?, bound, DeviceSearch::Single)?,
+            Precision::F64 => Self::of(SearchLink::new(link, frame)?, bound, DeviceSearch::Double)?,
         })
     }
 
     fn of<E: Lane>(
         link: SearchLink<E>,
         bound: Option<Real>,
-        searched: impl FnOnce(SearchLink<E>) -> Searched,
+        searched: impl FnOnce(SearchLink<E>) -> DeviceSearch,
     ) -> Option<Self> {
         let number = |value: E| -> Real { value.into() };
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
@@ -72,8 +72,8 @@ impl DeviceLink {
     /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU computed.
     pub(super) fn at_least(&self, distance: Real) -> Real {
         match &self.searched {
-            Searched::Single(link) => link.at_least(distance),
-            Searched::Double(link) => link.at_least(distance),
+            DeviceSearch::Single(link) => link.at_least(distance),
+            DeviceSearch::Double(link) => link.at_least(distance),
         }
     }
 

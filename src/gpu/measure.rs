@@ -1,13 +1,13 @@
 //! Triangles measured on the CPU in double precision: the device's candidates, or all.
 
-use super::candidates::Candidate;
+use super::candidates::CandidateTriangle;
 use crate::mesh::Mesh;
 use crate::pair::{Best, Nearest, PlacedLink};
 use crate::threads::each;
 use parry3d_f64::math::Real;
 
 /// The least distance that the device computed.
-pub(super) fn least_distance(candidates: &[Candidate]) -> Real {
+pub(super) fn least_distance(candidates: &[CandidateTriangle]) -> Real {
     candidates.iter().map(|candidate| candidate.distance).fold(Real::INFINITY, Real::min)
 }
 

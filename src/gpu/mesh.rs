@@ -16,13 +16,13 @@ const FACE: u64 = 4 * FACE_VECTORS as u64;
 /// The mesh, moved to its centre and near one.
 #[derive(Debug)]
 pub(super) struct DeviceMesh {
-    pub parts: Vec<Part>,
+    pub parts: Vec<DevicePart>,
     is_current: bool,
 }
 
 /// Consecutive triangles.
 #[derive(Debug)]
-pub(super) struct Part {
+pub(super) struct DevicePart {
     /// The place of the first in the mesh, and how many there are.
     pub first: u32,
     pub triangles: u32,
@@ -43,7 +43,7 @@ impl DeviceMesh {
         let mut parts = Vec::new();
         let mut first = 0;
         for part in mesh.indices().chunks(most.min(fit).max(1)) {
-            parts.push(Part::new(gpu, first, part, &mut places));
+            parts.push(DevicePart::new(gpu, first, part, &mut places));
             first += part.len() as u32;
         }
         Self { parts, is_current: false }
@@ -85,7 +85,7 @@ impl DeviceMesh {
     }
 }
 
-impl Part {
+impl DevicePart {
     /// `places` says for each vertex of the mesh where it is in the part; none is set before or after.
     fn new(gpu: &Opened, first: u32, triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
         let indices = triangles.as_flattened();

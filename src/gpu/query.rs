@@ -7,7 +7,7 @@
 //! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near comes back.
 
 use super::buffers::Buffers;
-use super::candidates::{Candidate, Candidates};
+use super::candidates::{CandidateTriangle, Candidates};
 use super::layout::Round;
 use super::link::DeviceLink;
 use super::mesh::DeviceMesh;
@@ -46,7 +46,7 @@ impl Query {
     }
 
     /// The candidates of a link of the last query by triangle, and whether there are more.
-    pub(super) fn candidates(&self, link: usize) -> (&[Candidate], bool) {
+    pub(super) fn candidates(&self, link: usize) -> (&[CandidateTriangle], bool) {
         self.candidates.of(link)
     }
 

@@ -26,7 +26,7 @@ const SAME_NORMAL: Real = 1.0 - 1e-10;
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// The link and the other shape's place, in the frame of the pair.
-struct Placed<'a> {
+struct PlacedConvex<'a> {
     link: ModifiedCylinder,
     axis: Option<Vector>,
     other: &'a dyn Shape,
@@ -47,7 +47,7 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         } else {
             (self.link.transformed(self.pos12), self.shapes[0], Pose::IDENTITY)
         };
-        let placed = Placed { link, axis: unit(link.end() - link.start()), other, pose };
+        let placed = PlacedConvex { link, axis: unit(link.end() - link.start()), other, pose };
         let found = (self.gap(contact.normal1), contact.normal1);
         let mut best = found;
         let mut consider = |n: Vector| best = self.wider(best, n);
@@ -72,7 +72,7 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
     }
 
     /// Where the link touches the other shape once they are moved apart, by going from the one to the other and back.
-    fn touching(&self, placed: &Placed, (gap, normal): Gap) -> Vector {
+    fn touching(&self, placed: &PlacedConvex, (gap, normal): Gap) -> Vector {
         // The other is moved away from the link.
         let (out, toward_second) =
             if self.link_is_first { (normal, Vector::ZERO) } else { (-normal, normal * gap) };
@@ -101,7 +101,7 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
     }
 }
 
-impl Placed<'_> {
+impl PlacedConvex<'_> {
     /// The normals of the other shape's faces, the link's axis, and what is perpendicular to it and to an edge.
     fn faces_and_products(&self, consider: &mut impl FnMut(Vector)) {
         let rotation = self.pose.rotation;

@@ -4,7 +4,7 @@ use super::composite::CompositePair;
 use super::convex::ConvexPair;
 use super::elements::{self, FieldPair};
 use super::link_pair::LinkPair;
-use super::link_triangle::LinkTriangle;
+use super::link_triangle::LinkTrianglePair;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
@@ -285,7 +285,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 Ok(hit.map(ShapeCastHit::swapped))
             }
             Parts::None => {
-                if let Some(pair) = LinkTriangle::of(g1, g2)? {
+                if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
                     return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
                 }
                 if let Some(hit) = straight_cast::cast_convex(self, pos12, local_vel12, (g1, g2), options)? {

@@ -8,12 +8,12 @@ use parry3d_f64::math::{Real, Vector};
 
 /// A point of a link's axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
+pub(super) struct AxisFoot {
     /// How far it is along the axis from the nearest flat end; infinite if both are round.
     pub to_flat: Real,
 }
 
-impl Foot {
+impl AxisFoot {
     pub fn new(link: &ModifiedCylinder, on_axis: Vector) -> Self {
         let axis = axis_or_x(link);
         Self { to_flat: to_flat(on_axis - link.start(), link.end() - on_axis, axis, link.flat()) }

@@ -23,12 +23,12 @@ const LEANS: Real = 1e-9;
 
 /// Which of the two shapes of a pair the chain is.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum WhichShape {
     First,
     Second,
 }
 
-impl Side {
+impl WhichShape {
     /// The link and the part of the other shape that a manifold is between.
     fn names<M, C>(self, manifold: &ContactManifold<M, C>) -> (usize, u32) {
         let (link, other) = match self {
@@ -46,7 +46,7 @@ impl Side {
 /// Takes the points that joints hide out of the manifolds of the chain of these `links`.
 pub(super) fn hide_inner_points<M, C>(
     links: &[ModifiedCylinder],
-    side: Side,
+    side: WhichShape,
     prediction: Real,
     manifolds: &mut [ContactManifold<M, C>],
 ) {
@@ -74,7 +74,7 @@ pub(super) fn hide_inner_points<M, C>(
             let manifold = &manifolds[m];
             let (index, _) = side.names(manifold);
             let point = &manifold.points[p];
-            let at = if side == Side::First { point.local_p1 } else { point.local_p2 };
+            let at = if side == WhichShape::First { point.local_p1 } else { point.local_p2 };
             let Some(link) = links.get(index) else { continue };
             let is_covered = |other: usize| other != index && is_inside(at, &links[other], link);
             if leans_out(link, at, side.normal(manifold)) && touching.iter().any(|&other| is_covered(other)) {

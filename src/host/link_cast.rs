@@ -18,7 +18,7 @@
 use super::axial::unit;
 use super::closing::{Closing, Reach, Support};
 use super::footing::{centre, outward};
-use super::link_triangle::{self, LinkTriangle};
+use super::link_triangle::{self, LinkTrianglePair};
 use super::range::in_range;
 use super::robot_pair::links_of;
 use super::straight_cast::iterated_contact;
@@ -62,27 +62,27 @@ pub(super) fn cast(
 }
 
 /// The links of the robot, the wall, and whether the robot is first.
-type RobotAndWall<'a> = (&'a [ModifiedCylinder], Wall<'a>, bool);
+type RobotAndWall<'a> = (&'a [ModifiedCylinder], MovingWall<'a>, bool);
 
 fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<'a>>, Unsupported> {
-    if let Some(pair) = LinkTriangle::of(g1, g2)? {
+    if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
         let link = std::slice::from_ref(pair.link);
-        return Ok(Some((link, Wall::Triangle(pair.triangle), pair.link_is_first)));
+        return Ok(Some((link, MovingWall::Triangle(pair.triangle), pair.link_is_first)));
     }
     for (robot, wall, robot_is_first) in [(g1, g2, true), (g2, g1, false)] {
         let Some(links) = links_of(robot) else { continue };
         if let Some(half_space) = wall.as_halfspace() {
             let normal = unit(half_space.normal).ok_or(Unsupported)?;
-            return Ok(Some((links, Wall::HalfSpace(normal), robot_is_first)));
+            return Ok(Some((links, MovingWall::HalfSpace(normal), robot_is_first)));
         }
         if let (Some(link), Some(support)) = (robot.as_shape(), wall.as_support_map()) {
-            return Ok(Some((std::slice::from_ref(link), Wall::Convex(wall, support), robot_is_first)));
+            return Ok(Some((std::slice::from_ref(link), MovingWall::Convex(wall, support), robot_is_first)));
         }
     }
     Ok(None)
 }
 
-enum Wall<'a> {
+enum MovingWall<'a> {
     Triangle(&'a Triangle),
     /// Its unit normal.
     HalfSpace(Vector),
@@ -93,14 +93,14 @@ enum Wall<'a> {
 struct Cast<'a, D> {
     dispatcher: &'a D,
     robot: &'a NonlinearRigidMotion,
-    wall: Wall<'a>,
+    wall: MovingWall<'a>,
     motion: &'a NonlinearRigidMotion,
     start_time: Real,
     end_time: Real,
 }
 
 /// A link and the plane that holds the wall, at one moment.
-struct Moment {
+struct CastMoment {
     time: Real,
     /// Of the robot and of the wall, in the world.
     poses: [Pose; 2],
@@ -145,7 +145,11 @@ impl<D: QueryDispatcher> Cast<'_, D> {
     }
 
     /// The first moment from this on at which the two touch.
-    fn advance(&self, link: &ModifiedCylinder, start: Moment) -> Result<Option<ShapeCastHit>, Unsupported> {
+    fn advance(
+        &self,
+        link: &ModifiedCylinder,
+        start: CastMoment,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let mut now = start;
         for _ in 0..MOST_STEPS {
             if now.distance <= now.touching {
@@ -165,7 +169,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         Ok(Some(now.hit(ShapeCastStatus::OutOfIterations)))
     }
 
-    fn at(&self, time: Real, link: &ModifiedCylinder) -> Result<Moment, Unsupported> {
+    fn at(&self, time: Real, link: &ModifiedCylinder) -> Result<CastMoment, Unsupported> {
         let poses = [self.robot.position_at_time(time), self.motion.position_at_time(time)];
         let pos12 = poses[0].inv_mul(&poses[1]);
         let mut largest = link.radius();
@@ -175,7 +179,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         let size = link.length() + link.radius();
         let (distance, on_link, on_wall, normal, share);
         match self.wall {
-            Wall::Triangle(triangle) => {
+            MovingWall::Triangle(triangle) => {
                 let corners = triangle.vertices().map(|vertex| pos12 * vertex);
                 for corner in corners {
                     largest = largest.max(in_range(corner)?);
@@ -184,13 +188,13 @@ impl<D: QueryDispatcher> Cast<'_, D> {
                 (distance, on_link, normal) = (contact.distance, contact.on_link, contact.normal);
                 (on_wall, share) = (contact.on_triangle, TOUCHING);
             }
-            Wall::HalfSpace(plane) => {
+            MovingWall::HalfSpace(plane) => {
                 normal = pos12.rotation * -plane;
                 on_link = link.local_support_point_toward(normal);
                 distance = (pos12.translation - on_link).dot(normal);
                 (on_wall, share) = (on_link + normal * distance, TOUCHING);
             }
-            Wall::Convex(shape, support) => {
+            MovingWall::Convex(shape, support) => {
                 share = ITERATED;
                 let contact = iterated_contact(self.dispatcher, link, (shape, support), &pos12)?;
                 (on_link, normal) = (contact.on_link, contact.normal);
@@ -209,11 +213,11 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         if !(normal.is_finite() && distance.is_finite()) {
             return Err(Unsupported);
         }
-        Ok(Moment { time, poses, distance, touching, on_link, on_wall, normal })
+        Ok(CastMoment { time, poses, distance, touching, on_link, on_wall, normal })
     }
 
     /// A time until which the link stays before the wall's plane, at most `span`.
-    fn clear_for(&self, link: &ModifiedCylinder, now: &Moment, span: Real) -> Real {
+    fn clear_for(&self, link: &ModifiedCylinder, now: &CastMoment, span: Real) -> Real {
         let [robot_pose, wall_pose] = now.poses;
         let normal = robot_pose.rotation * now.normal;
         let axis = robot_pose.rotation * link.axis();
@@ -255,7 +259,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
     }
 }
 
-impl Moment {
+impl CastMoment {
     fn hit(&self, status: ShapeCastStatus) -> ShapeCastHit {
         let link_to_wall = self.poses[1].inv_mul(&self.poses[0]);
         ShapeCastHit {

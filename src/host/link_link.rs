@@ -10,7 +10,7 @@
 //! other link, have no closed form here.
 
 use super::axial::unit;
-use super::foot::Foot;
+use super::foot::AxisFoot;
 use super::link_triangle::closest;
 use crate::distance::depth::{Body, LinkLink};
 use crate::distance::{Vec3, segment_segment};
@@ -61,7 +61,7 @@ pub(super) fn touch(
         return Answer::Apart;
     }
     let is_capsule = |link: &ModifiedCylinder, at| {
-        let to_flat = Foot::new(link, at).to_flat;
+        let to_flat = AxisFoot::new(link, at).to_flat;
         to_flat > rounding - dist.min(0.0) && (to_flat == Real::INFINITY || -dist <= link.radius())
     };
     if is_capsule(first, feet[0]) && is_capsule(second, feet[1]) {
@@ -82,7 +82,7 @@ pub(super) fn touch(
         if dist > margin + rounding {
             return Answer::Apart;
         }
-        let is_exact = Foot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
+        let is_exact = AxisFoot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
         if let (Some(out), true) = (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent) {
             let out = if apart > FINE_DIRECTION * extent {
                 out

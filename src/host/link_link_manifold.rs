@@ -10,7 +10,7 @@ use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
 use super::link_link::{self, Answer};
 use super::link_pair::LinkPair;
-use super::meeting::{Meeting as OneSided, ROUNDING};
+use super::meeting::{Meeting, ROUNDING};
 use super::{footing, rim};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -42,7 +42,7 @@ pub(super) fn update<M, C: Default + Copy>(
     let normal = touch.normal;
 
     let before = std::mem::take(&mut manifold.points);
-    let mut meeting = Meeting { points: Vec::new(), extent };
+    let mut meeting = LinkLinkMeeting { points: Vec::new(), extent };
     if first.axis().dot(second.axis()).abs() >= ALONG {
         meeting.add_ends(&first, &second, normal, false);
         meeting.add_ends(&second, &first, -normal, true);
@@ -69,20 +69,20 @@ fn from(link: &ModifiedCylinder, origin: Vector) -> ModifiedCylinder {
     link.transformed(&Pose::from_translation(-origin))
 }
 
-struct Point {
+struct LinkLinkPoint {
     on_first: Vector,
     dist: Real,
     names: [PackedFeatureId; 2],
 }
 
 /// The contact points of two links so far.
-struct Meeting {
-    points: Vec<Point>,
+struct LinkLinkMeeting {
+    points: Vec<LinkLinkPoint>,
     /// The largest coordinate. Points that are closer together than [`SAME_POINT`] of it are one: the nearest.
     extent: Real,
 }
 
-impl Meeting {
+impl LinkLinkMeeting {
     /// Case 1: the ends of one link's crest over the other's barrel, `normal` out of the one.
     fn add_ends(
         &mut self,
@@ -114,7 +114,7 @@ impl Meeting {
         let faces = (0..2).any(|end| footing::faces_flat(link, normal, end));
         let Some(lateral) = footing::lateral(other, -normal).filter(|_| faces) else { return };
         let [v, w] = [other.start(), other.end()].map(|centre| centre + lateral * other.radius());
-        let mut below = OneSided::new(link, [v, w, w], normal, self.extent);
+        let mut below = Meeting::new(link, [v, w, w], normal, self.extent);
         rim::collect(&mut below);
         for point in below.points {
             let names = [point.of_link, feature::BARREL.into()];
@@ -142,7 +142,7 @@ impl Meeting {
         if !(dist.is_finite() && on_first.is_finite()) {
             return;
         }
-        let (apart, point) = (SAME_POINT * self.extent, Point { on_first, dist, names });
+        let (apart, point) = (SAME_POINT * self.extent, LinkLinkPoint { on_first, dist, names });
         match self.points.iter_mut().find(|point| (point.on_first - on_first).length() <= apart) {
             Some(same) if dist < same.dist - ROUNDING * self.extent => *same = point,
             Some(_) => {}

@@ -18,7 +18,7 @@
 //!    and the touching points are the contact's.
 
 use super::axial::{power_of_two, unit};
-use super::foot::Foot;
+use super::foot::AxisFoot;
 pub(super) use crate::distance::depth::face_normal;
 use crate::distance::depth::{self, ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, triangle_modified_cylinder};
@@ -28,13 +28,13 @@ use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, Triangle};
 
 /// A link and a finite triangle, in either order.
-pub(super) struct LinkTriangle<'a> {
+pub(super) struct LinkTrianglePair<'a> {
     pub link: &'a ModifiedCylinder,
     pub triangle: &'a Triangle,
     pub link_is_first: bool,
 }
 
-impl<'a> LinkTriangle<'a> {
+impl<'a> LinkTrianglePair<'a> {
     /// The pair, if the shapes are one.
     ///
     /// # Errors
@@ -133,7 +133,7 @@ impl Local {
         let on_axis = Vector::from(to_axis.point1);
         let from_axis = Vector::from(to_axis.point2) - on_axis;
         let outward = unit(from_axis);
-        let to_flat = Foot::new(link, on_axis).to_flat;
+        let to_flat = AxisFoot::new(link, on_axis).to_flat;
         let pair = depth::LinkTriangle::new(Link::new(link.end().into(), radius, link.flat()), self.triangle);
 
         if let (Some(outward), true) = (outward, to_flat > ROUNDING) {

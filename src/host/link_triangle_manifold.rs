@@ -16,7 +16,7 @@
 //! matched by feature.
 
 use super::axial::unit;
-use super::link_triangle::{LinkTriangle, Local};
+use super::link_triangle::{LinkTrianglePair, Local};
 use super::meeting::Meeting;
 use super::{crest, feature, footing, rim};
 use parry3d_f64::math::{Pose, Real};
@@ -34,7 +34,7 @@ const TURNED: Real = 1e-9;
 /// [`Unsupported`] for numbers out of range.
 pub(super) fn update<M, C: Default + Copy>(
     pos12: &Pose,
-    pair: &LinkTriangle,
+    pair: &LinkTrianglePair,
     constraints: (Option<&dyn NormalConstraints>, Option<&dyn NormalConstraints>),
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,

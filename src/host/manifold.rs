@@ -14,8 +14,8 @@
 //!   shapes have changed.
 
 use super::dispatcher::ContinuumDispatcher;
-use super::joint::Side;
-use super::link_triangle::LinkTriangle;
+use super::joint::WhichShape;
+use super::link_triangle::LinkTrianglePair;
 use super::parts::{check_scale, has_parts};
 use super::range::{check_margin, check_pose};
 use super::robot_pair::links_of;
@@ -64,7 +64,7 @@ where
                 leave_out_beyond(prediction, manifolds);
             }
         }
-        for (shape, side) in [(g1, Side::First), (g2, Side::Second)] {
+        for (shape, side) in [(g1, WhichShape::First), (g2, WhichShape::Second)] {
             if let Some(chain) = shape.as_shape::<Chain>() {
                 joint::hide_inner_points(chain.links(), side, prediction, manifolds);
             }
@@ -88,7 +88,7 @@ where
         let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
         let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
-        if let Some(pair) = LinkTriangle::of(g1, g2)? {
+        if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
             return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);
         }
         if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {

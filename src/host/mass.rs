@@ -26,7 +26,7 @@ use parry3d_f64::math::{Real, Rotation, Vector};
 use std::f64::consts::PI;
 
 /// One row of the table: mass, centre along the axis from its middle, squared radii of gyration.
-struct Piece {
+struct MassOfPiece {
     mass: Real,
     centre: Real,
     axial: Real,
@@ -36,20 +36,20 @@ struct Piece {
 /// Mass properties at uniform `density`. A wire (radius 0) has no mass.
 pub(super) fn mass_properties(link: &ModifiedCylinder, density: Real) -> MassProperties {
     let (axis, l, r) = (axis_or_x(link), link.length(), link.radius());
-    let half_ball = |cap, outward: Real| Piece {
+    let half_ball = |cap, outward: Real| MassOfPiece {
         mass: if cap == Cap::Round { 2.0 / 3.0 * r } else { 0.0 },
         centre: outward * (0.5 * l + 0.375 * r),
         axial: 0.4 * r * r,
         transverse: 83.0 / 320.0 * r * r,
     };
     let cylinder =
-        Piece { mass: l, centre: 0.0, axial: 0.5 * r * r, transverse: 0.25 * r * r + l * l / 12.0 };
+        MassOfPiece { mass: l, centre: 0.0, axial: 0.5 * r * r, transverse: 0.25 * r * r + l * l / 12.0 };
     let [start, end] = link.caps();
     let pieces = [cylinder, half_ball(start, -1.0), half_ball(end, 1.0)];
 
     // Weighted by shares of the mass rather than masses, which keeps the products shorter.
     let column: Real = pieces.iter().map(|piece| piece.mass).sum();
-    let mean = |of: &dyn Fn(&Piece) -> Real| -> Real {
+    let mean = |of: &dyn Fn(&MassOfPiece) -> Real| -> Real {
         pieces.iter().map(|piece| product(piece.mass / column, of(piece))).sum()
     };
     let centre = mean(&|piece| piece.centre);

@@ -19,7 +19,7 @@ pub(super) const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A point of the link, the distance of the triangle's point from it along the normal, and the features that
 /// they belong to.
-pub(super) struct Point {
+pub(super) struct MeetingPoint {
     pub on_link: Vector,
     pub dist: Real,
     pub of_link: PackedFeatureId,
@@ -37,7 +37,7 @@ pub(super) struct Meeting<'a> {
     pub size: Real,
     /// Distances that differ by no more are equal.
     pub rounding: Real,
-    pub points: Vec<Point>,
+    pub points: Vec<MeetingPoint>,
 }
 
 impl<'a> Meeting<'a> {
@@ -71,7 +71,7 @@ impl<'a> Meeting<'a> {
         if !(dist.is_finite() && on_link.is_finite()) {
             return;
         }
-        let (apart, point) = (SAME_POINT * self.size, Point { on_link, dist, of_link, of_triangle });
+        let (apart, point) = (SAME_POINT * self.size, MeetingPoint { on_link, dist, of_link, of_triangle });
         match self.points.iter_mut().find(|point| (point.on_link - on_link).length() <= apart) {
             Some(same) if dist < same.dist - self.rounding => *same = point,
             Some(_) => {}

@@ -43,18 +43,18 @@ pub(super) fn search(
             let nearest = best.nearest()?;
             // A cost of 0 makes the hierarchy leave out everything else.
             let cost = if until == Until::FirstWithinBound { 0.0 } else { nearest.distance };
-            Some(Candidate { cost, nearest })
+            Some(LeafCost { cost, nearest })
         },
     );
     if all_finite.get() { Ok(found.map(|(_, candidate)| candidate.nearest)) } else { Err(TriangleNotFinite) }
 }
 
-struct Candidate {
+struct LeafCost {
     cost: Real,
     nearest: Nearest,
 }
 
-impl BvhLeafCost for Candidate {
+impl BvhLeafCost for LeafCost {
     fn cost(&self) -> Real {
         self.cost
     }

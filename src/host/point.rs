@@ -23,7 +23,7 @@ use parry3d_f64::query::{PointProjection, PointQuery};
 use parry3d_f64::shape::FeatureId;
 
 /// The point of a link's surface that is closest to a query point.
-pub(super) struct Nearest {
+pub(super) struct NearestOnSurface {
     /// Distance to the surface, negative inside.
     pub signed_distance: Real,
     pub is_inside: bool,
@@ -32,7 +32,7 @@ pub(super) struct Nearest {
 }
 
 /// The closest point of the surface; nothing when `point` is not finite.
-pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest> {
+pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<NearestOnSurface> {
     let (frame, from_start) = AxialFrame::around(link, point)?;
     let from_end = from_start - frame.span;
     let z = from_start.dot(frame.axis);
@@ -59,7 +59,7 @@ pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest>
     };
     let k = away.length();
     let outward = outward.unwrap_or_else(|| perpendicular(frame.axis));
-    let mut best = Nearest {
+    let mut best = NearestOnSurface {
         signed_distance: frame.restore(k - frame.radius),
         is_inside: k <= frame.radius,
         point: base + outward * link.radius(),
@@ -81,7 +81,13 @@ pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<Nearest>
 }
 
 /// Case 1: the point at `offset` from the centre of a flat end, `height` above its disc.
-fn above_disc(frame: &AxialFrame, centre: Vector, offset: Vector, height: Real, end: usize) -> Nearest {
+fn above_disc(
+    frame: &AxialFrame,
+    centre: Vector,
+    offset: Vector,
+    height: Real,
+    end: usize,
+) -> NearestOnSurface {
     let lateral = offset - frame.axis * offset.dot(frame.axis);
     let rho = lateral.length();
     let excess = rho - frame.radius;
@@ -90,7 +96,7 @@ fn above_disc(frame: &AxialFrame, centre: Vector, offset: Vector, height: Real, 
     } else {
         (lateral, 0.0, feature::CAP[end])
     };
-    Nearest {
+    NearestOnSurface {
         signed_distance: frame.restore((height * height + past_rim * past_rim).sqrt()),
         is_inside: false,
         point: centre + frame.restore(on_disc),

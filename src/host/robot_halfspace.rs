@@ -27,7 +27,7 @@ pub(super) struct RobotHalfSpace<'a> {
 }
 
 /// The lowest point of a robot, in the half-space's frame.
-struct Lowest {
+struct LowestPoint {
     link: u32,
     height: Real,
     point: Vector,
@@ -132,8 +132,8 @@ impl<'a> RobotHalfSpace<'a> {
         }))
     }
 
-    fn lowest(&self) -> Result<Lowest, Unsupported> {
-        let mut lowest: Option<Lowest> = None;
+    fn lowest(&self) -> Result<LowestPoint, Unsupported> {
+        let mut lowest: Option<LowestPoint> = None;
         for (index, link) in self.links.iter().enumerate() {
             let link = link.transformed(&self.pose);
             in_range(link.start())?;
@@ -141,7 +141,7 @@ impl<'a> RobotHalfSpace<'a> {
             let point = link.local_support_point_toward(-self.normal);
             let height = self.normal.dot(point);
             if lowest.as_ref().is_none_or(|lowest| height < lowest.height) {
-                lowest = Some(Lowest { link: index as u32, height, point });
+                lowest = Some(LowestPoint { link: index as u32, height, point });
             }
         }
         lowest.filter(|lowest| lowest.height.is_finite()).ok_or(Unsupported)

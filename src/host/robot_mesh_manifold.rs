@@ -5,7 +5,7 @@
 //! manifold of a link and a triangle keeps what the host has stored with it, and is found again by their ids;
 //! so nothing is lost when the robot changes its shape. Pairs that do not meet leave no manifold behind.
 
-use super::link_triangle::LinkTriangle;
+use super::link_triangle::LinkTrianglePair;
 use super::link_triangle_manifold;
 use super::robot_pair::links_of;
 use parry3d_f64::bounding_volume::BoundingVolume;
@@ -55,7 +55,7 @@ where
             };
             let mut manifold =
                 before.remove(&ids).unwrap_or_else(|| ContactManifold::with_data(ids.0, ids.1, M::default()));
-            let updated = LinkTriangle::new(link, &triangle, robot_is_first).and_then(|pair| {
+            let updated = LinkTrianglePair::new(link, &triangle, robot_is_first).and_then(|pair| {
                 link_triangle_manifold::update(pos12, &pair, constraints, prediction, &mut manifold)
             });
             if let Err(refused) = updated {

@@ -11,14 +11,14 @@
 //! when they part along n; but only if n is known. Points that are close to one another have no direction between them, and
 //! two that may part or not are held.
 //!
-//! They end where the distance is above the target by no more than the wall's [`Wall::TOUCHING`] of the link's size, or by
+//! They end where the distance is above the target by no more than the wall's [`CastWall::TOUCHING`] of the link's size, or by
 //! rounding: the hit is that much early at most, measured along n.
 //!
 //! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. Where these have no volume, as with a
 //! link beside the flat side of a box, it may panic.)
 
 use super::axial::unit;
-use super::link_triangle::{self, LinkContact, LinkTriangle};
+use super::link_triangle::{self, LinkContact, LinkTrianglePair};
 use super::range::{in_range, largest};
 use crate::robot::COORDINATE_LIMIT;
 use crate::robot::ModifiedCylinder;
@@ -34,7 +34,7 @@ const ROUNDING: Real = 64.0 * Real::EPSILON;
 const MOST_STEPS: usize = 200;
 
 /// What a link may meet, in the link's frame.
-trait Wall {
+trait CastWall {
     /// The share of a link's size at which it counts as touching.
     const TOUCHING: Real;
 
@@ -54,14 +54,14 @@ trait Wall {
 /// # Errors
 /// [`Unsupported`] for what is out of range.
 pub(super) fn cast_triangle(
-    pair: &LinkTriangle,
+    pair: &LinkTrianglePair,
     pos12: &Pose,
     local_vel12: Vector,
     options: ShapeCastOptions,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let way = Way::new(pair.link, pair.link_is_first, pos12, local_vel12);
+    let way = WallsWay::new(pair.link, pair.link_is_first, pos12, local_vel12);
     let corners = pair.triangle.vertices().map(|vertex| way.pose * vertex);
-    way.cast(&Corners { link: pair.link, corners }, options)
+    way.cast(&TriangleWall { link: pair.link, corners }, options)
 }
 
 /// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no such pair.
@@ -78,8 +78,8 @@ pub(super) fn cast_convex(
 ) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
     for (robot, shape, link_is_first) in [(g1, g2, true), (g2, g1, false)] {
         if let (Some(link), Some(support)) = (robot.as_shape(), shape.as_support_map()) {
-            let way = Way::new(link, link_is_first, pos12, local_vel12);
-            let wall = Convex { dispatcher, link, shape, support, pose: way.pose };
+            let way = WallsWay::new(link, link_is_first, pos12, local_vel12);
+            let wall = ConvexWall { dispatcher, link, shape, support, pose: way.pose };
             return way.cast(&wall, options).map(Some);
         }
     }
@@ -87,12 +87,12 @@ pub(super) fn cast_convex(
 }
 
 /// A triangle.
-struct Corners<'a> {
+struct TriangleWall<'a> {
     link: &'a ModifiedCylinder,
     corners: [Vector; 3],
 }
 
-impl Wall for Corners<'_> {
+impl CastWall for TriangleWall<'_> {
     const TOUCHING: Real = 1e-9;
 
     fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
@@ -113,7 +113,7 @@ impl Wall for Corners<'_> {
 }
 
 /// A convex shape whose contacts come from iterations.
-struct Convex<'a, D> {
+struct ConvexWall<'a, D> {
     dispatcher: &'a D,
     link: &'a ModifiedCylinder,
     shape: &'a dyn Shape,
@@ -121,7 +121,7 @@ struct Convex<'a, D> {
     pose: Pose,
 }
 
-impl<D: QueryDispatcher> Wall for Convex<'_, D> {
+impl<D: QueryDispatcher> CastWall for ConvexWall<'_, D> {
     const TOUCHING: Real = 1e-6;
 
     fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
@@ -185,7 +185,7 @@ pub(super) fn iterated_contact(
 }
 
 /// A link and the way of a wall, in the link's frame.
-struct Way<'a> {
+struct WallsWay<'a> {
     link: &'a ModifiedCylinder,
     link_is_first: bool,
     /// The wall's.
@@ -193,7 +193,7 @@ struct Way<'a> {
     velocity: Vector,
 }
 
-impl<'a> Way<'a> {
+impl<'a> WallsWay<'a> {
     fn new(link: &'a ModifiedCylinder, link_is_first: bool, pos12: &Pose, local_vel12: Vector) -> Self {
         if link_is_first {
             return Self { link, link_is_first, pose: *pos12, velocity: local_vel12 };
@@ -202,7 +202,7 @@ impl<'a> Way<'a> {
         Self { link, link_is_first, pose, velocity: -(pose.rotation * local_vel12) }
     }
 
-    fn cast<W: Wall>(
+    fn cast<W: CastWall>(
         &self,
         wall: &W,
         options: ShapeCastOptions,
@@ -259,7 +259,7 @@ impl<'a> Way<'a> {
 
     /// Whether the wall, moved so far, has the link behind it for good. Until then it was clear. (A velocity that is all but along
     /// the plane between the two leads far away, where iterations tell nothing any more.)
-    fn has_passed<W: Wall>(&self, wall: &W, shift: Vector, target: Real, largest: Real) -> bool {
+    fn has_passed<W: CastWall>(&self, wall: &W, shift: Vector, target: Real, largest: Real) -> bool {
         let Some(way) = unit(self.velocity) else { return false };
         let passed = wall.begins(way) + shift.dot(way) - self.link.local_support_point(way).dot(way);
         let places = [shift, self.link.start(), self.link.end()].into_iter();

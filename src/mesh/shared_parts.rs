@@ -29,7 +29,7 @@ pub(crate) struct SharedParts {
 
 /// A part of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Part {
+struct SharedPart {
     triangle: u32,
     number: u8,
 }
@@ -48,13 +48,14 @@ struct Rings(Vec<Next>);
 impl SharedParts {
     pub(crate) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         let corners = first_at_same_place(vertices);
-        let corner = |part: Part| corners[indices[part.triangle as usize][usize::from(part.number)] as usize];
+        let corner =
+            |part: SharedPart| corners[indices[part.triangle as usize][usize::from(part.number)] as usize];
         let mut rings = Rings::of_one(indices.len() as u32);
         // A part in the ring around each corner.
         let mut around = vec![None; vertices.len()];
         for triangle in 0..indices.len() as u32 {
             for number in 0..3 {
-                let part = Part { triangle, number };
+                let part = SharedPart { triangle, number };
                 let around = &mut around[corner(part) as usize];
                 match *around {
                     Some(first) => rings.join(first, part),
@@ -63,18 +64,18 @@ impl SharedParts {
             }
         }
         // For each corner the last one from which an edge led to it, and that edge.
-        let mut edges = vec![(NONE, Part { triangle: 0, number: 0 }); vertices.len()];
+        let mut edges = vec![(NONE, SharedPart { triangle: 0, number: 0 }); vertices.len()];
         for (from, &first) in (0..).zip(&around) {
             let mut next = first;
-            while let Some(part @ Part { triangle, number }) = next {
+            while let Some(part @ SharedPart { triangle, number }) = next {
                 let [after, before] = [(number + 1) % 3, (number + 2) % 3];
                 for (end, edge) in [(after, number + 3), (before, before + 3)] {
-                    let to = corner(Part { triangle, number: end });
+                    let to = corner(SharedPart { triangle, number: end });
                     // Each edge once: from its lower end, or where both are one from that at which it begins.
                     if to < from || (to == from && end == before) {
                         continue;
                     }
-                    let edge = Part { triangle, number: edge };
+                    let edge = SharedPart { triangle, number: edge };
                     match &mut edges[to as usize] {
                         (last, first) if *last == from => rings.join(*first, edge),
                         none => *none = (from, edge),
@@ -94,19 +95,19 @@ impl SharedParts {
     /// The other triangles that have a part of a triangle.
     #[inline(always)]
     pub(crate) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
-        self.rings.others(Part { triangle, number: part as u8 }).map(|part| part.triangle)
+        self.rings.others(SharedPart { triangle, number: part as u8 }).map(|part| part.triangle)
     }
 
     /// All triangles that have a part of a triangle, itself first, and which of their parts that is.
     pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
-        let own = Part { triangle, number: part as u8 };
+        let own = SharedPart { triangle, number: part as u8 };
         let all = std::iter::once(own).chain(self.rings.others(own));
         all.map(|part| (part.triangle, usize::from(part.number)))
     }
 
     /// Another triangle that has an edge of a triangle, and the corner that it has beyond the edge.
     pub(crate) fn across(&self, triangle: u32, edge: usize) -> Option<(u32, usize)> {
-        let next = self.rings.next(Part { triangle, number: edge as u8 });
+        let next = self.rings.next(SharedPart { triangle, number: edge as u8 });
         (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
     }
 }
@@ -119,26 +120,29 @@ impl Rings {
     }
 
     #[inline(always)]
-    fn next(&self, Part { triangle, number }: Part) -> Part {
+    fn next(&self, SharedPart { triangle, number }: SharedPart) -> SharedPart {
         let next = &self.0[triangle as usize];
-        Part { triangle: next.triangles[usize::from(number)], number: next.numbers[usize::from(number)] }
+        SharedPart {
+            triangle: next.triangles[usize::from(number)],
+            number: next.numbers[usize::from(number)],
+        }
     }
 
     /// The other parts of a ring.
     #[inline(always)]
-    fn others(&self, own: Part) -> impl Iterator<Item = Part> {
+    fn others(&self, own: SharedPart) -> impl Iterator<Item = SharedPart> {
         let others = successors(Some(self.next(own)), |part| Some(self.next(*part)));
         others.take_while(move |part| *part != own)
     }
 
     /// Makes one ring of the two that hold these parts.
-    fn join(&mut self, one: Part, other: Part) {
+    fn join(&mut self, one: SharedPart, other: SharedPart) {
         let (after_one, after_other) = (self.next(one), self.next(other));
         self.set_next(one, after_other);
         self.set_next(other, after_one);
     }
 
-    fn set_next(&mut self, Part { triangle, number }: Part, to: Part) {
+    fn set_next(&mut self, SharedPart { triangle, number }: SharedPart, to: SharedPart) {
         let next = &mut self.0[triangle as usize];
         next.triangles[usize::from(number)] = to.triangle;
         next.numbers[usize::from(number)] = to.number;

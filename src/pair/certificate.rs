@@ -101,7 +101,7 @@ impl LinkProximity {
 }
 
 type Number = DoubleDouble;
-type Point = Vec3<DoubleDouble>;
+type ExactPoint = Vec3<DoubleDouble>;
 
 /// What rounding can do to any bound here, where no coordinate exceeds 2: a hundred operations, each wrong by 2^-102 of
 /// numbers below 16, and what falls below the range.
@@ -161,7 +161,7 @@ impl CertifiedLink {
             Vec3::new(exact(x, start.x), exact(y, start.y), exact(z, start.z))
         };
         let end = local(self.end);
-        let pair = Pair {
+        let pair = ExactPair {
             triangle: triangle.map(local),
             end,
             axis: end.normalised(),
@@ -181,15 +181,15 @@ fn largest<const N: usize>(points: [Vector; N]) -> Real {
 }
 
 /// A link from the origin and a triangle, in coordinates up to 2.
-struct Pair {
-    triangle: [Point; 3],
-    end: Point,
-    axis: Point,
+struct ExactPair {
+    triangle: [ExactPoint; 3],
+    end: ExactPoint,
+    axis: ExactPoint,
     radius: Number,
     flat: [bool; 2],
 }
 
-impl Pair {
+impl ExactPair {
     fn bounds(&self) -> (Number, Number) {
         let zero = Number::ZERO;
         let origin = Vec3::new(zero, zero, zero);
@@ -213,7 +213,7 @@ impl Pair {
     /// edge, an edge and an end, the axis and a vertex.
     fn apart_by_features(&self) -> impl Iterator<Item = Number> {
         let [a, b, c] = self.triangle;
-        let across = |direction: Point, from: Point| {
+        let across = |direction: ExactPoint, from: ExactPoint| {
             let unit = direction.normalised();
             from - unit * unit.dot(from)
         };
@@ -227,7 +227,7 @@ impl Pair {
     }
 
     /// How far the plane with the normal `direction`, from triangle to link, keeps them apart.
-    fn apart(&self, direction: Point) -> Number {
+    fn apart(&self, direction: ExactPoint) -> Number {
         let [a, b, c] = self.triangle.map(|vertex| vertex.dot(direction));
         let across = (direction - self.axis * direction.dot(self.axis)).norm() * self.radius;
         let lowest = |height: Number, inward: Number, flat: bool| {
@@ -241,9 +241,9 @@ impl Pair {
     }
 
     /// At most this far from a point of the triangle.
-    fn triangle_to(&self, point: Point) -> Number {
+    fn triangle_to(&self, point: ExactPoint) -> Number {
         let [a, b, c] = self.triangle;
-        let on_edge = |from: Point, to: Point| {
+        let on_edge = |from: ExactPoint, to: ExactPoint| {
             let edge = to - from;
             let squared = edge.norm_squared();
             let t = edge.dot(point - from).max(Number::ZERO).min(squared).over(squared);
@@ -252,7 +252,7 @@ impl Pair {
         let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
         // Weights that are not negative make a point of the triangle, whatever their rounding.
         let normal = (b - a).cross(c - a);
-        let area = |p: Point, q: Point| normal.dot((p - point).cross(q - point)).max(Number::ZERO);
+        let area = |p: ExactPoint, q: ExactPoint| normal.dot((p - point).cross(q - point)).max(Number::ZERO);
         let (u, v, w) = (area(b, c), area(c, a), area(a, b));
         let sum = u + v + w;
         if sum.le(Number::ZERO) {
@@ -263,7 +263,7 @@ impl Pair {
     }
 
     /// At most this far from a point of the link.
-    fn link_to(&self, point: Point) -> Number {
+    fn link_to(&self, point: ExactPoint) -> Number {
         let zero = Number::ZERO;
         let (above, below) = ((point - self.end).dot(self.axis), -point.dot(self.axis));
         let radial = (point - self.axis * point.dot(self.axis)).norm();

@@ -4,6 +4,7 @@ use super::contact::contact_of;
 use super::coordinates::Pair;
 use super::nearest::Nearest;
 use super::nearest_features::{NearestFeatures, NearestParts, link_feature, triangle_feature};
+use super::nearest_rows::NearestRows;
 use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
 use super::placed_link::PlacedLink;
 use crate::answer::{Contact, LinkProximity};
@@ -26,7 +27,7 @@ pub(crate) struct PlacedPair {
 }
 
 /// What is computed of several pairs.
-struct Parts {
+struct ContactRows {
     /// The fraction, the normal, the depth and the lever.
     numbers: Rows<8>,
     /// One bit for each pair, as [`NearestParts`] has them.
@@ -35,8 +36,7 @@ struct Parts {
     edges: [u64; 3],
     has_normal: u64,
     needs_closer_look: u64,
-    /// The triangle's and the link's closest points in the mesh's frame, and the distance.
-    nearest: Rows<7>,
+    nearest: NearestRows,
 }
 
 impl PlacedPair {
@@ -80,7 +80,7 @@ pub(crate) fn try_add_contacts<E>(
         let parts = parts_at(level, &rows, answers.len());
         let with_places = answers.iter().zip(places.iter().flatten());
         for (lane, (answer, place)) in with_places.clone().enumerate() {
-            check(answer, place, &parts.nearest(lane, answer.triangle))?;
+            check(answer, place, &parts.nearest.nearest(lane, answer.triangle))?;
         }
         out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
             let [start, end] = place.ends;
@@ -95,17 +95,7 @@ pub(crate) fn try_add_contacts<E>(
     Ok(())
 }
 
-impl Parts {
-    /// What is measured of a pair.
-    fn nearest(&self, lane: usize, triangle: u32) -> Nearest {
-        let number = |row: usize| self.nearest[row][lane];
-        let point = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
-        let (distance, on_mesh) = (number(6), point(0));
-        // One common point where they touch, as in every answer.
-        let on_robot = if distance > 0.0 { point(3) } else { on_mesh };
-        Nearest { triangle, distance, on_robot, on_mesh }
-    }
-
+impl ContactRows {
     fn of(&self, lane: usize) -> NearestFeatures {
         let number = |row: usize| self.numbers[row][lane];
         let vector = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
@@ -124,27 +114,25 @@ impl Parts {
 }
 
 #[inline(never)] // compiled for each instruction set, not for each use as well
-fn parts_at(level: Level, pairs: &PairRows, count: usize) -> Parts {
-    let mut parts = Parts {
+fn parts_at(level: Level, pairs: &PairRows, count: usize) -> ContactRows {
+    let mut parts = ContactRows {
         numbers: [[0.0; TOGETHER]; 8],
         caps: [0; 2],
         corners: [0; 3],
         edges: [0; 3],
         has_normal: 0,
         needs_closer_look: 0,
-        nearest: [[0.0; TOGETHER]; 7],
+        nearest: NearestRows::new(),
     };
     dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut parts));
     parts
 }
 
 #[inline(always)]
-fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, parts: &mut Parts) {
+fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, parts: &mut ContactRows) {
     for lane in (0..count).step_by(L::LANES) {
         let pack = PairLanes::<L>::new(token, pairs, lane);
-        store(&mut parts.nearest, 0, lane, pack.placed(pack.closest.point1));
-        store(&mut parts.nearest, 3, lane, pack.placed(pack.closest.point2));
-        (pack.closest.distance * pack.pair.unit).store(&mut parts.nearest[6][lane..]);
+        parts.nearest.take(lane, &pack);
         let PairLanes { pair: Pair { triangle, link, unit, .. }, face, axial, closest, .. } = pack;
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
         parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;

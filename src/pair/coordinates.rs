@@ -70,10 +70,7 @@ impl Pair<Real> {
     /// An answer in the mesh's frame, in which the pair's origin is `start` and 1 is `unit`.
     pub(crate) fn report(unit: Real, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
         let place = |point: Vec3<Real>| start + Vector::from(point) * unit;
-        let (distance, on_mesh) = (closest.distance * unit, place(closest.point1));
-        // One common point where they touch: rounding may have put the two apart.
-        let on_robot = if distance > 0.0 { place(closest.point2) } else { on_mesh };
-        Nearest { triangle, distance, on_robot, on_mesh }
+        Nearest::new(triangle, closest.distance * unit, place(closest.point1), || place(closest.point2))
     }
 }
 

@@ -2,12 +2,12 @@
 //! [`PlacedLink::measure`], on every instruction set.
 
 use super::best::Best;
-use super::coordinates::{Pair, Placed};
-use super::nearest::Nearest;
-use super::pair_lanes::{PairLanes, Rows, TOGETHER, put_corners, store};
+use super::coordinates::Placed;
+use super::nearest_rows::NearestRows;
+use super::pair_lanes::{PairLanes, Rows, TOGETHER, put_corners};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
-use crate::distance::{Closest, Unfused, Vec3, dispatch};
+use crate::distance::{Unfused, dispatch};
 use crate::mesh::{Mesh, splat};
 use crate::pair::pair_lanes;
 use fearless_simd::Level;
@@ -17,10 +17,7 @@ use parry3d_f64::math::Real;
 const WORTH_A_PACK: usize = 2;
 
 /// The corners of up to [`TOGETHER`] triangles in the mesh's frame, each coordinate in a row of its own.
-type Corners = Rows<9>;
-/// Numbers of their answers in each pair's own coordinates: the distance, the points of triangle and link, and what 1
-/// is in the mesh's unit.
-type Answers = Rows<8>;
+type CornerRows = Rows<9>;
 
 impl Best {
     /// Measures up to [`TOGETHER`] triangles. True if one of them is the best so far.
@@ -37,14 +34,14 @@ impl Best {
             return triangles.iter().fold(false, measure);
         }
         let mut is_best = false;
-        let mut answers = [[0.0; TOGETHER]; 8];
+        let mut answers = NearestRows::new();
         let mut near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
             // Most that are not farther than the bound are as far, and most of these need no report.
-            if self.is_worse_than(answers[0][lane] * answers[7][lane], triangles[lane]) {
-                is_best |= self.take(report(link, triangles[lane], &answers, lane));
+            if self.is_worse_than(answers.distance(lane), triangles[lane]) {
+                is_best |= self.take(answers.nearest(lane, triangles[lane]));
             }
         }
         is_best
@@ -59,20 +56,13 @@ fn measure_pack(
     mesh: &Mesh,
     triangles: &[u32],
     bound: Real,
-    answers: &mut Answers,
+    answers: &mut NearestRows,
 ) -> u64 {
     let mut corners = [[0.0; TOGETHER]; 9];
     for (lane, &triangle) in triangles.iter().enumerate().take(TOGETHER) {
         put_corners(&mut corners, lane, mesh.corners(triangle));
     }
     closest_at(narrowed(level, triangles.len()), link, &corners, triangles.len(), bound, answers)
-}
-
-/// The answer of a lane.
-fn report(link: &PlacedLink, triangle: u32, answers: &Answers, lane: usize) -> Nearest {
-    let point = |row: usize| Vec3::new(answers[row][lane], answers[row + 1][lane], answers[row + 2][lane]);
-    let closest = Closest { distance: answers[0][lane], point1: point(1), point2: point(4) };
-    Pair::report(answers[7][lane], link.start(), triangle, closest)
 }
 
 /// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
@@ -93,10 +83,10 @@ fn narrowed(
 fn closest_at(
     level: Level,
     link: &PlacedLink,
-    corners: &Corners,
+    corners: &CornerRows,
     count: usize,
     bound: Real,
-    answers: &mut Answers,
+    answers: &mut NearestRows,
 ) -> u64 {
     dispatch!(level, simd => closest::<Unfused<_>>(simd, link, corners, count, bound, answers))
 }
@@ -106,10 +96,10 @@ fn closest_at(
 fn closest<L: Pack<Element = f64>>(
     token: L::Token,
     link: &PlacedLink,
-    corners: &Corners,
+    corners: &CornerRows,
     count: usize,
     bound: Real,
-    answers: &mut Answers,
+    answers: &mut NearestRows,
 ) -> u64 {
     let (zero, bound) = (L::splat(token, 0.0), L::splat(token, bound));
     let (yes, no) = (zero.le(zero), zero.lt(zero));
@@ -125,13 +115,8 @@ fn closest<L: Pack<Element = f64>>(
     let mut near = 0;
     for lane in (0..count).step_by(L::LANES) {
         let corners = pair_lanes::corners::<L, 9>(token, corners, lane);
-        let PairLanes { pair: Pair { unit, .. }, closest, .. } = PairLanes::between(&link, corners);
-        let Closest { distance, point1, point2 } = closest;
-        near |= L::bits((distance * unit).le(bound)) << lane;
-        distance.store(&mut answers[0][lane..]);
-        store(answers, 1, lane, point1);
-        store(answers, 4, lane, point2);
-        unit.store(&mut answers[7][lane..]);
+        let distance = answers.take(lane, &PairLanes::between(&link, corners));
+        near |= L::bits(distance.le(bound)) << lane;
     }
     near & ((1 << count) - 1)
 }

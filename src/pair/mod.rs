@@ -13,6 +13,7 @@ mod link_lanes;
 mod measure_together;
 mod nearest;
 mod nearest_features;
+mod nearest_rows;
 mod pair_lanes;
 mod placed_link;
 mod placed_robot;

@@ -10,3 +10,17 @@ pub(crate) struct Nearest {
     pub on_robot: Vector,
     pub on_mesh: Vector,
 }
+
+impl Nearest {
+    /// With one common point where the two touch: rounding may have put the two points apart.
+    #[inline(always)]
+    pub(crate) fn new(
+        triangle: u32,
+        distance: Real,
+        on_mesh: Vector,
+        on_robot: impl FnOnce() -> Vector,
+    ) -> Self {
+        let on_robot = if distance > 0.0 { on_robot() } else { on_mesh };
+        Self { triangle, distance, on_robot, on_mesh }
+    }
+}

@@ -3,13 +3,14 @@
 
 use super::coordinates::Pair;
 use super::nearest::Nearest;
-use super::pair_lanes::{PairLanes, PairRows, Rows, TOGETHER, put_pair, store};
+use super::nearest_rows::NearestRows;
+use super::pair_lanes::{PairLanes, PairRows, TOGETHER, put_pair};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Scalar, Unfused, dispatch};
 use crate::mesh::Mesh;
 use fearless_simd::Level;
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::Real;
 
 /// A triangle near a link.
 #[derive(Clone, Copy)]
@@ -21,8 +22,13 @@ pub(crate) struct Ranked {
     pub rounding: Real,
 }
 
-/// The distance, the closest points of triangle and link, the axis distance less the radius, and the extent.
-type RankRows = Rows<9>;
+/// What is measured of several pairs.
+struct RankRows {
+    nearest: NearestRows,
+    /// The axis distances less the radii.
+    to_axis: [Real; TOGETHER],
+    extent: [Real; TOGETHER],
+}
 
 /// Measures triangles, each with its link.
 pub(crate) fn rank_each<'a>(
@@ -51,16 +57,9 @@ pub(crate) fn rank_each<'a>(
 }
 
 fn ranked(found: &RankRows, lane: usize, triangle: u32) -> Ranked {
-    let point = |row: usize| Vector::new(found[row][lane], found[row + 1][lane], found[row + 2][lane]);
-    let (distance, on_mesh) = (found[0][lane], point(1));
-    let touches = distance <= 0.0;
-    // One common point where they touch: rounding may have put the two apart.
-    let on_robot = if touches { on_mesh } else { point(4) };
-    Ranked {
-        rank: if touches { found[7][lane].min(0.0) } else { distance },
-        nearest: Nearest { triangle, distance, on_robot, on_mesh },
-        rounding: rounding(found[8][lane]),
-    }
+    let nearest = found.nearest.nearest(lane, triangle);
+    let rank = if nearest.distance <= 0.0 { found.to_axis[lane].min(0.0) } else { nearest.distance };
+    Ranked { rank, nearest, rounding: rounding(found.extent[lane]) }
 }
 
 /// What rounding can do to the distance between a link and what is no farther out than `extent`, from the link's start.
@@ -70,7 +69,8 @@ pub(crate) fn rounding(extent: Real) -> Real {
 
 #[inline(never)] // compiled for each instruction set, not for each use as well
 fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
-    let mut ranks = [[0.0; TOGETHER]; 9];
+    let [to_axis, extent] = [[0.0; TOGETHER]; 2];
+    let mut ranks = RankRows { nearest: NearestRows::new(), to_axis, extent };
     dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut ranks));
     ranks
 }
@@ -79,11 +79,9 @@ fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
 fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, ranks: &mut RankRows) {
     for lane in (0..count).step_by(L::LANES) {
         let pair = PairLanes::<L>::new(token, pairs, lane);
-        let PairLanes { pair: Pair { link, unit, extent, .. }, axial, closest, .. } = &pair;
-        (closest.distance * *unit).store(&mut ranks[0][lane..]);
-        store(ranks, 1, lane, pair.placed(closest.point1));
-        store(ranks, 4, lane, pair.placed(closest.point2));
-        ((axial.axis_squared.sqrt() - link.radius) * *unit).store(&mut ranks[7][lane..]);
-        extent.store(&mut ranks[8][lane..]);
+        ranks.nearest.take(lane, &pair);
+        let PairLanes { pair: Pair { link, unit, extent, .. }, axial, .. } = pair;
+        ((axial.axis_squared.sqrt() - link.radius) * unit).store(&mut ranks.to_axis[lane..]);
+        extent.store(&mut ranks.extent[lane..]);
     }
 }

@@ -50,7 +50,7 @@ pub(super) struct Sight<'a> {
 }
 
 /// A vertex that a chord from where we stand may reach.
-pub(super) struct Target {
+pub(super) struct Chord {
     pub(super) vertex: usize,
     /// Whether the chord is admissible; otherwise it is in question.
     pub(super) is_sure: bool,
@@ -58,9 +58,9 @@ pub(super) struct Target {
 
 /// Two vertices beyond which no chord goes that starts from where they are a wall, the farther one last.
 #[derive(Clone, Copy)]
-pub(super) struct Wall(usize, usize);
+pub(super) struct SightLimit(usize, usize);
 
-impl Wall {
+impl SightLimit {
     /// Two vertices, the nearer one first, that are a wall if [`Sight::is_wall`] says so.
     pub(super) fn new(near: usize, far: usize) -> Self {
         Self(near, far)
@@ -88,8 +88,8 @@ impl<'a> Sight<'a> {
         &self,
         from: usize,
         is_open: impl Fn(usize) -> bool,
-        targets: &mut Vec<Target>,
-    ) -> Option<Wall> {
+        targets: &mut Vec<Chord>,
+    ) -> Option<SightLimit> {
         targets.clear();
         let least = 16.0 * self.widened * self.widened;
         let is_ahead = |vertex: &usize| self.between(from, *vertex).length_squared() >= least;
@@ -97,7 +97,7 @@ impl<'a> Sight<'a> {
         let axis = vertices.clone().find(is_ahead);
         let unsure = from + 1..axis.map_or(vertices.end, |axis| axis + 1);
         targets.extend(
-            unsure.clone().filter(|&vertex| is_open(vertex)).map(|vertex| Target { vertex, is_sure: false }),
+            unsure.clone().filter(|&vertex| is_open(vertex)).map(|vertex| Chord { vertex, is_sure: false }),
         );
         let mut gates = Gates::along(self.between(from, axis?));
         for vertex in unsure.clone() {
@@ -111,7 +111,7 @@ impl<'a> Sight<'a> {
             if is_open(vertex)
                 && let Some(is_sure) = gates.view(&place, self.widened)
             {
-                targets.push(Target { vertex, is_sure });
+                targets.push(Chord { vertex, is_sure });
             }
             if let Some(wall) = gates.narrow(vertex, &place, self) {
                 return Some(wall);
@@ -125,7 +125,7 @@ impl<'a> Sight<'a> {
     ///
     /// Differences of coordinates are exact up to a share of 2^-53 of themselves, so that with distances of at least
     /// sqrt(2) tau either side is off by less than 2^-47 of the product of the distances.
-    pub(super) fn is_wall(&self, from: usize, Wall(near, far): Wall) -> bool {
+    pub(super) fn is_wall(&self, from: usize, SightLimit(near, far): SightLimit) -> bool {
         let room = self.widened * self.widened;
         let (p, q) = (self.between(from, near), self.between(from, far));
         let (p_squared, q_squared) = (p.length_squared(), q.length_squared());
@@ -141,7 +141,7 @@ impl<'a> Sight<'a> {
 }
 
 /// A vertex seen from the origin: how far along the axis, and how far across it in four directions.
-struct Seen {
+struct SeenVertex {
     along: Real,
     across: [Real; 4],
     distance_squared: Real,
@@ -177,14 +177,14 @@ impl Gates {
         }
     }
 
-    fn place(&self, p: Vector) -> Seen {
+    fn place(&self, p: Vector) -> SeenVertex {
         let [along, y, z] = self.axes.map(|axis| axis.dot(p));
         let diagonals = [y + z, y - z].map(|sum| sum * std::f64::consts::FRAC_1_SQRT_2);
-        Seen { along, across: [y, z, diagonals[0], diagonals[1]], distance_squared: p.length_squared() }
+        SeenVertex { along, across: [y, z, diagonals[0], diagonals[1]], distance_squared: p.length_squared() }
     }
 
     /// Whether a chord to this place passes all gates for sure, or nothing if it does not.
-    fn view(&self, place: &Seen, widened: Real) -> Option<bool> {
+    fn view(&self, place: &SeenVertex, widened: Real) -> Option<bool> {
         // The axis is at least 4 tau along, and its nearest point of the chord at least 3 tau.
         if place.along <= widened {
             return None;
@@ -197,7 +197,7 @@ impl Gates {
     }
 
     /// Takes away what does not pass the gate of a vertex; a wall, if nothing is left.
-    fn narrow(&mut self, vertex: usize, place: &Seen, sight: &Sight) -> Option<Wall> {
+    fn narrow(&mut self, vertex: usize, place: &SeenVertex, sight: &Sight) -> Option<SightLimit> {
         let shares = 1.0 / place.along;
         if place.along > sight.widened {
             let margin = sight.widened * STEEPEST * shares;
@@ -211,7 +211,7 @@ impl Gates {
                 }
                 if self.low[k] > self.high[k] {
                     let by = [self.low_by[k], self.high_by[k]];
-                    return Some(Wall(by[0].min(by[1]), by[0].max(by[1])));
+                    return Some(SightLimit(by[0].min(by[1]), by[0].max(by[1])));
                 }
             }
         }
@@ -247,7 +247,7 @@ mod tests {
                     let (sin, cos) = angle.sin_cos();
                     let far = Vector::new(0.6 * cos, sin, 0.8 * cos) * far;
                     let stretch = [Vector::ZERO, Vector::new(0.6, 0.0, 0.8) * near, far];
-                    let wall = Sight::new(&stretch, tolerance).is_wall(0, Wall::new(1, 2));
+                    let wall = Sight::new(&stretch, tolerance).is_wall(0, SightLimit::new(1, 2));
                     assert_eq!(wall, part > 0.0, "{near} {far} {tolerance} {part}");
                 }
             }

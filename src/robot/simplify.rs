@@ -34,7 +34,7 @@
 
 use super::RobotError;
 use super::compare::Chord;
-use super::sight::{Sight, Wall};
+use super::sight::{Sight, SightLimit};
 use super::stretches::Stretches;
 use parry3d_f64::math::{Real, Vector};
 
@@ -98,7 +98,7 @@ struct Search<'a> {
     /// What last ruled out a chord.
     obstacle: usize,
     /// What last ended a walk.
-    wall: Option<Wall>,
+    wall: Option<SightLimit>,
     /// Comparisons of a vertex with a chord or a gate.
     #[cfg(test)]
     steps: std::cell::Cell<usize>,
@@ -146,7 +146,7 @@ impl<'a> Search<'a> {
             }
             let previous = &self.previous;
             self.wall = sight.look(from, |vertex| previous[vertex].is_none(), &mut targets);
-            self.count(self.wall.map_or(last, Wall::vertex) - from);
+            self.count(self.wall.map_or(last, SightLimit::vertex) - from);
             for target in targets.iter().rev() {
                 let to = target.vertex;
                 if target.is_sure || self.is_admissible(from, to) {
@@ -164,7 +164,7 @@ impl<'a> Search<'a> {
     fn sees_nothing_new(&self, from: usize, sight: &Sight) -> bool {
         let first = self.first_open.max(from + 1);
         // On an arc, a wall is nearest if its distances are as 1 to 1 + sqrt(2).
-        let likely = Wall::new(from + (first - from) * 12 / 29, first);
+        let likely = SightLimit::new(from + (first - from) * 12 / 29, first);
         // The one that is known first, if it leaves no more vertices in question.
         let known = self.wall;
         let order = match known {
@@ -175,7 +175,7 @@ impl<'a> Search<'a> {
             self.count(1);
             sight.is_wall(from, wall)
         });
-        let end = wall.map_or(self.stretch.len() - 1, Wall::vertex) + 1;
+        let end = wall.map_or(self.stretch.len() - 1, SightLimit::vertex) + 1;
         // No more comparisons than a walk would cost.
         end < first + (first - from)
             && (first..end).filter(|&to| self.previous[to].is_none()).all(|to| {

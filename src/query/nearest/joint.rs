@@ -30,7 +30,7 @@ pub(crate) struct Pairs<E> {
     /// The nodes of the link tree in the frame of the search, those that this query has placed.
     runs: Vec<Run<E>>,
     query: u64,
-    waiting: Vec<Pair<E>>,
+    waiting: Vec<LinksAndChild<E>>,
     /// The links and triangles that the precision of the search cannot decide.
     doubtful: Vec<(u32, u32)>,
     /// The link and the leaf of the last triangle that was near enough.
@@ -66,7 +66,7 @@ struct Run<E> {
 
 /// A run of links and a part of the mesh that may be near each other.
 #[derive(Clone, Copy)]
-struct Pair<E> {
+struct LinksAndChild<E> {
     /// The run's place in the link tree.
     run: u32,
     child: u32,
@@ -77,7 +77,7 @@ struct Pair<E> {
 }
 
 /// What the precision of the search can decide.
-enum Verdict {
+enum Found {
     /// Nothing is within the margin, unless it is doubtful.
     Doubtful,
     /// Some triangle is within the margin.
@@ -103,9 +103,9 @@ impl<E: Lane> JointSearch<'_, E> {
     /// robot.
     pub(crate) fn keeps_away(mut self, mesh: &Mesh) -> Option<bool> {
         match self.verdict() {
-            Verdict::Unresolved => None,
-            Verdict::Near => Some(false),
-            Verdict::Doubtful => {
+            Found::Unresolved => None,
+            Found::Near => Some(false),
+            Found::Doubtful => {
                 let Self { level, robot, margin, pairs, work, .. } = self;
                 let is_within = |pairs: &[(u32, u32)]| {
                     let (mut together, link) = ([0; TOGETHER], robot.link(pairs[0].0 as usize));
@@ -119,7 +119,7 @@ impl<E: Lane> JointSearch<'_, E> {
         }
     }
 
-    fn verdict(&mut self) -> Verdict {
+    fn verdict(&mut self) -> Found {
         let Pairs { runs, query, waiting, doubtful, last, has_parted_all } = &mut *self.pairs;
         let links = self.robot.link_tree();
         let zero = E::default();
@@ -131,25 +131,26 @@ impl<E: Lane> JointSearch<'_, E> {
         doubtful.clear();
         waiting.clear();
         // The mesh is between one and two long.
-        let whole = Pair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
+        let whole = LinksAndChild { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
         waiting.push(whole);
         if let Some(first) = self.first {
-            waiting.push(Pair { run: place_of_leaf(first, links.len().div_ceil(2)) as u32, ..whole });
+            waiting
+                .push(LinksAndChild { run: place_of_leaf(first, links.len().div_ceil(2)) as u32, ..whole });
         }
         if let Some((run, leaf)) = *last
             && let Some(LinkNode::Leaf(_)) = links.get(run as usize)
         {
-            waiting.push(Pair { run, child: Child::Leaf(leaf).pack(), size: zero, apart: zero });
+            waiting.push(LinksAndChild { run, child: Child::Leaf(leaf).pack(), size: zero, apart: zero });
         }
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
 
     #[inline(always)]
-    fn descend<L: Pack<Element = E>>(&mut self, token: L::Token) -> Verdict {
+    fn descend<L: Pack<Element = E>>(&mut self, token: L::Token) -> Found {
         while let Some(pair) = self.pairs.waiting.pop() {
             if self.pairs.runs[pair.run as usize].query != self.pairs.query && self.place(pair.run).is_none()
             {
-                return Verdict::Unresolved;
+                return Found::Unresolved;
             }
             let size = self.pairs.runs[pair.run as usize].size;
             match Child::unpack(pair.child) {
@@ -163,12 +164,12 @@ impl<E: Lane> JointSearch<'_, E> {
                         && self.visit_leaf::<L>(token, leaf, pair)
                     {
                         self.pairs.last = Some((pair.run, leaf));
-                        return Verdict::Near;
+                        return Found::Near;
                     }
                 }
             }
         }
-        Verdict::Doubtful
+        Found::Doubtful
     }
 
     /// Brings a node of the link tree into the frame of the search. None where the precision does not resolve it.
@@ -190,7 +191,7 @@ impl<E: Lane> JointSearch<'_, E> {
 
     /// Puts both halves of a pair's run in its place; false if it is one link.
     #[inline(always)]
-    fn part(&mut self, pair: Pair<E>) -> bool {
+    fn part(&mut self, pair: LinksAndChild<E>) -> bool {
         let tree = self.robot.link_tree();
         if let LinkNode::Leaf(_) = tree[pair.run as usize] {
             return false;
@@ -201,7 +202,7 @@ impl<E: Lane> JointSearch<'_, E> {
         let high = low + 1 + below;
         // Whatever collides has most often got there with its tip; near a part of the mesh no half is the likelier one.
         let last_and_first = if pair.child == WHOLE_MESH { [low, high] } else { [high, low] };
-        self.pairs.waiting.extend(last_and_first.map(|run| Pair { run, ..pair }));
+        self.pairs.waiting.extend(last_and_first.map(|run| LinksAndChild { run, ..pair }));
         true
     }
 
@@ -226,7 +227,12 @@ impl<E: Lane> JointSearch<'_, E> {
         while near != 0 {
             let child = near.trailing_zeros() as usize;
             near &= near - 1;
-            let pair = Pair { run, child: node.children[child], size: node.size(child), apart: apart[child] };
+            let pair = LinksAndChild {
+                run,
+                child: node.children[child],
+                size: node.size(child),
+                apart: apart[child],
+            };
             // Insertion keeps the few new pairs in order.
             waiting.push(pair);
             let mut place = waiting.len() - 1;
@@ -242,7 +248,12 @@ impl<E: Lane> JointSearch<'_, E> {
     /// from all of them: from their planes, and if it is no longer than the leaf, from the triangles themselves. (A long one
     /// is about as wide as the triangles are large, so that their planes tell as much.)
     #[inline(always)]
-    fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, pair: Pair<E>) -> bool {
+    fn visit_leaf<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        leaf: u32,
+        pair: LinksAndChild<E>,
+    ) -> bool {
         self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
         let placed = &self.pairs.runs[pair.run as usize];
