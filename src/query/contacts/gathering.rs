@@ -8,7 +8,7 @@ use crate::distance::dispatch;
 use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::{BLOCK, Mesh, first_of_face, load_vertices};
 use crate::pair::{LinkLanes, SearchLink};
-use crate::search::hierarchy::{Traversal, WideBvh};
+use crate::search::hierarchy::{LeafVisitor, Traversal, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
@@ -22,29 +22,19 @@ pub(super) fn gather<E: Lane>(
     found: &mut NearTriangles,
 ) {
     let limit = searched.axis_limit(bound);
-    let mut gathering = Gathering::new(traversal.level, searched, across, found);
-    dispatch!(traversal.level, simd => visit::<E, E::Pack<_>>(simd, &mut traversal, searched, limit, &mut gathering));
-    traversal.work.axis_distances += gathering.finish(limit);
-}
-
-#[inline(always)]
-fn visit<E: Lane, L: Pack<Element = E>>(
-    token: L::Token,
-    traversal: &mut Traversal<E>,
-    searched: &SearchLink<E>,
-    limit: E,
-    gathering: &mut Gathering<E>,
-) {
-    let (tree, mesh) = (traversal.tree, traversal.mesh);
-    traversal.visit_leaves(token, searched, limit, |lanes: &LinkLanes<L>, leaf| {
-        gathering.add(token, lanes, tree, leaf, mesh, limit);
+    let mut gathering = Gathering::new(traversal.level, searched, limit, across, found);
+    dispatch!(traversal.level, simd => {
+        traversal.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut gathering)
     });
+    traversal.work.axis_distances += gathering.finish();
 }
 
 /// Where triangles are gathered.
 struct Gathering<'a, E> {
     level: Level,
     searched: &'a SearchLink<E>,
+    /// What a triangle's axis distance must be below.
+    limit: E,
     /// Shows which lie on a slope.
     across: Option<&'a Across<E>>,
     found: &'a mut NearTriangles,
@@ -58,32 +48,21 @@ struct Gathering<'a, E> {
     computed: u64,
 }
 
-impl<'a, E: Lane> Gathering<'a, E> {
-    pub(crate) fn new(
-        level: Level,
-        searched: &'a SearchLink<E>,
-        across: Option<&'a Across<E>>,
-        found: &'a mut NearTriangles,
-    ) -> Self {
-        let (rows, triangles, firsts) = ([E::default(); 9 * BLOCK], [0; BLOCK], [0; BLOCK]);
-        Self { level, searched, across, found, rows, triangles, firsts, waiting: 0, computed: 0 }
-    }
-
+impl<E: Lane> LeafVisitor<E> for Gathering<'_, E> {
     /// Adds the leaf's triangles that may be within the limit.
     #[inline(always)]
-    pub(crate) fn add<L: Pack<Element = E>>(
+    fn visit<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         lanes: &LinkLanes<L>,
         tree: &WideBvh<E>,
-        number: u32,
         mesh: &Mesh,
-        limit: E,
+        number: u32,
     ) {
         let leaf = &tree.leaves[number as usize];
         let across = self.across.map(|across| across.of(number, tree, mesh));
         let (mut in_question, mut slopes) = (0, 0);
-        let (limit_of_all, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
+        let (limit_of_all, error) = (L::splat(token, self.limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
             let near = lanes.not_behind_plane(vertices, limit_of_all);
@@ -114,30 +93,43 @@ impl<'a, E: Lane> Gathering<'a, E> {
             };
             self.waiting += 1;
             if self.waiting == BLOCK {
-                self.look_closely(limit);
+                self.look_closely();
             }
         }
     }
+}
+
+impl<'a, E: Lane> Gathering<'a, E> {
+    fn new(
+        level: Level,
+        searched: &'a SearchLink<E>,
+        limit: E,
+        across: Option<&'a Across<E>>,
+        found: &'a mut NearTriangles,
+    ) -> Self {
+        let (rows, triangles, firsts) = ([E::default(); 9 * BLOCK], [0; BLOCK], [0; BLOCK]);
+        Self { level, searched, limit, across, found, rows, triangles, firsts, waiting: 0, computed: 0 }
+    }
 
     /// Looks at those that are left. Returns for how many the distance from the axis was computed.
-    pub(crate) fn finish(mut self, limit: E) -> u64 {
+    fn finish(mut self) -> u64 {
         if self.waiting > 0 {
-            self.look_closely(limit);
+            self.look_closely();
         }
         self.computed
     }
 
     /// Adds to those found those that wait and may be within the limit.
     #[inline(never)] // compiled once for all that search
-    fn look_closely(&mut self, limit: E) {
-        dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd, limit));
+    fn look_closely(&mut self) {
+        dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd));
         self.waiting = 0;
     }
 
     #[inline(always)]
-    fn take<L: Pack<Element = E>>(&mut self, token: L::Token, limit: E) {
+    fn take<L: Pack<Element = E>>(&mut self, token: L::Token) {
         let lanes = LinkLanes::<L>::new(token, self.searched);
-        let (limit, error) = (L::splat(token, limit), L::splat(token, self.searched.error));
+        let (limit, error) = (L::splat(token, self.limit), L::splat(token, self.searched.error));
         let certain = CERTAIN * self.searched.error.into();
         let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
         for first in (0..self.waiting).step_by(L::LANES) {

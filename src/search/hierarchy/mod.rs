@@ -5,12 +5,14 @@ mod build;
 mod candidates;
 mod fit;
 mod hierarchies;
+mod leaf_visitor;
 mod mesh_search;
 mod node;
 mod traverse;
 
 pub(crate) use build::WideBvh;
 pub(crate) use hierarchies::{Hierarchy, Searched};
+pub(crate) use leaf_visitor::LeafVisitor;
 pub(crate) use mesh_search::{MeshSearch, Scratch};
 pub(crate) use node::{Child, WIDTH};
 pub(crate) use traverse::Traversal;

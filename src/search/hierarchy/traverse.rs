@@ -9,6 +9,7 @@
 
 use super::build::WideBvh;
 use super::candidates::bring_forward;
+use super::leaf_visitor::LeafVisitor;
 use super::node::{Child, Node, WIDTH};
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
@@ -172,14 +173,14 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Aim::Any(true))
     }
 
-    /// Hands over every leaf that may hold a triangle within the limit, in the order in which they come.
+    /// Shows every leaf that may hold a triangle within the limit, in the order in which they come.
     #[inline(always)]
     pub(crate) fn visit_leaves<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         searched: &SearchLink<E>,
         limit: E,
-        mut visit: impl FnMut(&LinkLanes<L>, u32),
+        visitor: &mut impl LeafVisitor<E>,
     ) {
         let lanes = LinkLanes::<L>::new(token, searched);
         let squared_limit = searched.squared_limit_of_bounds(limit);
@@ -197,7 +198,7 @@ impl<E: Lane> Traversal<'_, E> {
                     Child::Node(node) => waiting.push(node),
                     Child::Leaf(leaf) => {
                         self.work.visited += BLOCK as u64;
-                        visit(&lanes, leaf);
+                        visitor.visit(token, &lanes, self.tree, self.mesh, leaf);
                     }
                 }
             }
