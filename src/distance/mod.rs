@@ -50,6 +50,8 @@ pub(crate) use point_modified_cylinder::{Link, gives_direction};
 pub(crate) use scalar::Mask;
 pub(crate) use triangle_modified_cylinder::Axial;
 
+/// For this project's own tests and studies.
+#[doc(hidden)]
 pub use double_double::DoubleDouble;
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;

@@ -40,9 +40,11 @@ pub trait Scalar:
 
     /// How many times a foot on a triangle's plane is refined: each time wins the digits that the plane's basis
     /// has, which are few on a sliver. Two serve a height of 1e-5 of the length, three one of 1e-12.
+    #[doc(hidden)]
     const FACE_PASSES: usize;
 
     /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double precision.
+    #[doc(hidden)]
     const HALLEY_STEPS: usize;
 
     /// The constant `value` in the precision and lanes of `self`.
@@ -58,8 +60,10 @@ pub trait Scalar:
     /// `self * factor + addend`, fused only where that is as fast as the two operations.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// The cube root of the magnitude within 5 %: a start value, never an answer.
+    #[doc(hidden)]
     fn cbrt_estimate(self) -> Self;
     /// The power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of the range.
+    #[doc(hidden)]
     fn power_of_two_to_unity(self) -> Self;
 
     /// 0 in the precision and lanes of `self`.
@@ -83,6 +87,7 @@ pub trait Scalar:
         self.lt(other).select(self, other)
     }
     /// `self / divisor` for a positive divisor, 0 for any other.
+    #[doc(hidden)]
     #[inline(always)]
     fn over(self, divisor: Self) -> Self {
         let positive = self.zero().lt(divisor);
@@ -91,6 +96,7 @@ pub trait Scalar:
     }
     /// `self.over(whole)` for a number between 0 and `whole`, where `inverse`, which is `whole.one().over(whole)`, is at
     /// hand. Packs of single precision multiply by it: they only rule out.
+    #[doc(hidden)]
     #[inline(always)]
     fn share_of(self, whole: Self, inverse: Self) -> Self {
         let _ = inverse;

@@ -289,7 +289,7 @@ impl PartialEq for Chain {
 }
 
 /// Why none of the segments has a length.
-fn without_length(points: &[Vector], radii: &[Real], parameter: &'static str) -> RobotError {
+pub(super) fn without_length(points: &[Vector], radii: &[Real], parameter: &'static str) -> RobotError {
     match (0..radii.len()).find(|&k| points[k] != points[k + 1]) {
         Some(index) => {
             let length = super::scale::length(points[index + 1] - points[index]);

@@ -12,7 +12,8 @@
 
 use super::{Motion, Speed};
 use crate::distance::Scalar;
-use crate::robot::chain::check;
+use crate::robot::chain::{check, without_length};
+use crate::robot::modified_cylinder::has_direction;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -20,7 +21,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 ///
 /// It is what a planner means by "interpolate the two centrelines". In between, links become shorter or longer. Points
 /// are in the mesh's frame. A segment that has no length at both ends has none in between, and is no link; a radius of its
-/// own is no step. One that loses its length for a moment is a ball then.
+/// own is no step. Nor is one shorter than a link may be beside its radius. One that loses its length for a moment is a ball
+/// then.
 ///
 /// The links are its sections, numbered without those segments.
 ///
@@ -79,9 +81,10 @@ impl LinearMotion {
         for (name, points) in [("from", from), ("to", to)] {
             check([name, "segment_radii"], points, radii, points.len().saturating_sub(1))?;
         }
-        let moves = |k: &usize| from[*k] != from[*k + 1] || to[*k] != to[*k + 1];
-        let segments: Vec<_> = (0..radii.len()).filter(moves).collect();
-        let Some(&first) = segments.first() else { return Err(RobotError::AllPointsEqual) };
+        // By the rule of chains. What is too short at both ends is no longer in between.
+        let has_length = |k: &usize| [from, to].iter().any(|p| has_direction(p[*k], p[*k + 1], radii[*k]));
+        let segments: Vec<_> = (0..radii.len()).filter(has_length).collect();
+        let Some(&first) = segments.first() else { return Err(without_length(from, radii, "segment_radii")) };
         let vertices = || std::iter::once(first).chain(segments.iter().map(|k| k + 1));
         Ok(Self {
             from: vertices().map(|k| from[k]).collect(),
