@@ -27,6 +27,9 @@ pub mod trade {}
 #[doc = include_str!("../docs/book/certificates.md")]
 pub mod certificates {}
 
+#[doc = include_str!("../docs/book/errors.md")]
+pub mod errors {}
+
 #[doc = include_str!("../docs/book/limits.md")]
 pub mod limits {}
 

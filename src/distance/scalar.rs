@@ -36,6 +36,7 @@ pub trait Scalar:
     type Mask: Mask<Self>;
 
     /// The largest relative error of one rounding: 2^-24 or 2^-53.
+    #[doc(hidden)]
     const UNIT_ROUNDOFF: f64;
 
     /// How many times a foot on a triangle's plane is refined: each time wins the digits that the plane's basis
@@ -48,14 +49,17 @@ pub trait Scalar:
     const HALLEY_STEPS: usize;
 
     /// The constant `value` in the precision and lanes of `self`.
+    #[doc(hidden)]
     fn lit(self, value: f64) -> Self;
     /// `self < other`
     fn lt(self, other: Self) -> Self::Mask;
     /// `self <= other`
+    #[doc(hidden)]
     fn le(self, other: Self) -> Self::Mask;
     /// The magnitude, +0 for -0.
     fn abs(self) -> Self;
     /// The square root.
+    #[doc(hidden)]
     fn sqrt(self) -> Self;
     /// `self * factor + addend`, fused only where that is as fast as the two operations.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
@@ -67,21 +71,25 @@ pub trait Scalar:
     fn power_of_two_to_unity(self) -> Self;
 
     /// 0 in the precision and lanes of `self`.
+    #[doc(hidden)]
     #[inline(always)]
     fn zero(self) -> Self {
         self.lit(0.0)
     }
     /// 1 in the precision and lanes of `self`.
+    #[doc(hidden)]
     #[inline(always)]
     fn one(self) -> Self {
         self.lit(1.0)
     }
     /// The larger of two numbers; `other` where `self` is NaN.
+    #[doc(hidden)]
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         other.lt(self).select(self, other)
     }
     /// The smaller of two numbers; `other` where `self` is NaN.
+    #[doc(hidden)]
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.lt(other).select(self, other)

@@ -1,6 +1,7 @@
 //! From the 4x4 matrix of a registration or of a kinematic model to a pose, checked.
 
 use parry3d_f64::math::{Mat3, Pose, Real, Rot3, Vector};
+use strum::IntoStaticStr;
 use thiserror::Error;
 
 /// The entries of R^T R may be off those of the identity by so much. A matrix whose numbers have six digits after the
@@ -8,7 +9,8 @@ use thiserror::Error;
 const ROUNDED: Real = 1e-5;
 
 /// Why a 4x4 matrix is no pose. The text says what to change.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[derive(Clone, Copy, Debug, Error, IntoStaticStr, PartialEq)]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum MatrixError {
     /// An entry is NaN or infinite.
@@ -52,6 +54,13 @@ pub enum MatrixError {
         "the matrix mirrors; bring both frames to the same handedness, for example both to RAS or both to LPS"
     )]
     Mirrors,
+}
+
+impl MatrixError {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    pub fn kind(&self) -> &'static str {
+        self.into()
+    }
 }
 
 /// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0 1.

@@ -1,57 +1,101 @@
-//! The names that the crate shows stand in docs/internals/public_names.txt: none comes or goes unnoticed.
+//! Every name that the library shows leads somewhere: it has an example or a page. The names are those of
+//! docs/internals/public_api.txt, which `.ci/public-api` compares with what the compiler says.
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
-/// The modules whose names are listed, by file.
-const MODULES: [(&str, &str); 4] = [
-    ("parry_continuum", "src/lib.rs"),
-    ("parry_continuum::distance", "src/distance/mod.rs"),
-    ("parry_continuum::gpu", "src/gpu/mod.rs"),
-    ("parry_continuum::proximity", "src/proximity.rs"),
-];
+fn read(path: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
 
-/// What a module's file shows: its public modules, items and re-exports, hidden ones left out.
-fn names(text: &str) -> BTreeSet<String> {
-    let mut names = BTreeSet::new();
-    let mut is_hidden = false;
-    let joined = text.replace("{\n", "{").replace(",\n}", "}").replace(",\n    ", ", ");
-    for item in joined.lines() {
-        if let Some(item) = item.strip_prefix("pub ") {
-            let (kind, rest) = item.split_once(' ').unwrap_or((item, ""));
-            let last = rest.trim_end_matches(';').rsplit("::").next().unwrap_or_default();
-            let last = last.split_once(" as ").map_or(last, |(_, name)| name);
-            let shown = match kind {
-                "use" => last.trim_matches(['{', '}', ' ']),
-                _ => rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default(),
-            };
-            if !is_hidden {
-                names.extend(
-                    shown.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()),
-                );
-            }
-            is_hidden = false;
-        } else {
-            is_hidden = is_hidden || item.starts_with("#[doc(hidden)]");
-            is_hidden = is_hidden && (item.is_empty() || item.starts_with("#["));
+/// The texts of a folder's files with one of these endings.
+fn texts(folder: &str, endings: &[&str], found: &mut Vec<(String, String)>) {
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
+        let entry = entry.unwrap();
+        let path = format!("{folder}/{}", entry.file_name().to_str().unwrap());
+        if entry.path().is_dir() {
+            texts(&path, endings, found);
+        } else if endings.iter().any(|ending| path.ends_with(ending)) {
+            found.push((path.clone(), read(&path)));
         }
     }
-    names
+}
+
+/// The public items that are no part of a trait's implementation, by path.
+fn items() -> Vec<String> {
+    let listing = read("docs/internals/public_api.txt");
+    let mut is_implementation = false;
+    let mut items = Vec::new();
+    for line in listing.lines() {
+        if line.starts_with("impl") {
+            is_implementation = line.contains(" for ");
+        } else if ["pub struct", "pub enum", "pub trait", "pub mod", "pub macro"]
+            .iter()
+            .any(|start| line.starts_with(start))
+        {
+            is_implementation = false;
+        }
+        if is_implementation {
+            continue;
+        }
+        let path = line.split_whitespace().find(|word| word.starts_with("parry_continuum"));
+        if let Some(path) = path.filter(|_| line.starts_with("pub")) {
+            let end = path.find(|c: char| !c.is_alphanumeric() && c != '_' && c != ':').unwrap_or(path.len());
+            items.push(path[..end].trim_end_matches(':').to_owned());
+        }
+    }
+    items
+}
+
+/// The variant's name, if the path is that of a variant of an error.
+fn variant_of_error(item: &str) -> Option<&str> {
+    let (path, name) = item.rsplit_once("::")?;
+    (path.ends_with("Error") && name.starts_with(char::is_uppercase)).then_some(name)
+}
+
+/// Whether the path is that of a field of such a variant.
+fn is_field_of_error(item: &str) -> bool {
+    item.rsplit_once("::").is_some_and(|(path, _)| variant_of_error(path).is_some())
 }
 
 #[test]
-fn the_listing_is_complete() {
-    let listing: String = MODULES
+fn every_public_name_has_an_example_or_a_page() {
+    let mut pages = Vec::new();
+    texts("examples", &[".rs"], &mut pages);
+    texts("docs", &[".md"], &mut pages);
+    pages.retain(|(path, _)| !path.starts_with("docs/internals"));
+    pages.push(("README.md".to_owned(), read("README.md")));
+    // The documentation of one item may lead to another.
+    let mut sources = Vec::new();
+    texts("src", &[".rs"], &mut sources);
+    for (_, text) in &mut sources {
+        let is_doc =
+            |line: &&str| line.trim_start().starts_with("///") || line.trim_start().starts_with("//!");
+        *text = text.lines().filter(is_doc).collect::<Vec<_>>().join("\n");
+    }
+    pages.extend(sources);
+    let words: BTreeSet<&str> =
+        pages.iter().flat_map(|(_, text)| text.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
+
+    let items = items();
+    assert!(items.len() > 250, "{}", items.len());
+    // The fields of an error's variants are what its message says.
+    let unmentioned: Vec<_> = items
         .iter()
-        .map(|(module, file)| {
-            let text = fs::read_to_string(file).unwrap();
-            names(&text).iter().map(|name| format!("{module}::{name}\n")).collect::<String>()
-        })
+        .filter(|item| !is_field_of_error(item))
+        .filter(|item| !words.contains(item.rsplit("::").next().unwrap()))
         .collect();
-    assert!(listing.lines().count() > 40, "{listing}");
-    let expected = fs::read_to_string("docs/internals/public_names.txt").unwrap_or_default();
-    assert_eq!(
-        listing, expected,
-        "the names that are shown; if it is meant, docs/internals/public_names.txt gets them"
-    );
+    assert!(unmentioned.is_empty(), "neither an example nor a page has these: {unmentioned:#?}");
+}
+
+/// One line of the book for each kind of error.
+#[test]
+fn every_error_is_in_the_book() {
+    let page = read("docs/book/errors.md");
+    let items = items();
+    let variants: BTreeSet<_> = items.iter().filter_map(|item| variant_of_error(item)).collect();
+    assert!(variants.len() > 40, "{}", variants.len());
+    let missing: Vec<_> = variants.iter().filter(|name| !page.contains(&format!("| `{name}` |"))).collect();
+    assert!(missing.is_empty(), "docs/book/errors.md lacks {missing:?}");
 }
