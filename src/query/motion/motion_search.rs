@@ -76,9 +76,9 @@ pub(crate) struct MotionSearch<'a, M> {
     pub last: Option<u32>,
 }
 
-/// How many shapes are looked at after one that is above the margin by no more than the resolution. A contact that is
-/// deeper than that, or a proof, shows sooner as a rule; and what stays that near for long would be divided into
-/// thousands of intervals.
+/// How many shapes are looked at after one that is above the margin by no more than the resolution, or that leaves an
+/// interval undecided. A contact that is deeper than that, or a proof, shows sooner as a rule; and what stays that near for
+/// long would be divided into as many intervals as the resolution has room for, a million and more.
 const PATIENCE: u64 = 256;
 
 impl<M: Motion> MotionSearch<'_, M> {
@@ -115,15 +115,21 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
-    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter.
+    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
+    /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
+    /// larger intervals first, and with patience.
     pub(crate) fn first_contact(&mut self) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
-        let mut clear_until = 1.0;
+        let (mut clear_until, mut most) = (1.0, u64::MAX);
         self.begin();
-        while let Some(interval) = self.memory.intervals.pop_back() {
+        while self.shapes < most {
+            let intervals = &mut self.memory.intervals;
+            let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
+            let Some(interval) = next else { break };
             let (seen, failed) = self.examine(&interval)?;
-            if seen.is_undecided {
-                undecided = undecided.or(Some(interval.times));
+            if seen.is_undecided && undecided.is_none() {
+                undecided = Some(interval.times);
+                most = self.shapes + PATIENCE;
             }
             if let Some(found) = seen.contact {
                 let t = interval.middle();

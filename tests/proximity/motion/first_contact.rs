@@ -3,8 +3,9 @@
 use super::{Steps, anatomy, random_edge};
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
-use parry_continuum::parry::math::Real;
-use parry_continuum::proximity::Decision;
+use parry_continuum::LinearMotion;
+use parry_continuum::parry::math::{Real, Vector};
+use parry_continuum::proximity::{BvhSearch, Decision};
 
 /// The bracket of the first contact is as narrow as the resolution, where the motion goes straight into the wall.
 #[test]
@@ -36,4 +37,21 @@ fn the_first_contact_is_found() {
         }
     }
     assert!(later <= 3, "{later} of {found}");
+}
+
+/// A wire that slides in a wall's plane, apart from it by rounding at most: no shape decides, however fine, and a million
+/// intervals have room in the way. The first of them is all that can be said.
+#[test]
+fn what_slides_in_the_plane_of_a_wall_is_soon_given_up() {
+    let tip = Vector::new(0.0, 1.5e-5, 5.5e-310);
+    let wall = [[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [9.0, 9.0, 0.0], [-9.0, 9.0, 0.0]].map(Vector::from);
+    let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+    let motion = |from: Real, to: Real| {
+        let shift = |way: Real| [Vector::X * way + tip, Vector::X * way + Vector::Z * 5.5e-310];
+        LinearMotion::chain(&shift(from), &shift(to), &[0.0]).unwrap()
+    };
+    let found = search.time_of_contact(&motion(-1.0, 1.0), 0.0, 1.5e-6).unwrap();
+    assert!(found.decision != Decision::Clear && found.interval[0] <= 1e-6, "{found:?}");
+    let shapes = search.work().measured;
+    assert!(shapes < 100_000, "{shapes}");
 }
