@@ -50,18 +50,21 @@ fn check<M: Motion>(
 ) {
     let shape: Shape<'_> = &shape;
     let Ok(mut exact) = BvhSearch::new(mesh) else { return };
-    let mut distance = |t: f64| {
+    // And by how much a rim is off where rounding turns a link that is shorter than thick.
+    let mut distance_and_rim = |t: f64| {
         let (chain, pose) = shape(t)?;
-        exact.minimum(&chain, &pose).ok().map(|found| found.distance)
+        let turned = chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
+        let rim = turned.fold(0.0, f64::max);
+        exact.minimum(&chain, &pose).ok().map(|found| (found.distance, rim))
     };
-    let Some(start) = distance(0.0) else { return };
+    let Some((start, _)) = distance_and_rim(0.0) else { return };
     let (vertices, indices) = (mesh.vertices(), mesh.indices());
     let ends = [shape(0.0), shape(1.0)];
     let problem = || format!("\n{ends:?}\n{vertices:?} {indices:?}");
     let length = shape(0.0).map_or(1.0, |(chain, _)| Tube::from(&chain).length());
     // Poses are rounded on the way.
     let largest = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(length, f64::max);
-    let slack = 1e-12 * largest;
+    let slack = |rim: f64| (1e-12 + 1e-14 * rim) * largest;
     assert_eq!(verify_motion(motion, 7), Ok(()), "its own speed is refused{}", problem());
     let margin = match source.below(6) {
         0 => 0.0,
@@ -87,9 +90,9 @@ fn check<M: Motion>(
             Ok(MotionAnswer { contact: Some(shape), .. }) => {
                 let (t, upper) = (shape.t, shape.upper);
                 assert!((0.0..=1.0).contains(&t) && upper <= margin, "{answer:?} {margin}{}", problem());
-                let there = distance(t);
+                let there = distance_and_rim(t);
                 assert!(
-                    there.is_none_or(|there| there <= upper + slack),
+                    there.is_none_or(|(there, rim)| there <= upper + slack(rim)),
                     "{there:?} {answer:?}{}",
                     problem()
                 );
@@ -111,9 +114,9 @@ fn check<M: Motion>(
     ];
     for k in 0..=TIMES {
         let t = f64::from(k) / f64::from(TIMES);
-        let Some(there) = distance(t) else { continue };
+        let Some((there, rim)) = distance_and_rim(t) else { continue };
         for clear_until in clear_until.into_iter().flatten().filter(|&until| t < until) {
-            let is_clear = there > margin - slack;
+            let is_clear = there > margin - slack(rim);
             assert!(is_clear, "{there} at {t}, clear of {margin} until {clear_until}{}", problem());
         }
     }
