@@ -22,9 +22,13 @@
 //! down come out right) the two agree, except after a thick tube shorter than its radius (the printed rule
 //! compares the thin tube's first joint with the thick radius, and leaves a gap) and around a lone thick vertex,
 //! which belongs to no tube and which the printed rule makes flat on both sides.
+//!
+//! Radii that are equal but for rounding are equal here (`steps`): of a rod simulator's every second segment is thicker by
+//! its last bit, and would begin with a face.
 
 use super::Cap;
 use super::compare::at_least_apart;
+use super::steps::Steps;
 use parry3d_f64::math::{Real, Vector};
 
 /// Writes the caps of each link to `caps`, whose memory is used again; one point more than radii.
@@ -52,15 +56,16 @@ fn reset(caps: &mut Vec<[Cap; 2]>, links: usize) {
 
 /// One walk: whether the link end at each vertex, facing back the way we came, is round.
 fn walk<'a>(vertices: impl Iterator<Item = (&'a Vector, &'a Real)>) -> impl Iterator<Item = Cap> {
-    let mut limit_and_last: Option<(Vector, Real)> = None;
+    let (mut limit, mut steps) = (None::<Vector>, Steps::default());
     vertices.map(move |(&point, &radius)| {
-        let (limit, cap) = match limit_and_last {
-            Some((limit, last)) if radius <= last => {
-                (limit, if at_least_apart(limit, point, radius) { Cap::Round } else { Cap::Flat })
+        let is_up = steps.is_up(radius);
+        match limit {
+            Some(limit) if !is_up && at_least_apart(limit, point, radius) => Cap::Round,
+            Some(_) if !is_up => Cap::Flat,
+            _ => {
+                limit = Some(point);
+                Cap::Flat
             }
-            _ => (point, Cap::Flat),
-        };
-        limit_and_last = Some((limit, radius));
-        cap
+        }
     })
 }

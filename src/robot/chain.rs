@@ -69,8 +69,8 @@ impl Chain {
     /// paper).
     ///
     /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
-    /// where a round cap does not stick out of such a face. A radius that is meant to be constant must be so to
-    /// the last bit: any increase is a step. A joint exactly one radius from a face is round.
+    /// where a round cap does not stick out of such a face. Radii that differ by less than 2^-32 of the first of them are no
+    /// step, so that a constant may be rounded. A joint exactly one radius from a face is round.
     ///
     /// # Errors
     /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or

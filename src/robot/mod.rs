@@ -19,6 +19,7 @@ mod serialised;
 mod sight;
 mod simplify;
 mod stations;
+mod steps;
 mod stretches;
 mod to_trimesh;
 mod tube;

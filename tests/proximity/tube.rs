@@ -57,16 +57,37 @@ fn from_function(arcs: &Arc<Arcs>) -> Tube {
     tube
 }
 
-/// The tube as a function, and from samples with and without the tangents at its ends: at least four in each arc, and no
-/// farther apart than a third of the smallest radius of curvature.
-pub(super) fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 3] {
+/// The tube as a function, and from samples with and without the tangents at its ends, and as they come from where sections
+/// have end points and radii of their own: at least four in each arc, and no farther apart than a third of the smallest
+/// radius of curvature.
+pub(super) fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 4] {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let (points, radii) = arcs.samples((arcs.shortest() / 4.0).min(0.2).min(0.3 / sharpest), &[]);
     [
         from_function(arcs),
         Tube::from_samples(&points, &radii, Some(arcs.end_tangents())).unwrap(),
         Tube::from_samples(&points, &radii, None).unwrap(),
+        as_computed(&points, &radii),
     ]
+}
+
+/// Some points twice, as far apart as rounding puts what is computed in two ways, and radii that differ in their last digits.
+fn as_computed(points: &[Vector], radii: &[f64]) -> Tube {
+    let reach = points.iter().fold(0.0, |most: f64, point| most.max(point.abs().max_element()));
+    let mut random = Random::new(points.len() as u64);
+    let (mut all, mut all_radii) = (vec![], vec![]);
+    for (k, &point) in points.iter().enumerate() {
+        all.push(point);
+        let rounded = |random: &mut Random, k: usize| radii[k] * (1.0 + 1e-13 * random.between(-1.0, 1.0));
+        if random.below(5) == 0 || k + 1 == points.len() {
+            all.push(point + random.point() * (4.0 * f64::EPSILON * reach));
+            all_radii.push(random.unit());
+        }
+        if k < radii.len() {
+            all_radii.push(rounded(&mut random, k));
+        }
+    }
+    Tube::from_samples(&all, &all_radii, None).unwrap()
 }
 
 #[derive(Debug, Default)]

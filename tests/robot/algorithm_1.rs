@@ -345,3 +345,21 @@ fn chains_with_equal_links_are_equal() {
     assert_eq!(chain, chain.clone());
     assert_ne!(chain, Chain::capsules(&points, &[0.1; 3]).unwrap());
 }
+
+/// The radii of a rod simulator differ in their last digits. They are no steps, and each link keeps its own.
+#[test]
+fn radii_that_differ_by_rounding_are_no_steps() {
+    let points: Vec<_> = (0..40)
+        .map(|k| f64::from(k) * 0.05)
+        .map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 20.0)
+        .collect();
+    let constant = Chain::from_centreline(&points, &[0.5; 39]).unwrap();
+    let radii: Vec<_> = (0..39).map(|k| 0.5 * (1.0 + 1e-13 * f64::from(k * 7 % 5))).collect();
+    let rounded = Chain::from_centreline(&points, &radii).unwrap();
+    for ((a, b), radius) in constant.links().iter().zip(rounded.links()).zip(radii) {
+        assert_eq!((a.caps(), radius), (b.caps(), b.radius()));
+    }
+    let steps: Vec<_> = (0..39).map(|k| 0.5 * (1.0 + 1e-8 * f64::from(k * 7 % 5))).collect();
+    let stepped = Chain::from_centreline(&points, &steps).unwrap();
+    assert!(stepped.links().iter().zip(constant.links()).any(|(a, b)| a.caps() != b.caps()));
+}

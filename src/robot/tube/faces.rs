@@ -22,21 +22,19 @@
 
 use super::Tube;
 use super::section::Face;
-use parry3d_f64::math::{Real, Vector};
+use crate::robot::steps::Steps;
+use parry3d_f64::math::Vector;
 
 impl Tube {
     /// One walk of Algorithm 1: each section with the one at whose end the last limit is, which comes before it.
     pub(super) fn walk(&mut self, end: usize, mut visit: impl FnMut(&mut Self, usize, usize)) {
         let count = self.sections.len();
-        let mut limit_and_last = None::<(usize, Real)>;
+        let (mut limit, mut steps) = (0, Steps::default());
         for step in 0..count {
             let number = if end == 0 { step } else { count - 1 - step };
-            let radius = self.sections[number].radius;
-            let limit = match limit_and_last {
-                Some((limit, last)) if radius <= last => limit,
-                _ => number,
-            };
-            limit_and_last = Some((limit, radius));
+            if steps.is_up(self.sections[number].radius) {
+                limit = number;
+            }
             visit(self, number, limit);
         }
     }

@@ -58,6 +58,8 @@ pub struct Tube {
     spare: (Curve, Vec<Section>),
     /// How far the curve may be from what was given.
     error: Real,
+    /// By how much points that were taken for one lie apart, and radii that were taken for one differ.
+    merged: Real,
     /// The largest coordinate of the centreline, or its length, or more.
     reach: Real,
     /// Memory for the next links: their ends and caps.
@@ -76,7 +78,7 @@ impl Clone for Tube {
     fn clone_from(&mut self, source: &Self) {
         self.curve.clone_from(&source.curve);
         self.sections.clone_from(&source.sections);
-        (self.error, self.reach) = (source.error, source.reach);
+        (self.error, self.merged, self.reach) = (source.error, source.merged, source.reach);
     }
 }
 
@@ -96,7 +98,9 @@ impl Tube {
     ///
     /// The curvature of a section is the largest that its samples show: turn / distance between neighbouring segments. A
     /// section of one segment shows nothing of its own; the turns at its two ends count, which its neighbours share.
-    /// Repeated points are dropped, together with the radius of the segment without length between them.
+    /// Points at one place, but for the rounding of coordinates so large (2^-48 of the largest), are one, as where the points
+    /// of one section end and those of the next begin; the radius of the segment between them is dropped. Radii that differ by
+    /// less than 2^-32 of a section's first are one section, with the largest of them. What that changes counts in all bounds.
     ///
     /// # Errors
     /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tangent that is zero or not finite; samples so far
@@ -124,12 +128,12 @@ impl Tube {
         segment_radii: &[Real],
         end_tangents: Option<[Vector; 2]>,
     ) -> Result<(), RobotError> {
-        let reach = self.reach;
+        let before = (self.reach, self.merged);
         self.exchange();
         let measured = self.measure(points, segment_radii, end_tangents);
         if measured.is_err() {
             self.exchange();
-            self.reach = reach;
+            (self.reach, self.merged) = before;
         }
         measured
     }
@@ -162,8 +166,9 @@ impl Tube {
         &self.sections
     }
 
+    /// How far a point of the tube may be from where it is said to be: what was stated, and what was taken for one.
     pub(crate) fn error(&self) -> Real {
-        self.error
+        self.error + self.merged
     }
 
     /// The largest coordinate of the tube in its frame, or more.
@@ -225,6 +230,7 @@ impl Tube {
             sections: Vec::new(),
             spare: (Curve::default(), Vec::new()),
             error: 0.0,
+            merged: 0.0,
             reach: 0.0,
             ends: Vec::new(),
             caps: Vec::new(),

@@ -11,6 +11,9 @@
 //!   long (Schwarz: the chord of an arc of curvature k is the shortest; asin x <= x (1 + x^2 / 5) up to 1/2);
 //! - it leaves the chord by at most k l^2 / 8, where l is its length.
 //!
+//! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on from within the gap: the
+//! directions on either side are unknown by the gap over the length, and every point by the gap.
+//!
 //! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost everywhere. Which way a
 //! face stands is told in `direction_at_end`.
 
@@ -23,6 +26,7 @@ use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
+use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
 /// A segment between two samples.
@@ -65,6 +69,9 @@ struct Open {
     turns: usize,
     /// The curvature that the turns at steps in radius show.
     at_ends: Real,
+    /// The radii of its first and of its thinnest segment.
+    first_radius: Real,
+    least_radius: Real,
 }
 
 impl Open {
@@ -80,7 +87,30 @@ impl Open {
             deviation: 0.0,
             faces: [None; 2],
         };
-        Self { section, longest: 0.0, longest_from: first, turns: 0, at_ends: 0.0 }
+        let [first_radius, least_radius] = [radius; 2];
+        Self {
+            section,
+            longest: 0.0,
+            longest_from: first,
+            turns: 0,
+            at_ends: 0.0,
+            first_radius,
+            least_radius,
+        }
+    }
+
+    /// Whether a segment with this radius belongs to it; then takes note of the radius.
+    #[inline(always)]
+    fn takes(&mut self, radius: Real) -> bool {
+        if radius == self.first_radius {
+            return true;
+        }
+        let is_same = is_same(self.first_radius, radius);
+        if is_same {
+            self.section.radius = self.section.radius.max(radius);
+            self.least_radius = self.least_radius.min(radius);
+        }
+        is_same
     }
 
     /// Takes note of the turn from one segment to the next.
@@ -158,25 +188,38 @@ impl Tube {
         segments.resize(samples.len(), 0);
         self.sections.clear();
         let rounding = 4.0 * Real::UNIT_ROUNDOFF * reach;
+        // Coordinates that were computed in two ways may differ by so much.
+        let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
+        let (mut gap, mut widest_gap): (Real, Real) = (0.0, 0.0);
+        self.merged = 0.0;
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
         let mut open = Open::new(0, 0.0, radii[0]);
         let mut result = Ok(());
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
-            let Some(segment) = Segment::between(points[last], sample, rounding) else { continue };
+            // What is left out of the curve before it is unknown of its direction.
+            let Some(segment) = Segment::between(points[last], sample, rounding + gap) else { continue };
+            if segment.length <= one_place {
+                gap = gap.max(segment.length);
+                widest_gap = widest_gap.max(gap);
+                continue;
+            }
+            gap = 0.0;
             if let Some(before) = &before {
-                if radius == open.section.radius {
+                if open.takes(radius) {
                     open.bend(before, &segment);
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
                     let next = Open { at_ends: turn, ..Open::new(last, arc, radius) };
-                    match std::mem::replace(&mut open, next).close(last, arc) {
+                    let done = std::mem::replace(&mut open, next);
+                    self.merged = self.merged.max(done.section.radius - done.least_radius);
+                    match done.close(last, arc) {
                         Ok(section) => self.sections.push(section),
                         Err(error) => result = result.and(Err(error)),
                     }
                 }
             } else {
-                open.section.radius = radius;
+                open = Open::new(0, 0.0, radius);
                 if let Some([tangent, _]) = tangents {
                     open.bend_from(tangent, &segment);
                 }
@@ -198,6 +241,7 @@ impl Tube {
         points.truncate(last + 1);
         arcs.truncate(last + 1);
         segments.truncate(last + 1);
+        self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
         match open.close(last, arc) {
             Ok(section) => self.sections.push(section),
             Err(error) => result = result.and(Err(error)),
@@ -208,7 +252,7 @@ impl Tube {
             result = Err(RobotError::AllPointsEqual);
         }
         if result.is_ok() {
-            result = self.stand_faces(&points, tangents, rounding, samples);
+            result = self.stand_faces(&points, tangents, rounding + widest_gap, one_place, samples);
         }
         self.curve = Curve::Samples { points, arcs, segments };
         result
@@ -220,6 +264,7 @@ impl Tube {
         points: &[Vector],
         tangents: Option<[Vector; 2]>,
         rounding: Real,
+        one_place: Real,
         samples: &[Vector],
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
@@ -246,18 +291,19 @@ impl Tube {
             });
         }
         for section in &self.sections {
-            super::check_faces(section, || position_of(section.first as usize, samples))?;
+            super::check_faces(section, || position_of(section.first as usize, samples, one_place))?;
         }
         self.mark_lasting_faces();
         Ok(())
     }
 }
 
-/// Where a point stood among the samples before repeated ones were dropped.
-fn position_of(point: usize, samples: &[Vector]) -> usize {
+/// Where a point stood among the samples before those at one place were dropped.
+fn position_of(point: usize, samples: &[Vector], one_place: Real) -> usize {
     let (mut last, mut count) = (0, 0);
     for k in 1..samples.len() {
-        if count < point && Segment::between(samples[last], samples[k], 0.0).is_some() {
+        let is_apart = |segment: Segment| segment.length > one_place;
+        if count < point && Segment::between(samples[last], samples[k], 0.0).is_some_and(is_apart) {
             (last, count) = (k, count + 1);
         }
     }

@@ -21,7 +21,7 @@ impl Tube {
         for section in &self.sections {
             let &Section { start, end, curvature, .. } = section;
             let h = (end - start) / Real::from(steps.max(1)) * 0.5;
-            let rounding = 64.0 * Real::UNIT_ROUNDOFF * self.reach + 4.0 * self.error;
+            let rounding = 64.0 * Real::UNIT_ROUNDOFF * self.reach + 4.0 * self.error();
             for step in 0..steps.max(1) {
                 let arc_length = start + (2.0 * Real::from(step) + 1.0) * h;
                 let [before, here, behind] = [arc_length - h, arc_length, arc_length + h].map(|s| curve(s));
