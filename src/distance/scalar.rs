@@ -52,16 +52,19 @@ pub trait Scalar:
     #[doc(hidden)]
     fn lit(self, value: f64) -> Self;
     /// `self < other`
+    #[doc(hidden)]
     fn lt(self, other: Self) -> Self::Mask;
     /// `self <= other`
     #[doc(hidden)]
     fn le(self, other: Self) -> Self::Mask;
     /// The magnitude, +0 for -0.
+    #[doc(hidden)]
     fn abs(self) -> Self;
     /// The square root.
     #[doc(hidden)]
     fn sqrt(self) -> Self;
     /// `self * factor + addend`, fused only where that is as fast as the two operations.
+    #[doc(hidden)]
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// The cube root of the magnitude within 5 %: a start value, never an answer.
     #[doc(hidden)]
