@@ -5,6 +5,9 @@ use crate::robot::Tube;
 use crate::robot::scale::{direction, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
+/// The least distance between two numbers, 2^-1074.
+const LEAST_STEP: Real = Real::from_bits(1);
+
 /// A share of a section; or, from one share to another, the chord between the two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampledPlace {
@@ -74,7 +77,8 @@ impl Sampled {
         // As in queries: a placed point is off by less than 16 roundings of the largest coordinate; a place along the
         // curve by less than one of its length.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.length();
-        self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
+        // Where a rounding of that vanishes, the steps between numbers do not.
+        self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach + 64.0 * LEAST_STEP;
         self.samples.clear();
         self.stated.clear();
         self.stated.resize(places.len(), [0.0; 2]);
@@ -97,7 +101,8 @@ impl Sampled {
                 // the length, if shares of the curve are as long as those of the samples' lines: they are to `stretch`. And
                 // where the mean is 1 - b^2 / 24 long or longer, for the turn b in between, its direction turns by as
                 // much more.
-                let bend = section.curvature * (section.end - section.start) * (to - from) * section.stretch;
+                let known = tube.bound(section, tube.ticks_around(section, [from, to]));
+                let bend = known.curvature * (section.end - section.start) * (to - from) * section.stretch;
                 sample.direction = direction(chord);
                 sample.tilt = (section.stretch - 1.0)
                     + (here.off + there.off + self.rounding) / size

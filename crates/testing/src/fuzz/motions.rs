@@ -33,9 +33,23 @@ pub fn motions(bytes: &[u8]) {
         let Ok(motion) = LinearMotion::chain(&points, &to, &radii) else { return };
         check(&mut source, search, &mesh, &motion, |t| {
             let between: Vec<_> = points.iter().zip(&to).map(|(from, to)| from.lerp(*to, t)).collect();
+            if rounding_decides(&points, &to, &between) {
+                return None;
+            }
             Chain::from_centreline(&between, &radii).ok().map(|chain| (chain, Pose::IDENTITY))
         });
     }
+}
+
+/// Whether the rounding of a shape between two decides which way a segment leads, or whether there is one: a motion knows
+/// where it began and ends.
+fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool {
+    let reach = from.iter().chain(to).fold(0.0, |most: f64, point| point.abs().max_element().max(most));
+    let segments = from.windows(2).zip(to.windows(2)).zip(between.windows(2));
+    segments.into_iter().any(|((from, to), between)| {
+        let is_there = from[0] != from[1] || to[0] != to[1];
+        is_there && (between[1] - between[0]).length() <= 1e-12 * reach
+    })
 }
 
 /// The shape at a time, as a chain.
