@@ -45,7 +45,7 @@ impl PlacedTube<'_> {
         let place = a + (b - a) * foot.share;
         let way = place - x;
         let away = way.length();
-        let reach = away + section.deviation + rounding;
+        let reach = away + foot.off + rounding;
         let mut best = OnTube { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
         for (end, face) in section.faces.iter().enumerate() {
@@ -102,7 +102,7 @@ impl PlacedTube<'_> {
 
     /// How far a round end is from `x`, if its ball may stick out of the face at the section's other end.
     fn distance_to_crowded_end(&self, section: &Section, end: usize, x: Vector) -> Real {
-        if section.faces[end].is_some() || section.end - section.start > section.room() {
+        if section.faces[end].is_some() || section.end - section.start > section.room(1 - end) {
             return Real::INFINITY;
         }
         let tick = if end == 0 { section.first } else { section.last };

@@ -37,7 +37,7 @@ use super::piece::Piece;
 use super::placed_tube::PlacedTube;
 use crate::answer::TubePiece;
 use crate::pair::PlacedLink;
-use crate::robot::{Cap, ModifiedCylinder, Section};
+use crate::robot::{Cap, CurveBound, ModifiedCylinder, Section};
 use parry3d_f64::math::{Real, Vector};
 use std::f64::consts::FRAC_PI_2;
 
@@ -72,10 +72,12 @@ impl PlacedTube<'_> {
         let arcs = self.arcs(piece);
         let exposed = self.exposed(section, arcs);
         let length = (arcs[1] - arcs[0]) * section.stretch;
-        let bend = section.curvature * length;
-        if exposed == [false; 2] || bend > FRAC_PI_2 {
-            return self.along_chord(section, piece, length, [false; 2]);
+        let known = self.tube.bound(section, [piece.from, piece.to]);
+        let bend = known.curvature * length;
+        if exposed == [false; 2] || bend > FRAC_PI_2 || known.curvature * section.radius >= 1.0 {
+            return self.along_chord(section, piece, &known, length, [false; 2]);
         }
+        let error = self.tube.error() + known.off;
         let sideways = 0.5 * bend * length;
         let faces = self.faces(section);
         let ends = [
@@ -90,11 +92,11 @@ impl PlacedTube<'_> {
             let other = if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
             let over = sideways + face.tilt * (length + section.radius) + other;
             if over <= by_chord && bend + face.tilt <= FRAC_PI_2 {
-                let wider = sideways + face.tilt * length + self.tube.error() + 2.0 * self.slack;
-                let mut beyond = section.radius * face.tilt + self.tube.error() + self.slack;
+                let wider = sideways + face.tilt * length + error + 2.0 * self.slack;
+                let mut beyond = section.radius * face.tilt + error + self.slack;
                 let mut behind = length;
                 if exposed[1 - end] {
-                    behind += section.radius * (bend + face.tilt) + self.tube.error() + self.slack;
+                    behind += section.radius * (bend + face.tilt) + error + self.slack;
                 }
                 let turning = section.radius * self.slack / 16.0;
                 let turned = turning / (beyond + behind).max(turning.sqrt());
@@ -114,14 +116,21 @@ impl PlacedTube<'_> {
                 };
             }
         }
-        self.along_chord(section, piece, length, exposed)
+        self.along_chord(section, piece, &known, length, exposed)
     }
 
-    fn along_chord(&self, section: &Section, piece: &Piece, length: Real, flat: [bool; 2]) -> Outer {
+    fn along_chord(
+        &self,
+        section: &Section,
+        piece: &Piece,
+        known: &CurveBound,
+        length: Real,
+        flat: [bool; 2],
+    ) -> Outer {
         let [mut start, mut end] = [piece.from, piece.to].map(|tick| self.point(section, tick));
-        let error = self.tube.error();
+        let (error, curvature) = (self.tube.error() + known.off, known.curvature);
         let along = end - start;
-        let mut over = 0.125 * section.curvature * length * length;
+        let mut over = 0.125 * curvature * length * length;
         let mut shift = Vector::ZERO;
         if over > self.slack && piece.to - piece.from >= 2 {
             let arcs = self.arcs(piece);
@@ -129,7 +138,7 @@ impl PlacedTube<'_> {
                 self.tube.tick(section, 0.5 * (arcs[0] + arcs[1])).max(piece.from + 1).min(piece.to - 1);
             let arc = self.tube.arc(section, tick);
             let longer = (arc - arcs[0]).max(arcs[1] - arc) * section.stretch;
-            let most = 0.5 * section.curvature * longer * longer;
+            let most = 0.5 * curvature * longer * longer;
             let offset = self.point(section, tick) - start;
             let share = offset.dot(along) / along.length_squared();
             if (0.0..=1.0).contains(&share) {
@@ -149,7 +158,7 @@ impl PlacedTube<'_> {
         let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
         if flat != [false; 2] {
             let unit = along / chord;
-            let tilt = 0.5 * section.curvature * length + 2.0 * (error + self.slack) / chord;
+            let tilt = 0.5 * curvature * length + 2.0 * (error + self.slack) / chord;
             let beyond = section.radius * tilt + error + self.slack;
             wider += section.radius * tilt;
             if flat[0] {

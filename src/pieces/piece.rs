@@ -40,10 +40,10 @@ impl PlacedTube<'_> {
 
     /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.
     pub(crate) fn exposed(&self, section: &Section, arcs: [Real; 2]) -> [bool; 2] {
-        let (room, faces) = (ROOM * section.room(), self.faces(section));
+        let faces = self.faces(section);
         [
-            faces[0].is_some() && arcs[0] - section.start < room,
-            faces[1].is_some() && section.end - arcs[1] < room,
+            faces[0].is_some() && arcs[0] - section.start < ROOM * section.room(0),
+            faces[1].is_some() && section.end - arcs[1] < ROOM * section.room(1),
         ]
     }
 
@@ -69,7 +69,8 @@ impl PlacedTube<'_> {
             let arcs = [from, to].map(|tick| self.tube.arc(section, tick));
             let length = arcs[1] - arcs[0];
             // By k l^2 / 8, and never turning by more than 1 rad.
-            let longest = (8.0 * coarse / section.curvature).sqrt().min(1.0 / section.curvature);
+            let curvature = section.mean_curvature;
+            let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // A number out of range becomes the nearest that is in it, and NaN becomes 0.
             let count = ((length / longest).ceil() as u32).clamp(1, MOST_PIECES).min(to - from);
             let tick =
@@ -85,16 +86,16 @@ impl PlacedTube<'_> {
     /// The ticks between which a section is free of its faces. The first is the second where it is not.
     fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
-        let room = ROOM * section.room();
         let [first, last] = self.faces(section).map(|face| face.is_some());
-        let needed = room * (Real::from(u8::from(first)) + Real::from(u8::from(last)));
+        let room = [0, 1].map(|end| ROOM * section.room(end));
+        let needed = room[0] * Real::from(u8::from(first)) + room[1] * Real::from(u8::from(last));
         if needed > 0.0 && section.end - section.start <= needed {
             return if first { [section.last; 2] } else { [section.first; 2] };
         }
-        let from = if first { self.tube.tick(section, section.start + room) } else { section.first };
+        let from = if first { self.tube.tick(section, section.start + room[0]) } else { section.first };
         // One before the first tick within the room.
         let to = if last {
-            self.tube.tick(section, section.end - room).saturating_sub(1).max(section.first)
+            self.tube.tick(section, section.end - room[1]).saturating_sub(1).max(section.first)
         } else {
             section.last
         };
@@ -110,7 +111,7 @@ impl PlacedTube<'_> {
         let section = self.section(piece.section);
         let arcs = self.arcs(piece);
         let middle = 0.5 * (arcs[0] + arcs[1]);
-        let near = (aim / section.curvature).sqrt();
+        let near = (aim / self.tube.bound(section, [piece.from, piece.to]).curvature).sqrt();
         let faces = self.faces(section);
         let at = [
             piece.from == section.first && faces[0].is_some(),

@@ -226,15 +226,16 @@ pub enum RobotError {
         /// The offending direction.
         value: Vector,
     },
-    /// Samples are too far apart for a curve that bends so much.
+    /// Samples turn more sharply than what is known of a curve between them.
     #[error(
-        "the centreline bends so sharply that it may turn by {turn} rad between point {index} and the next; give more points \
-         there, check the end tangents if there are any, or use a Chain for a robot of straight links"
+        "the centreline turns so sharply at point {index} that it may turn by {turn} rad from one point to the next; if the points \
+         are measured, use `Tube::fit`; if the robot bends so, give more points there; check the end tangents if there are any; \
+         for a robot of straight links use a Chain"
     )]
     TurnsTooSharply {
-        /// Position in the input of the point before the longest gap of the section.
+        /// Position in the input of the point where it turns most.
         index: usize,
-        /// The largest curvature times the longest distance between points of the section, rad.
+        /// The largest curvature times a distance between two points next to it, rad.
         turn: Real,
     },
     /// The discs of a section would stick out of its flat end.

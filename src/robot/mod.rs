@@ -40,5 +40,5 @@ pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use tube::{Face, Lasting, Section};
+pub(crate) use tube::{CurveBound, Face, Lasting, Section};
 pub use tube::{Tube, TubeSection};

@@ -69,10 +69,13 @@ impl Motion for RigidMotion {
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let angle = self.turn.length() * up;
         let Some(section) = self.tube.sections().get(section) else { return Speed { point: 0.0, turn: 0.0 } };
-        let [a, b] = shares.map(|share| self.turn.cross(self.tube.at_share(section, share).point).length());
+        let ends = shares.map(|share| self.tube.at_share(section, share));
+        let [a, b] = ends.map(|end| self.turn.cross(end.point).length());
+        let known = self.tube.bound(section, self.tube.ticks_around(section, shares));
         let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
         // The ends are between samples, and the curve beside them.
-        let off = 0.125 * section.curvature * length * length + section.deviation + self.tube.error();
+        let beside = ends[0].off.max(ends[1].off).max(known.off);
+        let off = 0.125 * known.curvature * length * length + beside + self.tube.error();
         let rounding = 32.0 * Real::UNIT_ROUNDOFF * self.tube.reach();
         Speed { point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * up, turn: angle * up }
     }

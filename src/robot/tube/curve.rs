@@ -12,15 +12,36 @@ type Function = dyn Fn(Real) -> (Vector, Vector) + Send + Sync;
 /// How many ticks a section of a function has: more than any tolerance asks for that double precision can tell.
 pub(super) const TICKS: u32 = 1 << 20;
 
+/// Points on a centreline.
+#[derive(Clone, Default)]
+pub(super) struct Samples {
+    pub points: Vec<Vector>,
+    /// The length of the polyline up to each point.
+    pub arcs: Vec<Real>,
+    /// For each point the segment of the input that begins there.
+    pub segments: Vec<u32>,
+    /// For each point what is known of the curve from there to the next; none if all sections are even.
+    pub bounds: Vec<CurveBound>,
+}
+
+/// What is known of a stretch of a curve.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CurveBound {
+    /// Its curvature is at most this.
+    pub curvature: Real,
+    /// How far its points may be from where they are said to be.
+    pub off: Real,
+}
+
+impl CurveBound {
+    fn max(self, other: Self) -> Self {
+        Self { curvature: self.curvature.max(other.curvature), off: self.off.max(other.off) }
+    }
+}
+
 /// A centreline in the robot's frame.
 pub(super) enum Curve {
-    Samples {
-        points: Vec<Vector>,
-        /// The length of the polyline up to each point.
-        arcs: Vec<Real>,
-        /// For each point the segment of the input that begins there.
-        segments: Vec<u32>,
-    },
+    Samples(Samples),
     Function(Arc<Function>),
 }
 
@@ -31,6 +52,8 @@ pub(crate) struct Foot {
     /// From the one to the other.
     pub share: Real,
     pub arc: Real,
+    /// How far the curve may be from the place.
+    pub off: Real,
 }
 
 /// A place of a curve.
@@ -48,9 +71,7 @@ pub(crate) struct PlaceOnCurve {
 impl Clone for Curve {
     fn clone(&self) -> Self {
         match self {
-            Self::Samples { points, arcs, segments } => {
-                Self::Samples { points: points.clone(), arcs: arcs.clone(), segments: segments.clone() }
-            }
+            Self::Samples(samples) => Self::Samples(samples.clone()),
             Self::Function(curve) => Self::Function(Arc::clone(curve)),
         }
     }
@@ -58,13 +79,11 @@ impl Clone for Curve {
     /// In the memory that it has.
     fn clone_from(&mut self, source: &Self) {
         match (&mut *self, source) {
-            (
-                Self::Samples { points, arcs, segments },
-                Self::Samples { points: from, arcs: lengths, segments: numbers },
-            ) => {
-                points.clone_from(from);
-                arcs.clone_from(lengths);
-                segments.clone_from(numbers);
+            (Self::Samples(samples), Self::Samples(source)) => {
+                samples.points.clone_from(&source.points);
+                samples.arcs.clone_from(&source.arcs);
+                samples.segments.clone_from(&source.segments);
+                samples.bounds.clone_from(&source.bounds);
             }
             _ => *self = source.clone(),
         }
@@ -73,36 +92,47 @@ impl Clone for Curve {
 
 impl Default for Curve {
     fn default() -> Self {
-        Self::Samples { points: Vec::new(), arcs: Vec::new(), segments: Vec::new() }
+        Self::Samples(Samples::default())
     }
 }
 
 impl Curve {
     /// The memory of samples.
-    pub(super) fn into_samples(self) -> (Vec<Vector>, Vec<Real>, Vec<u32>) {
+    pub(super) fn into_samples(self) -> Samples {
         match self {
-            Self::Samples { points, arcs, segments } => (points, arcs, segments),
-            Self::Function(_) => (Vec::new(), Vec::new(), Vec::new()),
+            Self::Samples(samples) => samples,
+            Self::Function(_) => Samples::default(),
+        }
+    }
+
+    /// What is known of the curve between two ticks of a section.
+    pub(super) fn bound(&self, section: &Section, [from, to]: [u32; 2]) -> CurveBound {
+        match self {
+            Self::Samples(Samples { bounds, .. }) if !section.is_even => {
+                let own = &bounds[from as usize..to as usize];
+                own.iter().fold(CurveBound::default(), |most, &bound| most.max(bound))
+            }
+            _ => CurveBound { curvature: section.curvature, off: 0.0 },
         }
     }
 
     /// The segment of the input at an arc length of a section; none where the curve is a function.
     pub(super) fn segment(&self, section: &Section, arc: Real) -> Option<u32> {
-        let Self::Samples { segments, .. } = self else { return None };
+        let Self::Samples(Samples { segments, .. }) = self else { return None };
         let from = self.tick(section, arc).saturating_sub(1).max(section.first);
         segments.get(from as usize).copied()
     }
 
     pub(super) fn point(&self, section: &Section, tick: u32) -> Vector {
         match self {
-            Self::Samples { points, .. } => points[tick as usize],
+            Self::Samples(Samples { points, .. }) => points[tick as usize],
             Self::Function(curve) => curve(arc_of(section, tick)).0,
         }
     }
 
     pub(super) fn arc(&self, section: &Section, tick: u32) -> Real {
         match self {
-            Self::Samples { arcs, .. } => arcs[tick as usize],
+            Self::Samples(Samples { arcs, .. }) => arcs[tick as usize],
             Self::Function(_) => arc_of(section, tick),
         }
     }
@@ -110,7 +140,7 @@ impl Curve {
     /// The first tick at an arc length or behind it.
     pub(super) fn tick(&self, section: &Section, arc: Real) -> u32 {
         match self {
-            Self::Samples { arcs, .. } => {
+            Self::Samples(Samples { arcs, .. }) => {
                 let within = &arcs[section.first as usize..=section.last as usize];
                 (section.first + within.partition_point(|&before| before < arc) as u32).min(section.last)
             }
@@ -127,7 +157,7 @@ impl Curve {
         match self {
             _ if tick <= section.first => 0.0,
             _ if tick >= section.last => 1.0,
-            Self::Samples { arcs, .. } => {
+            Self::Samples(Samples { arcs, .. }) => {
                 (arcs[tick as usize] - section.start) / (section.end - section.start)
             }
             Self::Function(_) => Real::from(tick) / Real::from(TICKS),
@@ -137,7 +167,7 @@ impl Curve {
     /// The last tick at a share or before it, and the first tick at another or behind that.
     pub(super) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
         match self {
-            Self::Samples { .. } => {
+            Self::Samples(_) => {
                 // The search through samples by their shares; those before `tick` come first.
                 let count = |is_before: &dyn Fn(Real) -> bool| {
                     let (mut low, mut high) = (section.first, section.last);
@@ -166,7 +196,7 @@ impl Curve {
     /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2 away at its share u.
     pub(super) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         match self {
-            Self::Samples { points, arcs, .. } => {
+            Self::Samples(Samples { points, arcs, .. }) => {
                 let [from, to] = self.ticks_around(section, [share; 2]);
                 // At a sample the segment before it or behind it.
                 let (from, to) = (from as usize, (to as usize).max(from as usize + 1));
@@ -178,9 +208,9 @@ impl Curve {
                 let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
                 // A length that vanishes beside those before it, as a sum, says nothing of a direction.
                 let rounded = if length > 0.0 { rounding / length } else { Real::INFINITY };
-                let tilt = section.curvature * length * section.stretch + rounded;
-                let longest = length * section.stretch;
-                let off = 0.5 * section.curvature * longest * longest * (along * (1.0 - along)).max(0.0);
+                let bound = self.bound(section, [from as u32, to as u32]);
+                let tilt = bound.curvature * length * section.stretch + rounded;
+                let off = beside_chord(&bound, length * section.stretch, along);
                 PlaceOnCurve { point: a + (b - a) * along, off, direction: direction(b - a), tilt }
             }
             Self::Function(curve) => {
@@ -194,10 +224,13 @@ impl Curve {
     /// section.
     pub(super) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
         match self {
-            Self::Samples { points, arcs, .. } => {
+            Self::Samples(Samples { points, arcs, .. }) => {
                 let (first, last) = (section.first as usize, section.last as usize);
                 let from = (self.tick(section, arc) as usize).clamp(first, last);
-                foot_on_samples(&points[..=last], arcs, first, from, point)
+                let (foot, tick) = foot_on_samples(&points[..=last], arcs, first, from, point);
+                let bound = self.bound(section, [tick as u32, tick as u32 + 1]);
+                let length = (arcs[tick + 1] - arcs[tick]) * section.stretch;
+                Foot { off: beside_chord(&bound, length, foot.share), ..foot }
             }
             Self::Function(curve) => foot_on_function(curve.as_ref(), section, arc, point),
         }
@@ -209,8 +242,19 @@ fn arc_of(section: &Section, tick: u32) -> Real {
     section.start + (section.end - section.start) * share
 }
 
-/// Along the samples `first..`, from sample `from`.
-fn foot_on_samples(points: &[Vector], arcs: &[Real], first: usize, from: usize, point: Vector) -> Foot {
+/// How far a curve may be from a share of the line between two of its points, if it is so long between them.
+fn beside_chord(bound: &CurveBound, length: Real, share: Real) -> Real {
+    0.5 * bound.curvature * length * length * (share * (1.0 - share)).max(0.0) + bound.off
+}
+
+/// Along the samples `first..`, from sample `from`, with the sample before it.
+fn foot_on_samples(
+    points: &[Vector],
+    arcs: &[Real],
+    first: usize,
+    from: usize,
+    point: Vector,
+) -> (Foot, usize) {
     let last = points.len() - 1;
     let squared = |k: usize| (point - points[k]).length_squared();
     let mut nearest = from;
@@ -240,7 +284,8 @@ fn foot_on_samples(points: &[Vector], arcs: &[Real], first: usize, from: usize, 
         let share = (point - a).dot(b - a) / (b - a).length_squared();
         let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
         let squared = (point - a - (b - a) * share).length_squared();
-        (squared, Foot { between: [a, b], share, arc: arcs[k] + (arcs[k + 1] - arcs[k]) * share })
+        let arc = arcs[k] + (arcs[k + 1] - arcs[k]) * share;
+        (squared, (Foot { between: [a, b], share, arc, off: 0.0 }, k))
     };
     if nearest == first {
         return on_segment(first).1;
@@ -269,5 +314,5 @@ fn foot_on_function(curve: &Function, section: &Section, from: Real, point: Vect
         }
         (arc, place, direction, squared) = (next, there, ahead, nearer);
     }
-    Foot { between: [place, place], share: 0.0, arc }
+    Foot { between: [place, place], share: 0.0, arc, off: 0.0 }
 }

@@ -1,7 +1,7 @@
 //! A chain is a tube whose pieces are straight: each link is a section without curvature.
 
 use super::Tube;
-use super::curve::Curve;
+use super::curve::{Curve, Samples};
 use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::robot::algorithm_1;
@@ -69,7 +69,9 @@ impl Tube {
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
     /// `lasting` knows flat ends that are not so by the radii alone.
     fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {
-        let (mut points, mut arcs, mut segments) = std::mem::take(&mut self.curve).into_samples();
+        let Samples { mut points, mut arcs, mut segments, mut bounds } =
+            std::mem::take(&mut self.curve).into_samples();
+        bounds.clear();
         points.clear();
         segments.clear();
         arcs.clear();
@@ -89,8 +91,11 @@ impl Tube {
                 end,
                 radius,
                 curvature: 0.0,
+                mean_curvature: 0.0,
+                curvature_at: [0.0; 2],
+                shown_at: [0.0; 2],
+                is_even: true,
                 stretch: 1.0,
-                deviation: 0.0,
                 faces: [face(0), face(1)],
             });
             points.extend(ends);
@@ -101,7 +106,7 @@ impl Tube {
         (self.error, self.merged) = (0.0, 0.0);
         // Lengths along the tube are rounded too.
         self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
-        self.curve = Curve::Samples { points, arcs, segments };
+        self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
         self.mark_lasting_faces();
     }
 }

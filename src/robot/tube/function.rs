@@ -63,16 +63,20 @@ impl Tube {
                 let outward = direction(if end == 0 { -tangent } else { tangent });
                 Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::Either }))
             };
+            // The ends of sections are rounded.
+            let curvature = given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
             tube.sections.push(Section {
                 first: 0,
                 last: TICKS,
                 start,
                 end,
                 radius: given.radius,
-                // The ends of sections are rounded.
-                curvature: given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF),
+                curvature,
+                mean_curvature: curvature,
+                curvature_at: [curvature; 2],
+                shown_at: [curvature; 2],
+                is_even: true,
                 stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
-                deviation: 0.0,
                 // As if both were flat; the round ones are taken away below.
                 faces: [face(0, start)?, face(1, end)?],
             });

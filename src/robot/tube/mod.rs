@@ -6,6 +6,7 @@ mod faces;
 mod from_chain;
 mod function;
 mod lasting;
+mod own_samples;
 mod samples;
 mod section;
 mod verify;
@@ -16,6 +17,7 @@ pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
 use super::{Cap, RobotError};
+pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
 
@@ -188,6 +190,11 @@ impl Tube {
         self.curve.tick(section, arc)
     }
 
+    /// What is known of the curve between two ticks of a section.
+    pub(crate) fn bound(&self, section: &Section, ticks: [u32; 2]) -> CurveBound {
+        self.curve.bound(section, ticks)
+    }
+
     /// The segment of the input at an arc length of a section; the section's number where the curve is a function.
     pub(crate) fn segment(&self, number: u32, arc: Real) -> u32 {
         self.curve.segment(&self.sections[number as usize], arc).unwrap_or(number)
@@ -214,7 +221,7 @@ impl Tube {
 
     /// The shares of the two samples around a share of a section; none where the curve is a function.
     pub(crate) fn samples_around(&self, section: &Section, share: Real) -> Option<[Real; 2]> {
-        let Curve::Samples { .. } = self.curve else { return None };
+        let Curve::Samples(_) = self.curve else { return None };
         Some(self.ticks_around(section, [share; 2]).map(|tick| self.share(section, tick)))
     }
 
@@ -240,11 +247,11 @@ impl Tube {
 
 /// Discs behind a flat face must not stick out of it, which they would where the centreline bends within a radius.
 fn check_faces(section: &Section, index: impl FnOnce() -> usize) -> Result<(), RobotError> {
-    let Section { curvature, radius, faces, .. } = *section;
-    if faces.iter().any(Option::is_some) && curvature * radius >= 1.0 {
-        return Err(RobotError::BendsWithinRadius { index: index(), curvature, radius });
+    let Section { shown_at, radius, faces, .. } = *section;
+    match faces.iter().zip(shown_at).find(|(face, curvature)| face.is_some() && curvature * radius >= 1.0) {
+        Some((_, curvature)) => Err(RobotError::BendsWithinRadius { index: index(), curvature, radius }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 fn unit_tangents(tangents: [Vector; 2]) -> Result<[Vector; 2], RobotError> {

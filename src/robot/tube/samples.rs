@@ -4,9 +4,11 @@
 //! section is at most the largest of turn / distance over the section's samples, where turn is the change of direction
 //! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
 //! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
-//! a section that has fewer than two of its own.
+//! a section that has fewer than two of its own. What means over two segments hide of a curvature that changes evenly is
+//! added (`between_samples`). Where samples lie unevenly, those that are close together count only for the segments next to
+//! them (`uneven`).
 //!
-//! With that curvature k, and h the longest segment:
+//! With that curvature k, and h the length of a segment:
 //! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
 //!   long (Schwarz: the chord of an arc of curvature k is the shortest; asin x <= x (1 + x^2 / 5) up to 1/2);
 //! - it leaves the chord by at most k l^2 / 8, where l is its length.
@@ -18,9 +20,10 @@
 //! face stands is told in `direction_at_end`.
 
 use super::Tube;
-use super::curve::Curve;
+use super::curve::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
 use super::lasting::Lasting;
+use super::own_samples::{Bend, OwnSamples};
 use super::section::{Face, Section};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -54,21 +57,34 @@ impl Segment {
 }
 
 /// The curvature that the turn from one segment to the next shows.
-fn curvature_between(before: &Segment, segment: &Segment) -> Real {
+pub(super) fn curvature_between(before: &Segment, segment: &Segment) -> Real {
     let turn = (segment.direction - before.direction).length() + segment.noise + before.noise;
     turn / (0.5 * (segment.length + before.length))
 }
+
+/// The curvature that the turn from the direction at an end to the segment next to it shows.
+pub(super) fn curvature_from(direction: Vector, segment: &Segment) -> Real {
+    let turn = (segment.direction - direction).length() + segment.noise;
+    turn / (0.5 * segment.length)
+}
+
+/// Samples of a section are uneven where a segment is so many times as long as its neighbour.
+const UNEVEN: Real = 4.0;
 
 /// A section on its way.
 struct Open {
     section: Section,
     longest: Real,
-    /// The sample before its longest segment.
-    longest_from: usize,
+    /// The sample where it turns most.
+    sharpest: usize,
+    /// Whether one of two neighbouring segments is more than four times as long as the other.
+    is_uneven: bool,
     /// How many turns it has inside.
     turns: usize,
     /// The curvature that the turns at steps in radius show.
     at_ends: Real,
+    /// The directions of the curve at its ends, where they are given.
+    tangents: [Option<Vector>; 2],
     /// The radii of its first and of its thinnest segment.
     first_radius: Real,
     least_radius: Real,
@@ -83,17 +99,22 @@ impl Open {
             end: start,
             radius,
             curvature: 0.0,
+            mean_curvature: 0.0,
+            curvature_at: [0.0; 2],
+            shown_at: [0.0; 2],
+            is_even: true,
             stretch: 1.0,
-            deviation: 0.0,
             faces: [None; 2],
         };
         let [first_radius, least_radius] = [radius; 2];
         Self {
             section,
             longest: 0.0,
-            longest_from: first,
+            sharpest: first,
+            is_uneven: false,
             turns: 0,
             at_ends: 0.0,
+            tangents: [None; 2],
             first_radius,
             least_radius,
         }
@@ -113,46 +134,103 @@ impl Open {
         is_same
     }
 
-    /// Takes note of the turn from one segment to the next.
+    /// Takes note of the turn at a sample from one segment to the next.
     #[inline(always)]
-    fn bend(&mut self, before: &Segment, segment: &Segment) {
+    fn bend(&mut self, at: usize, before: &Segment, segment: &Segment) {
         self.turns += 1;
+        self.is_uneven |= before.length > UNEVEN * segment.length || segment.length > UNEVEN * before.length;
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
         // Most turns are no larger than the largest so far, which is seen without a root and a division.
         let known = self.section.curvature * (0.5 * (segment.length + before.length)) - noise;
         if known < 0.0 || squared > known * known {
-            self.raise(curvature_between(before, segment));
+            self.raise(at, curvature_between(before, segment));
         }
     }
 
-    /// Takes note of the turn between a segment and the direction at one of its ends.
-    fn bend_from(&mut self, direction: Vector, segment: &Segment) {
-        let turn = (segment.direction - direction).length() + segment.noise;
-        self.raise(turn / (0.5 * segment.length));
+    /// Takes note of the direction at an end.
+    fn bend_from(&mut self, at: usize, end: usize, tangent: Vector, segment: &Segment) {
+        self.tangents[end] = Some(tangent);
+        self.raise(at, curvature_from(tangent, segment));
     }
 
-    fn raise(&mut self, curvature: Real) {
+    fn raise(&mut self, at: usize, curvature: Real) {
         if curvature > self.section.curvature {
-            self.section.curvature = curvature;
+            (self.section.curvature, self.sharpest) = (curvature, at);
         }
     }
 
-    fn close(mut self, last: usize, end: Real) -> Result<Section, RobotError> {
-        if self.turns < 2 {
-            self.raise(self.at_ends);
+    /// Ends it at a sample. `points` and `arcs` are all samples so far; `bounds` are those of the segments, if any.
+    fn close(
+        mut self,
+        last: usize,
+        rounding: Real,
+        points: &[Vector],
+        arcs: &[Real],
+        bounds: &mut Vec<CurveBound>,
+    ) -> Result<Section, Bend> {
+        let first = self.section.first as usize;
+        (self.section.last, self.section.end) = (last as u32, arcs[last]);
+        let own = OwnSamples {
+            points: &points[first..=last],
+            arcs: &arcs[first..=last],
+            tangents: self.tangents,
+            rounding,
+            shortest: 0.0,
+        };
+        let mut sharpest = None;
+        if self.is_uneven {
+            bounds.resize(first, CurveBound::default());
+            sharpest = own.bound_unevenly(if self.turns < 2 { self.at_ends } else { 0.0 }, bounds);
+            let section = &mut self.section;
+            section.is_even = false;
+            let all = || bounds[first..].iter().zip(arcs[first..].windows(2));
+            section.curvature = all().fold(0.0, |most: Real, (bound, _)| most.max(bound.curvature));
+            let turn: Real = all().map(|(bound, arcs)| bound.curvature * (arcs[1] - arcs[0])).sum();
+            section.mean_curvature = (turn / (section.end - section.start)).min(section.curvature);
+            let bend =
+                all().fold(0.0, |most: Real, (bound, arcs)| most.max(bound.curvature * (arcs[1] - arcs[0])));
+            section.stretch = stretch(bend);
+            let near = 2.0 * section.radius;
+            section.curvature_at = [0, 1].map(|end| {
+                let is_near = |arcs: &[Real]| {
+                    if end == 0 { arcs[0] - section.start <= near } else { section.end - arcs[1] <= near }
+                };
+                all()
+                    .filter(|(_, arcs)| is_near(arcs))
+                    .fold(0.0, |most: Real, (bound, _)| most.max(bound.curvature))
+            });
+            section.shown_at = section.curvature_at;
+        } else {
+            let shown = if self.turns > 0 {
+                own.between_samples(self.sharpest - first, self.section.curvature)
+            } else {
+                0.0
+            };
+            let section = &mut self.section;
+            section.shown_at = [section.curvature; 2];
+            section.curvature = section.curvature.max(shown);
+            if self.turns < 2 {
+                section.curvature = section.curvature.max(self.at_ends);
+            }
+            let bend = section.curvature * self.longest;
+            section.mean_curvature = section.curvature;
+            section.curvature_at = [section.curvature; 2];
+            section.stretch = stretch(bend);
+            if bend > 1.0 {
+                sharpest = Some(Bend { at: self.sharpest - first, turn: bend });
+            }
         }
-        let section = &mut self.section;
-        (section.last, section.end) = (last as u32, end);
-        let bend = section.curvature * self.longest;
-        if bend > 1.0 {
-            return Err(RobotError::TurnsTooSharply { index: self.longest_from, turn: bend });
+        match sharpest {
+            Some(Bend { at, turn }) => Err(Bend { at: first + at, turn }),
+            None => Ok(self.section),
         }
-        section.stretch = 1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF;
-        let longest = self.longest * section.stretch;
-        section.deviation = section.curvature * longest * longest / 8.0;
-        Ok(self.section)
     }
+}
+
+/// How many times as long as a polyline the curve may be that turns by so much over a segment.
+fn stretch(bend: Real) -> Real {
+    1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF
 }
 
 impl Tube {
@@ -179,7 +257,9 @@ impl Tube {
         let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
 
-        let (mut points, mut arcs, mut segments) = std::mem::take(&mut self.curve).into_samples();
+        let Samples { mut points, mut arcs, mut segments, mut bounds } =
+            std::mem::take(&mut self.curve).into_samples();
+        bounds.clear();
         points.clear();
         points.extend_from_slice(samples);
         arcs.clear();
@@ -206,22 +286,22 @@ impl Tube {
             gap = 0.0;
             if let Some(before) = &before {
                 if open.takes(radius) {
-                    open.bend(before, &segment);
+                    open.bend(last, before, &segment);
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
                     let next = Open { at_ends: turn, ..Open::new(last, arc, radius) };
                     let done = std::mem::replace(&mut open, next);
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
-                    match done.close(last, arc) {
+                    match done.close(last, rounding + widest_gap, &points, &arcs, &mut bounds) {
                         Ok(section) => self.sections.push(section),
-                        Err(error) => result = result.and(Err(error)),
+                        Err(bend) => result = result.and(Err(bend.error(&segments))),
                     }
                 }
             } else {
                 open = Open::new(0, 0.0, radius);
                 if let Some([tangent, _]) = tangents {
-                    open.bend_from(tangent, &segment);
+                    open.bend_from(0, 0, tangent, &segment);
                 }
             }
             arc += segment.length;
@@ -230,21 +310,22 @@ impl Tube {
             last += 1;
             points[last] = sample;
             arcs[last] = arc;
-            if segment.length > open.longest {
-                (open.longest, open.longest_from) = (segment.length, k);
-            }
+            open.longest = open.longest.max(segment.length);
             before = Some(segment);
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
-            open.bend_from(tangent, &segment);
+            open.bend_from(last, 1, tangent, &segment);
         }
         points.truncate(last + 1);
         arcs.truncate(last + 1);
         segments.truncate(last + 1);
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
-        match open.close(last, arc) {
+        match open.close(last, rounding + widest_gap, &points, &arcs, &mut bounds) {
             Ok(section) => self.sections.push(section),
-            Err(error) => result = result.and(Err(error)),
+            Err(bend) => result = result.and(Err(bend.error(&segments))),
+        }
+        if !bounds.is_empty() {
+            bounds.resize(last + 1, CurveBound::default());
         }
         // Lengths along the tube are rounded too.
         self.reach = reach.max(arc);
@@ -252,9 +333,9 @@ impl Tube {
             result = Err(RobotError::AllPointsEqual);
         }
         if result.is_ok() {
-            result = self.stand_faces(&points, tangents, rounding + widest_gap, one_place, samples);
+            result = self.stand_faces(&points, &bounds, tangents, rounding + widest_gap, one_place, samples);
         }
-        self.curve = Curve::Samples { points, arcs, segments };
+        self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
         result
     }
 
@@ -262,6 +343,7 @@ impl Tube {
     fn stand_faces(
         &mut self,
         points: &[Vector],
+        bounds: &[CurveBound],
         tangents: Option<[Vector; 2]>,
         rounding: Real,
         one_place: Real,
@@ -284,7 +366,10 @@ impl Tube {
                 };
                 let (outward, tilt) = match given {
                     Some(outward) => (outward, 0.0),
-                    None => direction_at_end(ahead, stretch.len(), section.curvature, rounding),
+                    None => {
+                        let curvature = bend_at_end(section, end, bounds);
+                        direction_at_end(ahead, stretch.len(), curvature, rounding)
+                    }
                 };
                 tube.sections[number].faces[end] =
                     Some(Face { centre, outward, tilt, lasting: Lasting::Either });
@@ -296,6 +381,16 @@ impl Tube {
         self.mark_lasting_faces();
         Ok(())
     }
+}
+
+/// How much the first two segments at an end may bend.
+fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
+    if section.is_even {
+        return section.curvature;
+    }
+    let own = &bounds[section.first as usize..section.last as usize];
+    let two = if end == 0 { &own[..own.len().min(2)] } else { &own[own.len().saturating_sub(2)..] };
+    two.iter().fold(0.0, |most: Real, bound| most.max(bound.curvature))
 }
 
 /// Where a point stood among the samples before those at one place were dropped.

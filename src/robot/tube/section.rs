@@ -15,10 +15,16 @@ pub(crate) struct Section {
     pub radius: Real,
     /// The curve's curvature is at most this.
     pub curvature: Real,
+    /// The mean of the bounds on its curvature along it.
+    pub mean_curvature: Real,
+    /// What its curvature is at most within two radii of its ends, by arc length.
+    pub curvature_at: [Real; 2],
+    /// What of that was stated or shown. A section with a flat end bends by less than 1 / radius next to it.
+    pub shown_at: [Real; 2],
+    /// Whether no more is known of one part than of another.
+    pub is_even: bool,
     /// The curve between two ticks is at most so many times as long as the polyline.
     pub stretch: Real,
-    /// How far the curve may be from the polyline through all ticks. None where the curve is a function.
-    pub deviation: Real,
     /// The flat ends. The others are round.
     pub faces: [Option<Face>; 2],
 }
@@ -36,11 +42,12 @@ pub(crate) struct Face {
 }
 
 impl Section {
-    /// How far from a flat face, by arc length, a ball on the centreline stays behind it. A disc at arc length s from the
-    /// face lies at least sin(curvature s) / curvature behind its plane, which is the radius where s is
-    /// asin(curvature radius) / curvature.
-    pub(crate) fn room(&self) -> Real {
-        let bend = (self.curvature * self.radius).min(1.0);
-        if bend > 0.0 { libm::asin(bend) / self.curvature } else { self.radius }
+    /// How far from the flat face at an end, by arc length, a ball on the centreline stays behind it. A disc at arc length s
+    /// from the face lies at least sin(curvature s) / curvature behind its plane, which is the radius where s is
+    /// asin(curvature radius) / curvature, not farther away than pi / 2 radii.
+    pub(crate) fn room(&self, end: usize) -> Real {
+        let curvature = self.curvature_at[end];
+        let bend = (curvature * self.radius).min(1.0);
+        if bend > 0.0 { libm::asin(bend) / curvature } else { self.radius }
     }
 }

@@ -1,0 +1,193 @@
+//! How much a section may bend between its samples.
+//!
+//! A sample shows a bend: the turn between its two segments over half of their lengths together. That is a mean of the
+//! curvature vector t', weighted by a hat over the two segments (for l1 and l2 long ones, and directions m1 and m2 as means
+//! of t: m2 - m1 is the integral of w t', w rising to 1 at the sample and falling again, and (l1 + l2) / 2 is that of w).
+//! The centre of a hat is (l2 - l1) / 3 behind its sample.
+//!
+//! **A curvature that changes evenly** is shown exactly at the hat's centre, but for two places: at a section's ends, beyond
+//! the last centre, where the change goes on as far as the end; and at a peak, which lies up to two segments from the largest
+//! bend and above it by no more than twice what bends fall by on its flatter side. Where that would be more than a
+//! quarter of the bend at a peak, or half of it at an end, the change is not even, and no more is added.
+//!
+//! **A bend that turns about the curve**, as in a helix, by the angle q from one sample to the next: its mean over a hat
+//! is less than the curvature k by q^2 / 12 of it. The differences of bends are about q k long; q^2 / 8 is added.
+//!
+//! **Uneven samples.** The turn at two samples that are close together is all noise. So a sample less than a quarter of the
+//! mean distance behind the one before it counts only for its own two segments. What the others show counts for all.
+
+use super::curve::CurveBound;
+use super::samples::{Segment, curvature_between, curvature_from};
+use crate::robot::RobotError;
+use parry3d_f64::math::{Real, Vector};
+
+/// Samples closer than this share of their mean distance to the one before count only for their own segments.
+const CLOSE: Real = 0.25;
+
+/// The samples of one section.
+pub(super) struct OwnSamples<'a> {
+    pub points: &'a [Vector],
+    pub arcs: &'a [Real],
+    /// The directions of the curve at its ends, where they are given.
+    pub tangents: [Option<Vector>; 2],
+    /// What rounding can do to a point.
+    pub rounding: Real,
+    /// Samples closer than this to the one before are left out.
+    pub shortest: Real,
+}
+
+/// A sample where the curve may turn by more than is known of it between two samples.
+pub(super) struct Bend {
+    pub at: usize,
+    pub turn: Real,
+}
+
+impl Bend {
+    /// `segments` are the segments of the input that begin at each sample.
+    pub(super) fn error(&self, segments: &[u32]) -> RobotError {
+        let index = if self.at > 0 { segments[self.at - 1] as usize + 1 } else { 0 };
+        RobotError::TurnsTooSharply { index, turn: self.turn }
+    }
+}
+
+impl OwnSamples<'_> {
+    fn last(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    fn is_kept(&self, sample: usize) -> bool {
+        sample == 0 || self.arcs[sample] - self.arcs[sample - 1] >= self.shortest
+    }
+
+    fn behind(&self, sample: usize) -> Option<usize> {
+        (sample + 1..=self.last()).find(|&sample| self.is_kept(sample))
+    }
+
+    fn before(&self, sample: usize) -> Option<usize> {
+        (0..sample).rev().find(|&sample| self.is_kept(sample))
+    }
+
+    fn segment(&self, from: usize, to: usize) -> Option<Segment> {
+        Segment::between(self.points[from], self.points[to], self.rounding)
+    }
+
+    /// The bend that a sample shows, as a vector; none at an end whose direction is not given.
+    fn bend(&self, sample: usize) -> Option<Vector> {
+        let before = self.before(sample).and_then(|before| self.segment(before, sample));
+        let behind = self.behind(sample).and_then(|behind| self.segment(sample, behind));
+        match (before, behind) {
+            (Some(before), Some(behind)) => {
+                Some((behind.direction - before.direction) / (0.5 * (before.length + behind.length)))
+            }
+            (None, Some(behind)) if sample == 0 => {
+                self.tangents[0].map(|tangent| (behind.direction - tangent) / (0.5 * behind.length))
+            }
+            (Some(before), None) if sample == self.last() => {
+                self.tangents[1].map(|tangent| (tangent - before.direction) / (0.5 * before.length))
+            }
+            _ => None,
+        }
+    }
+
+    /// The neighbour that is kept, towards an end.
+    fn next(&self, sample: usize, end: usize) -> Option<usize> {
+        if end == 0 { self.before(sample) } else { self.behind(sample) }
+    }
+
+    /// The curvature between samples, if the largest bend that they show is `most`, at the sample `at`.
+    pub(super) fn between_samples(&self, at: usize, most: Real) -> Real {
+        let mut curvature = most;
+        if let Some(here) = self.bend(at) {
+            // By how much bends fall towards an end, and by how much they turn.
+            let side = |end: usize| {
+                let next = self.next(at, end)?;
+                let bend = self.bend(next)?;
+                let fall = (here.length() - bend.length()).abs();
+                let beyond = self.next(next, end).and_then(|beyond| self.bend(beyond));
+                let next_fall = beyond.map_or(0.0, |beyond| (bend.length() - beyond.length()).abs());
+                Some([fall.max(next_fall), (bend - here).length_squared()])
+            };
+            let [peak, turned] = match [side(0), side(1)] {
+                [Some(one), Some(other)] => [one[0].min(other[0]), one[1].min(other[1])],
+                // What is beyond the end is told below.
+                [Some(one), None] | [None, Some(one)] => [0.0, one[1]],
+                [None, None] => [0.0; 2],
+            };
+            let size = here.length();
+            if size > 0.0 {
+                curvature += (2.0 * peak).min(0.25 * most) + turned.min(size * size) / (8.0 * size);
+            }
+        }
+        self.at_end(0).max(self.at_end(1)).max(curvature)
+    }
+
+    /// The curvature at an end, if it goes on changing as it does next to it.
+    fn at_end(&self, end: usize) -> Real {
+        let mut first = if end == 0 { 0 } else { self.last() };
+        let mut outer = 0.0;
+        if self.bend(first).is_none() {
+            let Some(next) = self.next(first, end ^ 1) else { return 0.0 };
+            outer = (self.points[next] - self.points[first]).length();
+            first = next;
+        }
+        let second = self.next(first, end ^ 1);
+        let (Some(bend), Some(next)) = (self.bend(first), second.and_then(|second| self.bend(second))) else {
+            return 0.0;
+        };
+        let size = bend.length();
+        let length = |from: Option<usize>, to: Option<usize>| match (from, to) {
+            (Some(from), Some(to)) => (self.points[to] - self.points[from]).length(),
+            _ => 0.0,
+        };
+        let between = length(Some(first), second);
+        let beyond = length(second, second.and_then(|second| self.next(second, end ^ 1)));
+        // Of the centres of two hats, and from the first of them to the end.
+        let apart = (outer + between + beyond) / 3.0;
+        let to_end = if outer > 0.0 { (2.0 * outer + between) / 3.0 } else { between / 3.0 };
+        let growth = (size - next.length()) * (to_end / apart);
+        // Written so that NaN is no growth.
+        if growth > 0.0 { size + growth.min(0.5 * size) } else { size }
+    }
+
+    /// Adds bounds of all segments. The sample at which the curve may turn too much between it and a neighbour is
+    /// returned, if there is one. It bends by `least` at least.
+    pub(super) fn bound_unevenly(mut self, least: Real, bounds: &mut Vec<CurveBound>) -> Option<Bend> {
+        let last = self.last();
+        self.shortest = CLOSE * (self.arcs[last] - self.arcs[0]) / last as Real;
+        let (mut most, mut at) = (0.0, 0);
+        for sample in (0..=last).filter(|&sample| self.is_kept(sample)) {
+            let noise = 2.0 * self.rounding / self.shortest;
+            let bend = self.bend(sample).map_or(0.0, |bend| bend.length() + noise / self.shortest);
+            if bend > most {
+                (most, at) = (bend, sample);
+            }
+        }
+        let most = self.between_samples(at, most).max(least);
+        let segment = |from: usize| self.segment(from, from + 1);
+        let own = |sample: usize| match sample {
+            0 => self.tangents[0]
+                .zip(segment(0))
+                .map_or(0.0, |(tangent, first)| curvature_from(tangent, &first)),
+            _ if sample == last => self.tangents[1]
+                .zip(segment(last - 1))
+                .map_or(0.0, |(tangent, segment)| curvature_from(tangent, &segment)),
+            _ => segment(sample - 1)
+                .zip(segment(sample))
+                .map_or(0.0, |(before, behind)| curvature_between(&before, &behind)),
+        };
+        let mut sharpest = None;
+        let mut before = own(0);
+        for from in 0..last {
+            let behind = own(from + 1);
+            let curvature = most.max(before).max(behind);
+            bounds.push(CurveBound { curvature, off: 0.0 });
+            let turn = curvature * (self.arcs[from + 1] - self.arcs[from]);
+            if turn > 1.0 && sharpest.is_none() {
+                let sample = if before.max(behind) < most { at } else { from + usize::from(behind > before) };
+                sharpest = Some(Bend { at: sample, turn });
+            }
+            before = behind;
+        }
+        sharpest
+    }
+}
