@@ -228,13 +228,15 @@ pub enum RobotError {
     },
     /// Samples turn more sharply than what is known of a curve between them.
     #[error(
-        "the centreline turns so sharply at point {index} that it may turn by {turn} rad from one point to the next; if the points \
-         are measured, use `Tube::fit`; if the robot bends so, give more points there; check the end tangents if there are any; \
-         for a robot of straight links use a Chain"
+        "the centreline turns so sharply at point {index} that it may turn by {turn} rad between point {after} and the next; if the \
+         robot bends so, give more points there; if the points are measured, use `Tube::fit`; check the end tangents if there are \
+         any; for a robot of straight links use a Chain"
     )]
     TurnsTooSharply {
         /// Position in the input of the point where it turns most.
         index: usize,
+        /// Position in the input of the point before the segment in which it may turn so much.
+        after: usize,
         /// The largest curvature times a distance between two points next to it, rad.
         turn: Real,
     },

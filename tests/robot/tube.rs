@@ -41,7 +41,7 @@ fn bad_samples_are_named() {
     let mut shaft = vec![Vector::Z * -20.0, Vector::Z * -20.0];
     shaft
         .extend((0..40).map(|k| f64::from(k) * 0.02).map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 5.0));
-    assert!(matches!(refuse(&shaft, &[0.1; 41], None), RobotError::TurnsTooSharply { index: 1, .. }));
+    assert!(matches!(refuse(&shaft, &[0.1; 41], None), RobotError::TurnsTooSharply { after: 1, .. }));
     let arc: Vec<_> =
         (0..40).map(|k| f64::from(k) * 0.1).map(|a| Vector::new(a.cos(), a.sin(), 0.0)).collect();
     assert!(matches!(refuse(&arc, &[1.01; 39], None), RobotError::BendsWithinRadius { .. }));

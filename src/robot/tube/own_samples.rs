@@ -14,14 +14,15 @@
 //! is less than the curvature k by q^2 / 12 of it. The differences of bends are about q k long; q^2 / 8 is added.
 //!
 //! **Uneven samples.** The turn at two samples that are close together is all noise. So a sample less than a quarter of the
-//! mean distance behind the one before it counts only for its own two segments. What the others show counts for all.
+//! usual distance (the geometric mean) behind the one before it counts only for its own two segments. What the others show
+//! counts for all.
 
 use super::curve::CurveBound;
 use super::samples::{Segment, curvature_between, curvature_from};
 use crate::robot::RobotError;
 use parry3d_f64::math::{Real, Vector};
 
-/// Samples closer than this share of their mean distance to the one before count only for their own segments.
+/// Samples closer than this share of the usual distance to the one before count only for their own segments.
 const CLOSE: Real = 0.25;
 
 /// The samples of one section.
@@ -36,9 +37,12 @@ pub(super) struct OwnSamples<'a> {
     pub shortest: Real,
 }
 
-/// A sample where the curve may turn by more than is known of it between two samples.
+/// A segment in which more turns than samples tell of.
 pub(super) struct Bend {
+    /// The sample whose turn says so.
     pub at: usize,
+    /// The sample before the segment.
+    pub from: usize,
     pub turn: Real,
 }
 
@@ -46,7 +50,7 @@ impl Bend {
     /// `segments` are the segments of the input that begin at each sample.
     pub(super) fn error(&self, segments: &[u32]) -> RobotError {
         let index = if self.at > 0 { segments[self.at - 1] as usize + 1 } else { 0 };
-        RobotError::TurnsTooSharply { index, turn: self.turn }
+        RobotError::TurnsTooSharply { index, after: segments[self.from] as usize, turn: self.turn }
     }
 }
 
@@ -153,7 +157,8 @@ impl OwnSamples<'_> {
     /// returned, if there is one. It bends by `least` at least.
     pub(super) fn bound_unevenly(mut self, least: Real, bounds: &mut Vec<CurveBound>) -> Option<Bend> {
         let last = self.last();
-        self.shortest = CLOSE * (self.arcs[last] - self.arcs[0]) / last as Real;
+        let logarithms: Real = self.arcs.windows(2).map(|arcs| libm::log2(arcs[1] - arcs[0])).sum();
+        self.shortest = CLOSE * libm::exp2(logarithms / last as Real);
         let (mut most, mut at) = (0.0, 0);
         for sample in (0..=last).filter(|&sample| self.is_kept(sample)) {
             let noise = 2.0 * self.rounding / self.shortest;
@@ -184,7 +189,7 @@ impl OwnSamples<'_> {
             let turn = curvature * (self.arcs[from + 1] - self.arcs[from]);
             if turn > 1.0 && sharpest.is_none() {
                 let sample = if before.max(behind) < most { at } else { from + usize::from(behind > before) };
-                sharpest = Some(Bend { at: sample, turn });
+                sharpest = Some(Bend { at: sample, from, turn });
             }
             before = behind;
         }

@@ -75,6 +75,8 @@ const UNEVEN: Real = 4.0;
 struct Open {
     section: Section,
     longest: Real,
+    /// The sample before its longest segment.
+    longest_from: usize,
     /// The sample where it turns most.
     sharpest: usize,
     /// Whether one of two neighbouring segments is more than four times as long as the other.
@@ -110,6 +112,7 @@ impl Open {
         Self {
             section,
             longest: 0.0,
+            longest_from: first,
             sharpest: first,
             is_uneven: false,
             turns: 0,
@@ -218,11 +221,12 @@ impl Open {
             section.curvature_at = [section.curvature; 2];
             section.stretch = stretch(bend);
             if bend > 1.0 {
-                sharpest = Some(Bend { at: self.sharpest - first, turn: bend });
+                sharpest =
+                    Some(Bend { at: self.sharpest - first, from: self.longest_from - first, turn: bend });
             }
         }
         match sharpest {
-            Some(Bend { at, turn }) => Err(Bend { at: first + at, turn }),
+            Some(Bend { at, from, turn }) => Err(Bend { at: first + at, from: first + from, turn }),
             None => Ok(self.section),
         }
     }
@@ -310,7 +314,9 @@ impl Tube {
             last += 1;
             points[last] = sample;
             arcs[last] = arc;
-            open.longest = open.longest.max(segment.length);
+            if segment.length > open.longest {
+                (open.longest, open.longest_from) = (segment.length, last - 1);
+            }
             before = Some(segment);
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
