@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a file gave no mesh. The text names the file and what to change.
+/// Why a file gave no mesh, or no centreline. The text names the file and what to change.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFileError {
@@ -23,8 +23,43 @@ pub enum MeshFileError {
         /// The file.
         file: PathBuf,
     },
+    /// The name of a centreline's file does not say what it holds.
+    #[error("the format of {} is unknown; give a centreline that ends in .mrk.json, .vtp or .vtk", file.display())]
+    #[non_exhaustive]
+    UnknownCentreline {
+        /// The file.
+        file: PathBuf,
+    },
+    /// A centreline's file holds no line.
+    #[error("{} holds no line; export the curve, not only its points or its surface", file.display())]
+    #[non_exhaustive]
+    NoLine {
+        /// The file.
+        file: PathBuf,
+    },
+    /// A centreline's file holds several lines, and none was chosen.
+    #[error("{} holds {count} lines; choose one from 0 to {}", file.display(), count - 1)]
+    #[non_exhaustive]
+    SeveralLines {
+        /// The file.
+        file: PathBuf,
+        /// How many lines it holds.
+        count: usize,
+    },
+    /// A line was chosen that the file does not have.
+    #[error("{} has no line {line}, but {count}, counted from 0; choose one of them", file.display())]
+    #[non_exhaustive]
+    NoSuchLine {
+        /// The file.
+        file: PathBuf,
+        /// The line that was chosen.
+        line: usize,
+        /// How many lines it holds.
+        count: usize,
+    },
     /// Header and data are in two files.
-    #[error("{} may have its voxels in a second file; save the segmentation as one file, .nii.gz or .nrrd", file.display())]
+    #[error("{} may have its data in a second file; save the segmentation as one file, .nii.gz, .nrrd or \
+             .mha", file.display())]
     #[non_exhaustive]
     InTwoFiles {
         /// The file.
@@ -158,5 +193,8 @@ fn listed(labels: &[u32]) -> String {
 }
 
 /// What else could be read.
-const LABEL_MAPS: &str =
-    if cfg!(feature = "label-maps") { ", or a label map that ends in .nii, .nii.gz or .nrrd" } else { "" };
+const LABEL_MAPS: &str = if cfg!(feature = "label-maps") {
+    ", or a label map that ends in .nii, .nii.gz, .nrrd, .mha or .mhd"
+} else {
+    ""
+};

@@ -1,14 +1,17 @@
-//! Triangle meshes from STL, OBJ and PLY files, and from segmentations in NIfTI and NRRD files.
+//! Triangle meshes from STL, OBJ and PLY files and from segmentations in NIfTI, NRRD and MetaImage files; centrelines
+//! from VTK's files and 3D Slicer's markups.
 //!
-//! [`load`] reads a file by its extension. What comes back is whole: there is at least one triangle, every vertex is
+//! [`load`] reads a mesh, by the file's extension. What comes back is whole: there is at least one triangle, every vertex is
 //! finite, and every triangle names three different vertices that are there. What is wrong with a file is said in one
 //! line. Faces without area are left out, and [`Mesh::skipped_faces`] counts them. How much memory reading may take is
-//! limited by [`Options::memory_limit`].
+//! limited by [`Options::memory_limit`]. [`load_centreline`] reads points along a line in the same way.
 //!
-//! STL and OBJ are read here, because their errors must name the line; PLY's grammar and NIfTI's header are left to
-//! the crates that know them.
+//! STL and OBJ are read here, because their errors must name the line, and VTK's files, because no crate reads those of
+//! version 5.1; PLY's grammar and NIfTI's header are left to the crates that know them.
 #![warn(missing_debug_implementations, missing_docs)]
 
+#[cfg(feature = "centrelines")]
+mod centreline;
 mod error;
 #[cfg(feature = "label-maps")]
 mod label_map;
@@ -18,6 +21,8 @@ mod ply;
 mod stl;
 mod text;
 
+#[cfg(feature = "centrelines")]
+pub use centreline::{Centreline, centreline_from_bytes, load_centreline};
 pub use error::MeshFileError;
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
@@ -34,6 +39,8 @@ pub struct Options {
     /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside. For a file
     /// of triangles it is an error.
     pub label: Option<u32>,
+    /// Which line of a centreline's file is read, counted from 0. A file with one line needs none.
+    pub line: Option<usize>,
     /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless something else is said.
     ///
     /// What would take more is refused before the memory is taken, with [`MeshFileError::TooLarge`]. A label map takes 5
@@ -46,7 +53,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { scale: 1.0, label: None, memory_limit: 2 << 30 }
+        Self { scale: 1.0, label: None, line: None, memory_limit: 2 << 30 }
     }
 }
 
@@ -62,9 +69,40 @@ impl Options {
         Self { label, ..self }
     }
 
+    /// The same, but of a file of several centrelines this one, counted from 0.
+    pub fn with_line(self, line: Option<usize>) -> Self {
+        Self { line, ..self }
+    }
+
     /// The same, but with so many bytes of memory at most, beside those of the file.
     pub fn with_memory_limit(self, memory_limit: u64) -> Self {
         Self { memory_limit, ..self }
+    }
+
+    fn check_scale(&self) -> Result<(), MeshFileError> {
+        let scale = self.scale;
+        if scale > 0.0 && scale.is_finite() { Ok(()) } else { Err(MeshFileError::Scale { scale }) }
+    }
+
+    /// Multiplies the coordinates.
+    ///
+    /// # Errors
+    /// A point is not finite, before or after that.
+    fn scale_all(&self, file: &Path, points: &mut [[f64; 3]]) -> Result<(), MeshFileError> {
+        let scale = self.scale;
+        for (index, point) in points.iter_mut().enumerate() {
+            let place = *point;
+            *point = place.map(|x| x * scale);
+            if !point.iter().all(|x| x.is_finite()) {
+                let advice = if place.iter().all(|x| x.is_finite()) {
+                    "choose a smaller scale"
+                } else {
+                    "repair that vertex"
+                };
+                return Err(MeshFileError::NotFinite { file: file.to_owned(), index, place, scale, advice });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -74,6 +112,8 @@ enum Format {
     Stl,
     Obj,
     Ply,
+    #[cfg(feature = "label-maps")]
+    MetaImage,
     #[cfg(feature = "label-maps")]
     Nifti,
     #[cfg(feature = "label-maps")]
@@ -89,6 +129,8 @@ impl Format {
             "obj" => Ok(Self::Obj),
             "ply" => Ok(Self::Ply),
             #[cfg(feature = "label-maps")]
+            "mha" | "mhd" => Ok(Self::MetaImage),
+            #[cfg(feature = "label-maps")]
             "nii" => Ok(Self::Nifti),
             #[cfg(feature = "label-maps")]
             "gz" if name.ends_with(".nii.gz") => Ok(Self::Nifti),
@@ -103,7 +145,7 @@ impl Format {
         match self {
             Self::Stl | Self::Obj | Self::Ply => false,
             #[cfg(feature = "label-maps")]
-            Self::Nifti | Self::Nrrd => true,
+            Self::MetaImage | Self::Nifti | Self::Nrrd => true,
         }
     }
 
@@ -112,6 +154,8 @@ impl Format {
             Self::Stl => "STL",
             Self::Obj => "OBJ",
             Self::Ply => "PLY",
+            #[cfg(feature = "label-maps")]
+            Self::MetaImage => "MetaImage",
             #[cfg(feature = "label-maps")]
             Self::Nifti => "NIfTI",
             #[cfg(feature = "label-maps")]
@@ -136,8 +180,21 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 /// of a file of triangles; it takes more memory than the options allow; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
-    // The name and the kind of file first: a device may never end.
-    Format::of(path)?;
+    // The name first: a device may never end.
+    let _format = Format::of(path)?;
+    let bytes = read_file(path, options)?;
+    #[cfg(feature = "label-maps")]
+    if _format == Format::MetaImage
+        && let Some(voxels) = label_map::meta_image::voxels_file(&bytes)
+    {
+        let voxels = read_file(&path.with_file_name(voxels), options)?;
+        return from_bytes(path, &label_map::meta_image::in_one(&bytes, &voxels), options);
+    }
+    from_bytes(path, &bytes, options)
+}
+
+/// The bytes of a file that is no larger than the options allow.
+fn read_file(path: &Path, options: &Options) -> Result<Vec<u8>, MeshFileError> {
     let unreadable = |reason: String| MeshFileError::Unreadable { file: path.to_owned(), reason };
     let kind = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !kind.is_file() {
@@ -147,8 +204,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, Mesh
         let (file, bytes, limit) = (path.to_owned(), kind.len(), options.memory_limit);
         return Err(MeshFileError::TooLarge { file, bytes, limit });
     }
-    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
-    from_bytes(path, &bytes, options)
+    std::fs::read(path).map_err(|error| unreadable(error.to_string()))
 }
 
 /// As [`load_with`], for a file of this name that holds these bytes.
@@ -158,10 +214,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, Mesh
 pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    let scale = options.scale;
-    if !(scale > 0.0 && scale.is_finite()) {
-        return Err(MeshFileError::Scale { scale });
-    }
+    options.check_scale()?;
     let file = path.to_owned();
     let broken = |reason: String| {
         let (file, format) = (path.to_owned(), format.name());
@@ -192,6 +245,8 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         Format::Obj => obj::read(bytes).map_err(broken),
         Format::Ply => ply::read(bytes).map_err(broken),
         #[cfg(feature = "label-maps")]
+        Format::MetaImage => surface(label_map::meta_image::read(bytes)),
+        #[cfg(feature = "label-maps")]
         Format::Nifti => surface(label_map::nifti::read(bytes)),
         #[cfg(feature = "label-maps")]
         Format::Nrrd => surface(label_map::nrrd::read(bytes)),
@@ -207,18 +262,7 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         let reason = format!("a triangle names vertex {corner}, but there are {count}, counted from 0");
         return Err(MeshFileError::Broken { file, format: format.name(), reason });
     }
-    for (index, vertex) in mesh.vertices.iter_mut().enumerate() {
-        let place = *vertex;
-        *vertex = place.map(|x| x * scale);
-        if !vertex.iter().all(|x| x.is_finite()) {
-            let advice = if place.iter().all(|x| x.is_finite()) {
-                "choose a smaller scale"
-            } else {
-                "repair that vertex"
-            };
-            return Err(MeshFileError::NotFinite { file, index, place, scale, advice });
-        }
-    }
+    options.scale_all(path, &mut mesh.vertices)?;
     Ok(mesh)
 }
 

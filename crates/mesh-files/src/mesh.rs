@@ -23,6 +23,9 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The frame of the coordinates, where the file states it.
     pub frame: Option<Frame>,
+    /// Whether the file states its unit of length. Label maps do, and come in millimetres; where one does not, its numbers
+    /// are taken for millimetres. Files of triangles do not.
+    pub states_unit: bool,
     /// How many faces of the file are not among the triangles, because they name fewer than three different vertices and
     /// so have no area. Each counts once, whatever its number of corners; the others keep their order. A polygon that names
     /// a vertex twice and has area all the same is cut as any other, and is not counted. In an STL file the corners at

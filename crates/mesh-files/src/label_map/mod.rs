@@ -1,5 +1,6 @@
 //! Segmentations: a number for each voxel of a grid, and the surface of one label.
 
+pub mod meta_image;
 pub mod nifti;
 pub mod nrrd;
 mod voxels;
@@ -43,6 +44,7 @@ pub struct Volume<'a> {
     voxels: Voxels<'a>,
     place: Place,
     frame: Option<Frame>,
+    states_unit: bool,
 }
 
 /// From a voxel's three numbers to its centre in millimetres: the rows of a 3x4 matrix.
@@ -149,6 +151,7 @@ impl Volume<'_> {
             vertices: net.positions.iter().map(place).collect(),
             triangles: net.indices.as_chunks().0.iter().map(turn).collect(),
             frame: self.frame,
+            states_unit: self.states_unit,
             skipped_faces: 0,
         })
     }

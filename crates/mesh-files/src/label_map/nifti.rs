@@ -43,7 +43,13 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
         is_big_endian: header.endianness == Endianness::Big,
         scaling: scaling(&header)?,
     };
-    Ok(Volume { sizes, voxels, place: place(&header)?, frame: Some(Frame::Ras) })
+    Ok(Volume {
+        sizes,
+        voxels,
+        place: place(&header)?,
+        frame: Some(Frame::Ras),
+        states_unit: header.xyzt_units & 7 != 0,
+    })
 }
 
 /// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or not a number, whatever

@@ -81,7 +81,7 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     };
     let (place, frame) = place(&file)?;
     let voxels = Voxels { data: file.data, encoding, skip: 0, count, kind, is_big_endian, scaling: None };
-    Ok(Volume { sizes, voxels, place, frame })
+    Ok(Volume { sizes, voxels, place, frame, states_unit: file.get("space units").is_some() })
 }
 
 fn is_text(encoding: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use super::Fault;
 use crate::text::shown;
-use flate2::read::MultiGzDecoder;
+use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use std::io::{self, Read};
 
 /// The type of a voxel's number.
@@ -49,6 +49,7 @@ pub fn label(number: f64) -> Result<u32, Fault> {
 pub enum Encoding {
     Raw,
     Gzip,
+    Zlib,
     Text,
 }
 
@@ -79,8 +80,11 @@ impl Voxels<'_> {
                 let data = self.data.get(self.skip..size).ok_or(SHORT)?;
                 self.each_of_bytes(data, see)
             }
-            (Encoding::Gzip, Some(size)) if could_hold(self.data, size) => {
-                let mut unpacked = MultiGzDecoder::new(self.data);
+            (Encoding::Gzip | Encoding::Zlib, Some(size)) if could_hold(self.data, size) => {
+                let mut unpacked: Box<dyn Read> = match self.encoding {
+                    Encoding::Zlib => Box::new(ZlibDecoder::new(self.data)),
+                    _ => Box::new(MultiGzDecoder::new(self.data)),
+                };
                 let skip = io::copy(&mut unpacked.by_ref().take(self.skip as u64), &mut io::sink());
                 if skip.map_err(|_| DAMAGED)? < self.skip as u64 {
                     return Err(SHORT.into());
@@ -166,7 +170,7 @@ impl Voxels<'_> {
 /// How many voxels are read at once.
 const AT_ONCE: usize = 1 << 14;
 const SHORT: &str = "it is shorter than its header says";
-const DAMAGED: &str = "its gzip archive is damaged or cut short";
+const DAMAGED: &str = "its packed voxels are damaged or cut short";
 
 /// Deflate packs 1032 bytes into one at most: a header that promises more is not believed.
 fn could_hold(archive: &[u8], count: usize) -> bool {

@@ -1,9 +1,13 @@
 //! Meshes are read as they were written, and what is wrong with a file is said in one line.
 
 mod broken;
+#[cfg(feature = "centrelines")]
+mod centrelines;
 #[cfg(feature = "label-maps")]
 mod label_maps;
 mod limits;
+#[cfg(feature = "label-maps")]
+mod meta_image;
 mod triangles;
 
 use mesh_files::Mesh;

@@ -1,17 +1,32 @@
-//! Any bytes as a mesh file: an error of one line, or a mesh whose triangles name vertices that are there.
+//! Any bytes as a file: an error of one line, or a mesh whose triangles name vertices that are there, or a centreline.
 
-use mesh_files::{Options, from_bytes};
+use mesh_files::{MeshFileError, Options, centreline_from_bytes, from_bytes};
 
 /// The first byte chooses the format.
 pub fn mesh_file(bytes: &[u8]) {
-    let Some((first, file)) = bytes.split_first() else { return };
-    let name = ["fuzz.stl", "fuzz.obj", "fuzz.ply", "fuzz.nii.gz", "fuzz.nrrd"][usize::from(first % 5)];
-    match from_bytes(name, file, &Options::default()) {
-        Ok(mesh) => {
-            assert!(!mesh.triangles.is_empty());
-            assert!(mesh.vertices.iter().flatten().all(|x| x.is_finite()));
-            assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < mesh.vertices.len()));
+    const MESHES: [&str; 6] = ["fuzz.stl", "fuzz.obj", "fuzz.ply", "fuzz.nii.gz", "fuzz.nrrd", "fuzz.mha"];
+    const CENTRELINES: [&str; 3] = ["fuzz.mrk.json", "fuzz.vtk", "fuzz.vtp"];
+    let Some((&first, file)) = bytes.split_first() else { return };
+    let kind = usize::from(first) % (MESHES.len() + CENTRELINES.len());
+    if let Some(name) = MESHES.get(kind) {
+        match from_bytes(name, file, &Options::default()) {
+            Ok(mesh) => {
+                assert!(!mesh.triangles.is_empty());
+                assert!(mesh.vertices.iter().flatten().all(|x| x.is_finite()));
+                let count = mesh.vertices.len();
+                assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
+            }
+            Err(error) => is_one_line(&error),
         }
-        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    } else {
+        let options = Options::default().with_line(Some(0));
+        match centreline_from_bytes(CENTRELINES[kind - MESHES.len()], file, &options) {
+            Ok(line) => assert!(line.points.iter().flatten().all(|x| x.is_finite())),
+            Err(error) => is_one_line(&error),
+        }
     }
+}
+
+fn is_one_line(error: &MeshFileError) {
+    assert!(!error.to_string().contains('\n'), "{error}");
 }

@@ -1,0 +1,202 @@
+//! The numbers of a `DataArray` in one of VTK's XML files.
+
+use crate::text::shown;
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use flate2::read::ZlibDecoder;
+use roxmltree::Node;
+use std::io::Read;
+
+/// What all arrays of a file have in common.
+pub struct Arrays<'a> {
+    is_big_endian: bool,
+    /// How many bytes a length takes in front of packed bytes.
+    header: usize,
+    is_packed: bool,
+    /// What is appended, and whether it is base64.
+    appended: Option<(&'a [u8], bool)>,
+    limit: u64,
+}
+
+/// Some numbers.
+pub enum DataArray {
+    Floats(Vec<f64>),
+    Integers(Vec<i64>),
+}
+
+impl DataArray {
+    pub fn into_numbers(self) -> Vec<f64> {
+        match self {
+            Self::Floats(numbers) => numbers,
+            Self::Integers(numbers) => numbers.into_iter().map(|number| number as f64).collect(),
+        }
+    }
+
+    pub fn into_indices(self) -> Result<Vec<u64>, String> {
+        match self {
+            Self::Floats(_) => Err("its lines name points by numbers that are no integers".into()),
+            Self::Integers(numbers) => {
+                let index = |number: i64| {
+                    u64::try_from(number).map_err(|_| format!("{number} is no number of a point"))
+                };
+                numbers.into_iter().map(index).collect()
+            }
+        }
+    }
+}
+
+impl<'a> Arrays<'a> {
+    /// `appended` begins with its own tag.
+    pub fn new(root: Node, appended: Option<&'a [u8]>, limit: u64) -> Result<Self, String> {
+        let is_packed = match root.attribute("compressor") {
+            None | Some("") => false,
+            Some("vtkZLibDataCompressor") => true,
+            Some(other) => {
+                return Err(format!("it is packed by {}; save it by zlib or not packed", shown(other)));
+            }
+        };
+        let header = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
+        let is_big_endian = root.attribute("byte_order") == Some("BigEndian");
+        let appended = match appended {
+            None => None,
+            Some(bytes) => {
+                let tag = bytes.iter().position(|&byte| byte == b'>').ok_or(SHORT)?;
+                let is_base64 = bytes[..tag].windows(6).any(|window| window == b"base64");
+                let start = bytes[tag..].iter().position(|&byte| byte == b'_').ok_or(SHORT)?;
+                Some((&bytes[tag + start + 1..], is_base64))
+            }
+        };
+        Ok(Self { is_big_endian, header, is_packed, appended, limit })
+    }
+
+    pub fn read(&self, array: Node) -> Result<DataArray, String> {
+        let kind = array.attribute("type").unwrap_or_default();
+        let (size, is_float) = match kind {
+            "Int8" | "UInt8" => (1, false),
+            "Int16" | "UInt16" => (2, false),
+            "Int32" | "UInt32" => (4, false),
+            "Int64" | "UInt64" => (8, false),
+            "Float32" => (4, true),
+            "Float64" => (8, true),
+            _ => return Err(format!("its numbers of type '{}' cannot be read", shown(kind))),
+        };
+        let text = array.text().unwrap_or_default();
+        let bytes = match array.attribute("format").unwrap_or("ascii") {
+            "ascii" => {
+                let wrong = |word: &str| format!("it has '{}' where a number should be", shown(word));
+                let words = || text.split_whitespace();
+                return if is_float {
+                    let numbers: Result<_, _> =
+                        words().map(|word| word.parse().map_err(|_| wrong(word))).collect();
+                    Ok(DataArray::Floats(numbers?))
+                } else {
+                    let numbers: Result<_, _> =
+                        words().map(|word| word.parse().map_err(|_| wrong(word))).collect();
+                    Ok(DataArray::Integers(numbers?))
+                };
+            }
+            "binary" => self.unpack_base64(text.trim().as_bytes())?,
+            "appended" => {
+                let offset = array.attribute("offset").and_then(|offset| offset.trim().parse::<usize>().ok());
+                let (all, is_base64) = self.appended.ok_or("its arrays are appended, but nothing is")?;
+                let own = all.get(offset.ok_or("an array has no offset")?..).ok_or(SHORT)?;
+                if is_base64 { self.unpack_base64(own)? } else { self.unpack(own)?.0 }
+            }
+            other => return Err(format!("its format '{}' cannot be read", shown(other))),
+        };
+        let wide = |bytes: &[u8]| {
+            let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
+            if self.is_big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
+        };
+        let numbers = bytes.chunks_exact(size).map(wide);
+        Ok(match kind {
+            "Float32" => {
+                DataArray::Floats(numbers.map(|bits| f64::from(f32::from_bits(bits as u32))).collect())
+            }
+            "Float64" => DataArray::Floats(numbers.map(f64::from_bits).collect()),
+            "Int8" => DataArray::Integers(numbers.map(|bits| i64::from(bits as i8)).collect()),
+            "Int16" => DataArray::Integers(numbers.map(|bits| i64::from(bits as i16)).collect()),
+            "Int32" => DataArray::Integers(numbers.map(|bits| i64::from(bits as i32)).collect()),
+            _ => DataArray::Integers(numbers.map(|bits| bits as i64).collect()),
+        })
+    }
+
+    fn length(&self, bytes: &[u8], place: usize) -> Result<usize, String> {
+        let from = place.checked_mul(self.header).ok_or(SHORT)?;
+        let own = bytes.get(from..).and_then(|rest| rest.get(..self.header)).ok_or(SHORT)?;
+        let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
+        let length = if self.is_big_endian { own.iter().fold(0, add) } else { own.iter().rev().fold(0, add) };
+        usize::try_from(length).map_err(|_| SHORT.into())
+    }
+
+    /// The bytes behind their lengths, and how many bytes they took with these.
+    fn unpack(&self, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
+        if !self.is_packed {
+            let end = self.length(bytes, 0)?.checked_add(self.header).ok_or(SHORT)?;
+            return Ok((bytes.get(self.header..end).ok_or(SHORT)?.to_vec(), end));
+        }
+        let blocks = self.length(bytes, 0)?;
+        let mut at =
+            blocks.checked_add(3).and_then(|lengths| lengths.checked_mul(self.header)).ok_or(SHORT)?;
+        if at > bytes.len() {
+            return Err(SHORT.into());
+        }
+        let mut out = Vec::new();
+        for block in 0..blocks {
+            let end = self.length(bytes, 3 + block)?.checked_add(at).ok_or(SHORT)?;
+            let packed = bytes.get(at..end).ok_or(SHORT)?;
+            let left = self.limit.saturating_sub(out.len() as u64);
+            let read = ZlibDecoder::new(packed).take(left).read_to_end(&mut out);
+            read.map_err(|_| "its packed bytes are damaged")?;
+            if out.len() as u64 >= self.limit {
+                return Err("an array takes more memory than is allowed".into());
+            }
+            at = end;
+        }
+        Ok((out, at))
+    }
+
+    /// The lengths of packed bytes are base64 of their own, with padding between.
+    fn unpack_base64(&self, text: &[u8]) -> Result<Vec<u8>, String> {
+        let lengths = if self.is_packed {
+            let first = decode(text.get(..self.header.div_ceil(3) * 4).ok_or(SHORT)?)?;
+            self.length(&first, 0)?
+                .checked_add(3)
+                .and_then(|lengths| lengths.checked_mul(self.header))
+                .ok_or(SHORT)?
+        } else {
+            self.header
+        };
+        let first_text = lengths.div_ceil(3).checked_mul(4).ok_or(SHORT)?;
+        if !self.is_packed {
+            // One text for both.
+            let length = self.length(&decode(text.get(..first_text).ok_or(SHORT)?)?, 0)?;
+            let whole = length
+                .checked_add(self.header)
+                .and_then(|bytes| bytes.div_ceil(3).checked_mul(4))
+                .ok_or(SHORT)?;
+            return Ok(self.unpack(&decode(text.get(..whole).ok_or(SHORT)?)?)?.0);
+        }
+        let mut bytes = decode(text.get(..first_text).ok_or(SHORT)?)?;
+        let blocks = self.length(&bytes, 0)?;
+        let mut packed: usize = 0;
+        for block in 0..blocks {
+            packed = packed.checked_add(self.length(&bytes, 3 + block)?).ok_or(SHORT)?;
+        }
+        let end =
+            packed.div_ceil(3).checked_mul(4).and_then(|text| text.checked_add(first_text)).ok_or(SHORT)?;
+        bytes.truncate(lengths);
+        bytes.extend(decode(text.get(first_text..end).ok_or(SHORT)?)?);
+        Ok(self.unpack(&bytes)?.0)
+    }
+}
+
+fn decode(text: &[u8]) -> Result<Vec<u8>, String> {
+    let config = GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true);
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, config);
+    engine.decode(text).map_err(|error| format!("its base64 is damaged ({error})"))
+}
+
+const SHORT: &str = "it is shorter than it says";

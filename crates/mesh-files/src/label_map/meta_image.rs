@@ -1,0 +1,144 @@
+//! MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. Their frame is LPS, in millimetres, as ITK's.
+
+use super::voxels::{Encoding, Kind, Voxels};
+use super::{Fault, Place, Volume, count};
+use crate::mesh::Frame;
+use crate::text::shown;
+use std::collections::HashMap;
+
+/// The last field of the header, which says where the voxels are.
+const LAST: &str = "ElementDataFile";
+const HERE: &str = "LOCAL";
+
+/// The fields of the header by name, and what follows it.
+struct File<'a> {
+    fields: HashMap<String, String>,
+    data: &'a [u8],
+}
+
+impl<'a> File<'a> {
+    fn new(bytes: &'a [u8]) -> Result<Self, String> {
+        let mut fields = HashMap::new();
+        let mut data = bytes;
+        while !fields.contains_key(LAST) {
+            let end = data.iter().position(|&byte| byte == b'\n').unwrap_or(data.len());
+            let line = String::from_utf8_lossy(&data[..end]);
+            let (name, value) = line
+                .split_once('=')
+                .ok_or_else(|| format!("its header has '{}' where a field should be", shown(line.trim())))?;
+            fields.insert(name.trim().to_owned(), value.trim().to_owned());
+            data = data.get(end + 1..).unwrap_or_default();
+        }
+        Ok(Self { fields, data })
+    }
+
+    fn get(&self, names: &[&str]) -> Option<&str> {
+        names.iter().find_map(|&name| self.fields.get(name)).map(String::as_str)
+    }
+
+    fn need(&self, name: &str) -> Result<&str, String> {
+        self.get(&[name]).ok_or_else(|| format!("its header has no field '{name}'"))
+    }
+
+    fn says(&self, name: &str) -> bool {
+        self.get(&[name]).is_some_and(|value| value.eq_ignore_ascii_case("true"))
+    }
+
+    /// The numbers of a field that goes by one of these names.
+    fn numbers<const COUNT: usize>(
+        &self,
+        names: &[&str],
+        otherwise: [f64; COUNT],
+    ) -> Result<[f64; COUNT], String> {
+        let Some(text) = self.get(names) else { return Ok(otherwise) };
+        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|number| number.parse().ok()).collect();
+        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+        numbers.ok_or_else(|| format!("its '{}' is not {COUNT} numbers", names[0]))
+    }
+}
+
+/// The file that holds the voxels, if it is another one.
+pub fn voxels_file(bytes: &[u8]) -> Option<String> {
+    let file = File::new(bytes).ok()?;
+    let other = file.get(&[LAST])?;
+    // Neither a list of files nor a pattern, and none in another folder.
+    let is_name = !other.is_empty() && !other.contains(['/', '\\', '%', ' ']) && other != "LIST";
+    (other != HERE && is_name).then(|| other.to_owned())
+}
+
+/// Header and voxels as one file.
+pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(header);
+    let fields = text.lines().take_while(|line| line.split('=').next().map(str::trim) != Some(LAST));
+    let mut whole: String = fields.map(|line| format!("{line}\n")).collect();
+    whole.push_str(&format!("{LAST} = {HERE}\n"));
+    let mut whole = whole.into_bytes();
+    whole.extend(voxels);
+    whole
+}
+
+pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
+    let file = File::new(bytes)?;
+    if file.need(LAST)? != HERE {
+        return Err("its voxels are in a second file; give both, or save one as .mha".into());
+    }
+    if file.need("NDims")? != "3"
+        || file.get(&["ElementNumberOfChannels"]).is_some_and(|channels| channels != "1")
+    {
+        return Err("it is not one volume of three dimensions; save a single label map".into());
+    }
+    if file.get(&["HeaderSize"]).is_some_and(|size| size != "0") {
+        return Err("its 'HeaderSize' is not 0; save it again with 3D Slicer or ITK-SNAP".into());
+    }
+    let sizes: Option<Vec<_>> =
+        file.need("DimSize")?.split_whitespace().map(|size| size.parse().ok()).collect();
+    let sizes = sizes.and_then(|sizes| <[usize; 3]>::try_from(sizes).ok());
+    let sizes = sizes.ok_or("its 'DimSize' is not three numbers")?;
+    let kind = kind(file.need("ElementType")?)?;
+    let is_text = file.get(&["BinaryData"]).is_some_and(|value| value.eq_ignore_ascii_case("false"));
+    let encoding = match (is_text, file.says("CompressedData")) {
+        (true, _) => Encoding::Text,
+        (_, true) => Encoding::Zlib,
+        _ => Encoding::Raw,
+    };
+    let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
+    let voxels = Voxels {
+        data: file.data,
+        encoding,
+        skip: 0,
+        count: count(sizes)?,
+        kind,
+        is_big_endian,
+        scaling: None,
+    };
+    Ok(Volume { sizes, voxels, place: place(&file)?, frame: Some(Frame::Lps), states_unit: true })
+}
+
+fn kind(name: &str) -> Result<Kind, String> {
+    Ok(match name {
+        "MET_CHAR" | "MET_ASCII_CHAR" => Kind::I8,
+        "MET_UCHAR" => Kind::U8,
+        "MET_SHORT" => Kind::I16,
+        "MET_USHORT" => Kind::U16,
+        "MET_INT" | "MET_LONG" => Kind::I32,
+        "MET_UINT" | "MET_ULONG" => Kind::U32,
+        "MET_LONG_LONG" => Kind::I64,
+        "MET_ULONG_LONG" => Kind::U64,
+        "MET_FLOAT" => Kind::F32,
+        "MET_DOUBLE" => Kind::F64,
+        _ => return Err(format!("its ElementType '{}' cannot be read", shown(name))),
+    })
+}
+
+/// The matrix holds the direction of each axis in turn, and the offset is the centre of the first voxel.
+fn place(file: &File) -> Result<Place, String> {
+    let spacing = file.numbers(&["ElementSpacing", "ElementSize"], [1.0; 3])?;
+    let origin = file.numbers(&["Offset", "Position", "Origin"], [0.0; 3])?;
+    let turned = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let axes: [f64; 9] = file.numbers(&["TransformMatrix", "Rotation", "Orientation"], turned)?;
+    let rows = [0, 1, 2].map(|row| {
+        let along = |axis: usize| axes[3 * axis + row] * spacing[axis];
+        [along(0), along(1), along(2), origin[row]]
+    });
+    Place::new(rows, "TransformMatrix")
+}
