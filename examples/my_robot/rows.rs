@@ -18,7 +18,7 @@ pub fn rows(
         let name = format!("line {number} of {file}");
         let columns = columns(line);
         if std::mem::take(&mut is_first) && is_heading(&columns) {
-            if let Some(column) = misplaced(&columns) {
+            if let Some(column) = misplaced(&columns, what) {
                 return Err(format!(
                     "{name}, a heading, has '{}' in column {}; write {what}",
                     columns[column],
@@ -68,7 +68,8 @@ fn is_heading(columns: &[&str]) -> bool {
 }
 
 /// The column of a heading that names x, y or z where another one is read.
-fn misplaced(columns: &[&str]) -> Option<usize> {
+fn misplaced(columns: &[&str], what: &str) -> Option<usize> {
     let axis = |word: &str| ["x", "y", "z"].iter().position(|axis| axis.eq_ignore_ascii_case(word));
-    (0..columns.len()).find(|&column| axis(columns[column]).is_some_and(|axis| axis != column))
+    let first = what.split(',').position(|word| word == "x").unwrap_or(0);
+    (0..columns.len()).find(|&column| axis(columns[column]).is_some_and(|axis| first + axis != column))
 }

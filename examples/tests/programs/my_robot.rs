@@ -19,7 +19,9 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     let room = &room("box.obj");
     let shape = &file("shape.csv", "x,y,z,radius\n30,30,20,2\n30,30,30,1\n30,30,40\n");
     let out = succeed("my_robot", &["--mesh", room, "--centreline", shape]);
-    assert_eq!(out.lines().count(), 3, "{out}");
+    let head = "mesh: 12 triangles from [0.000, 0.000, 0.000] to [60.000, 60.000, 60.000], frame not stated, unit not stated\n\
+                base: inside the mesh\n";
+    assert!(out.starts_with(head) && out.lines().count() == 5, "{out}");
     assert_eq!(minimum(&["--mesh", room, "--centreline", shape]), 20.0);
     // Semicolons, no heading, one radius for all; moved to 7 from a side.
     let plain = &file("plain.csv", "\u{feff}30; 30; 20\r\n30; 30; 40\r\n\r\n");
@@ -96,7 +98,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
     };
     refuse_shape("x,y,z\n30,30,20\n30,30,40\n", "line 2 of ");
-    refuse_shape("30,30,20\n30,30,40\n", "no radius; write it as a fourth number, or give --radius");
+    refuse_shape("30,30,20\n30,30,40\n", "no radius; write it behind x,y,z, or give --radius");
     refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
     refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
     refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");
@@ -172,6 +174,145 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     }
     #[cfg(unix)]
     refuse("my_robot", &["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
+}
+
+/// What is printed as a warning beside an answer.
+fn warnings(arguments: &[&str]) -> Vec<String> {
+    let (success, out, error) = run(example("my_robot"), arguments);
+    assert!(success && out.contains("minimum "), "{out} {error}");
+    error.lines().filter_map(|line| line.strip_prefix("warning: ")).map(str::to_owned).collect()
+}
+
+#[test]
+fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
+    // A box from 10 to 60: turned about z it is elsewhere.
+    let walls =
+        std::fs::read_to_string(room("frames_room.obj")).unwrap().replace("v 0", "v 10").replace(" 0", " 10");
+    let wall = &file("frames.obj", &walls);
+    let shape = &file("frames.csv", "30,30,20,2\n30,30,40\n");
+    let turned = &file("frames_lps.csv", "-30,-30,20,2\n-30,-30,40\n");
+    let metres = &file("frames_m.csv", "0.030,0.030,0.020,0.002\n0.030,0.030,0.040\n");
+    let both = &file("frames_both.csv", "-0.030,-0.030,0.020,0.002\n-0.030,-0.030,0.040\n");
+    let of =
+        |shape: &str, more: &[&str]| minimum(&[&["--mesh", wall, "--centreline", shape][..], more].concat());
+    assert!(warnings(&["--mesh", wall, "--centreline", shape]).is_empty());
+    assert_eq!(of(shape, &[]), 10.0);
+    for (shape, options) in [
+        (turned, &["--frame", "lps", "--mesh-frame", "ras"][..]),
+        (metres, &["--scale", "1000"]),
+        (both, &["--scale", "1000", "--frame", "lps", "--mesh-frame", "ras"]),
+    ] {
+        let said = warnings(&["--mesh", wall, "--centreline", shape]).join("\n");
+        assert!(said.contains(&format!("with {} they fit", options.join(" "))), "{said}");
+        assert!((of(shape, options) - 10.0).abs() < 1e-9);
+        assert!(warnings(&[&["--mesh", wall, "--centreline", shape][..], options].concat()).is_empty());
+    }
+    // A hundred times as large, but over the wall: both are said.
+    let large = &file("frames_large.csv", "-3000,30,20,2\n9000,30,40\n");
+    let said = warnings(&["--mesh", wall, "--centreline", large]).join("\n");
+    assert!(said.contains("the robot's box measures 12000.0"), "{said}");
+    // A file that says its frame, and a mesh that does not.
+    let curve = r#"{"markups": [{"coordinateSystem": "LPS", "controlPoints": [
+        {"position": [-30, -30, 20]}, {"position": [-30, -30, 40]}]}]}"#;
+    let curve = &file("frames.mrk.json", curve);
+    let arguments = ["--mesh", wall, "--centreline", curve, "--radius", "2"];
+    refuse("my_robot", &arguments, "does not say whether it is LPS or RAS; say it with --mesh-frame");
+    let arguments = [&arguments[..], &["--mesh-frame", "ras"]].concat();
+    assert!(succeed("my_robot", &arguments).contains("robot: turned from LPS to RAS\n"));
+    assert_eq!(minimum(&arguments), 10.0);
+    refuse(
+        "my_robot",
+        &[&arguments[..], &["--frame", "ras"]].concat(),
+        "says that it is LPS; leave out --frame",
+    );
+}
+
+#[test]
+fn the_base_is_told_to_be_inside_or_outside_and_a_unit_that_is_not_known() {
+    let wall = &room("base.obj");
+    let beside = &file("beside.csv", "70,30,20,1\n70,30,40\n");
+    let out = succeed("my_robot", &["--mesh", wall, "--centreline", beside]);
+    assert!(out.contains("\nbase: outside the mesh\n") && out.ends_with("minimum 9.000000\n"), "{out}");
+    let on = &file("on.csv", "60,30,20,1\n70,30,20\n");
+    assert!(succeed("my_robot", &["--mesh", wall, "--centreline", on]).contains("\nbase: on the mesh, or "));
+    // Two voxels of an NRRD file; its unit is that of the scanner, or nothing.
+    let organ = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 1 1\n\
+                 space directions: (20,0,0) (0,20,0) (0,0,20)\nUNITS\nspace origin: (0,0,0)\nencoding: ascii\n\n1 1\n";
+    let [known, unknown] = [("known", "space units: \"mm\" \"mm\" \"mm\""), ("unknown", "# of nothing")]
+        .map(|(name, units)| file(&format!("{name}.nrrd"), &organ.replace("UNITS", units)));
+    let inside = &file("inside.csv", "0,0,0,1\n20,0,0\n");
+    let out = succeed("my_robot", &["--mesh", &known, "--centreline", inside]);
+    assert!(out.contains(", frame LPS, unit mm\nbase: inside"), "{out}");
+    let out = succeed("my_robot", &["--mesh", &unknown, "--centreline", inside]);
+    assert!(out.contains(", frame LPS, unit not stated\n"), "{out}");
+    let options = ["--mesh", &known, "--centreline", inside, "--mesh-frame", "ras"];
+    refuse("my_robot", &options, "says that it is LPS; leave out --mesh-frame");
+}
+
+#[test]
+fn many_shapes_give_a_line_each() {
+    let wall = &room("many.obj");
+    let shapes =
+        "shape,x,y,z,radius\n1,30,30,20,2\n1,30,30,40\n7,30,30,10,1\n7,30,30,30\n8,30,30,20,1\n8,nan,30,30\n";
+    let shapes = &file("many.csv", shapes);
+    let out = succeed("my_robot", &["--mesh", wall, "--shapes", shapes]);
+    let lines: Vec<_> = out.lines().collect();
+    assert!(lines.len() == 4 && lines[0].starts_with("shape,distance,arc_length,segment,triangle,"), "{out}");
+    assert!(lines[1].starts_with("1,20,") && lines[2].starts_with("7,10,0,0,"), "{out}");
+    assert!(lines[3].starts_with("8,,") && lines[3].contains("point 1"), "{out}");
+    assert!(lines.iter().all(|line| line.split(',').count() >= 12), "{out}");
+    let out = succeed("my_robot", &["--mesh", wall, "--shapes", shapes, "--json"]);
+    let objects: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(objects[1]["minimum"]["distance"], 10.0);
+    assert!(objects[2]["error"].as_str().unwrap().contains("point 1"));
+    refuse(
+        "my_robot",
+        &["--mesh", wall, "--shapes", &file("few.csv", "1,30,30\n")],
+        "write shape,x,y,z or shape,x,y,z,radius",
+    );
+    refuse("my_robot", &["--mesh", wall, "--shapes", &file("none.csv", "\n")], "has no points");
+    let headed = file("headed.csv", "shape,y,x,z\n1,30,30,20\n");
+    refuse("my_robot", &["--mesh", wall, "--shapes", &headed], "has 'y' in column 2");
+}
+
+#[test]
+fn json_holds_all_of_it() {
+    let wall = &room("json.obj");
+    let shape = &file("json.csv", "30,30,20,2\n30,30,30,1\n30,30,40\n");
+    let out = succeed("my_robot", &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert!(report["mesh"]["triangles"] == 12 && report["mesh"]["frame"].is_null());
+    assert!(
+        report["base"] == "inside"
+            && report["minimum"]["distance"] == 20.0
+            && report["warnings"] == serde_json::json!([])
+    );
+    assert!(report["links"][1]["segment"] == 1 && report["curve"]["resolved"] == true);
+}
+
+#[test]
+fn the_minimum_is_printed_whatever_becomes_of_the_curve() {
+    let wall = &room("sharp.obj");
+    // It turns back on itself.
+    let shape = &file("sharp.csv", "30,30,20,2\n30,30,40,2\n30,31,20\n");
+    let (success, out, error) =
+        run(example("my_robot"), &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1"]);
+    assert!(!success && out.ends_with("minimum 18.000000\n"), "{out}");
+    assert!(error.starts_with("error: no bounds for the curve: ") && error.lines().count() == 1, "{error}");
+}
+
+#[test]
+fn a_line_of_vtk_is_a_robot() {
+    let wall = &room("vtk.obj");
+    let vtk = "# vtk DataFile Version 5.1\nline\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n30 30 20 30 30 40 30 30 10 30 30 40\n\
+               LINES 3 4\nOFFSETS vtktypeint64\n0 2 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n";
+    let line = &file("line.vtk", vtk);
+    let asked = ["--mesh", wall, "--centreline", line, "--radius", "2"];
+    refuse("my_robot", &asked, "holds 2 lines; choose one from 0 to 1");
+    assert_eq!(minimum(&[&asked[..], &["--line", "1"]].concat()), 10.0);
+    refuse("my_robot", &["--mesh", wall, "--centreline", line, "--line", "1"], "give --radius");
+    let shape = &file("line.csv", "30,30,20,2\n30,30,40\n");
+    refuse("my_robot", &["--mesh", wall, "--centreline", shape, "--line", "1"], "leave out --line");
 }
 
 #[test]

@@ -1,0 +1,62 @@
+//! The frames of patients: RAS and LPS differ by half a turn about the third axis.
+
+use crate::Options;
+use crate::robot::Robot;
+use crate::wall::Wall;
+use clap::ValueEnum;
+use mesh_files::Frame;
+use parry_continuum::parry::math::{Pose, Rotation, Vector};
+
+/// Which way x and y point.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Axes {
+    /// Left, posterior, superior: DICOM, ITK
+    Lps,
+    /// Right, anterior, superior: NIfTI, FreeSurfer
+    Ras,
+}
+
+impl From<Axes> for Frame {
+    fn from(axes: Axes) -> Self {
+        match axes {
+            Axes::Lps => Self::Lps,
+            Axes::Ras => Self::Ras,
+        }
+    }
+}
+
+pub fn name(frame: Frame) -> &'static str {
+    match frame {
+        Frame::Lps => "LPS",
+        Frame::Ras => "RAS",
+        _ => "another one",
+    }
+}
+
+pub fn half_turn() -> Pose {
+    Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))
+}
+
+/// From which frame to which one the robot has to be turned, if it has.
+///
+/// # Errors
+/// An option says something else than the file, or it is not known whether to turn.
+pub fn turn(my: &Options, robot: &Robot, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
+    if my.pose.is_some() {
+        return Ok(None); // It leads into the frame of the mesh.
+    }
+    let asked = my.frame.map(Frame::from);
+    if let (Some(stated), Some(asked)) = (robot.frame, asked)
+        && stated != asked
+    {
+        return Err(format!("the centreline's file says that it is {}; leave out --frame", name(stated)));
+    }
+    match (robot.frame.or(asked), wall.frame) {
+        (Some(own), Some(other)) => Ok((own != other).then_some([own, other])),
+        (Some(_), None) => {
+            let file = my.mesh.display();
+            Err(format!("{file} does not say whether it is LPS or RAS; say it with --mesh-frame"))
+        }
+        (None, _) => Ok(None),
+    }
+}
