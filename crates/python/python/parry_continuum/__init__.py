@@ -1,0 +1,53 @@
+"""Exact proximity queries between continuum robots and triangle meshes.
+
+A robot is a centreline, an (N, 3) array of points, with a radius for each segment between two of them. A `Mesh` is
+asked how near robots are to it. Every function takes one robot or a batch of them, (B, N, 3), and then returns arrays.
+
+>>> import numpy as np
+>>> from parry_continuum import Mesh
+>>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+>>> angle = np.linspace(0, 1, 31)
+>>> robot = np.stack([3 * np.cos(angle) - 3, 0 * angle, 1 + 3 * np.sin(angle)], axis=1)
+>>> round(floor.distance(robot, 0.2), 4)
+0.9967
+>>> floor.clears(robot, 0.2, margin=0.5)
+True
+>>> poses = np.tile(np.eye(4), (3, 1, 1))
+>>> poses[:, 2, 3] = [0, 1, 2]
+>>> floor.distance(np.stack([robot] * 3), 0.2, pose=poses).round(4)
+array([0.9967, 1.9967, 2.9967])
+"""
+
+from ._answers import (
+    Certificate,
+    Clearance,
+    Contacts,
+    Decision,
+    Gradient,
+    InsideAnswer,
+    Minimum,
+    MotionAnswer,
+    PerLink,
+    Side,
+)
+from ._errors import ContinuumError
+from ._native import Mesh, __version__, load, simplify, stations
+
+__all__ = [
+    "Certificate",
+    "Clearance",
+    "Contacts",
+    "ContinuumError",
+    "Decision",
+    "Gradient",
+    "InsideAnswer",
+    "Mesh",
+    "Minimum",
+    "MotionAnswer",
+    "PerLink",
+    "Side",
+    "__version__",
+    "load",
+    "simplify",
+    "stations",
+]

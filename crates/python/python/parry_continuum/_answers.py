@@ -1,0 +1,183 @@
+"""What comes back: tuples with names.
+
+Of one robot a field is a number or a point; of a batch of B robots it is an array with B in front. All lengths and
+points are in the unit and the frame of the mesh. Segments, triangles and robots are counted from 0, and -1 stands for
+none.
+
+A type checker cannot tell one robot from many by their shape, so what is a number of one robot and an array of many is
+`Any` to it, as in numpy.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FloatOrFloats = Any
+IntOrInts = Any
+BoolOrBools = Any
+StrOrStrs = Any
+SideOrSides = Any
+DecisionOrDecisions = Any
+
+
+class Side(IntEnum):
+    """On which side of a mesh a point is."""
+
+    INSIDE = -1
+    UNDECIDED = 0
+    OUTSIDE = 1
+
+
+class Decision(IntEnum):
+    """Whether a margin is kept. ``CLEAR`` and ``CONTACT`` are proven."""
+
+    CONTACT = -1
+    UNDECIDED = 0
+    CLEAR = 1
+
+
+class Minimum(NamedTuple):
+    """Where a robot is closest to a mesh."""
+
+    distance: FloatOrFloats
+    """The distance, 0 where they touch or overlap."""
+    on_robot: Floats
+    """The robot's closest point, (3,)."""
+    on_mesh: Floats
+    """The mesh's closest point, (3,)."""
+    segment: IntOrInts
+    """The segment of the input, from point ``segment`` to the next."""
+    arc_length: FloatOrFloats
+    """How far along the centreline from the base."""
+    triangle: IntOrInts
+    """The closest triangle."""
+
+
+class PerLink(NamedTuple):
+    """Where each segment of a robot is closest to a mesh. Segments without length have NaN, and the triangle -1."""
+
+    distance: Floats
+    """(N - 1,): the distances, 0 where they touch or overlap."""
+    on_robot: Floats
+    """(N - 1, 3): the segments' closest points."""
+    on_mesh: Floats
+    """(N - 1, 3): the mesh's closest points."""
+    arc_length: Floats
+    """(N - 1,): how far along the centreline from the base."""
+    triangle: Ints
+    """(N - 1,): the closest triangles."""
+
+
+class Contacts(NamedTuple):
+    """Contacts of robots with a mesh, one in each row."""
+
+    segment: Ints
+    """(K,): the segment of the input."""
+    fraction: Floats
+    """(K,): where along the segment, from 0 to 1."""
+    arc_length: Floats
+    """(K,): how far along the centreline from the base."""
+    distance: Floats
+    """(K,): the distance, 0 where they touch or overlap."""
+    depth: Floats
+    """(K,): the distance with a sign: negative where they overlap."""
+    normal: Floats
+    """(K, 3): the unit vector from the wall to the robot, or NaN."""
+    on_robot: Floats
+    """(K, 3): the robot's closest point."""
+    on_mesh: Floats
+    """(K, 3): the mesh's closest point."""
+    triangle: Ints
+    """(K,): the triangle."""
+    robot: Ints
+    """(K,): the robot of the batch, 0 where there is one."""
+    offsets: Ints
+    """(B + 1,): the contacts of robot k are ``offsets[k]:offsets[k + 1]``."""
+
+
+class Clearance(NamedTuple):
+    """Bounds on the clearance of a tube."""
+
+    lower: FloatOrFloats
+    """The clearance is at least this."""
+    upper: FloatOrFloats
+    """The clearance is at most this: 0 where the tube touches the mesh."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What a stated deviation of the points costs, which no finer tolerance can mend."""
+    on_robot: Floats
+    """A point of the tube, (3,)."""
+    on_mesh: Floats
+    """A point of the mesh, (3,). The two are ``upper`` apart, or nearer."""
+    segment: IntOrInts
+    """The segment of the input there."""
+    arc_length: FloatOrFloats
+    """How far along the centreline from the base."""
+    triangle: IntOrInts
+    """The triangle there."""
+    status: StrOrStrs
+    """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
+
+
+class MotionAnswer(NamedTuple):
+    """Whether a motion keeps a margin, until when, and which shape does not."""
+
+    decision: DecisionOrDecisions
+    """Whether the margin is kept at every time from 0 to 1."""
+    interval: Floats
+    """(2,): the margin is kept before the first time, and may not be kept until the second."""
+    t: FloatOrFloats
+    """Where the decision is contact: the time of a shape that does not keep the margin; else NaN."""
+    upper: FloatOrFloats
+    """The clearance of that shape is at most this."""
+    on_robot: Floats
+    """A point of that shape, (3,)."""
+    on_mesh: Floats
+    """A point of the mesh, (3,)."""
+    segment: IntOrInts
+    """The segment of the input there."""
+    arc_length: FloatOrFloats
+    """How far along that shape's centreline from the base."""
+    triangle: IntOrInts
+    """The triangle there."""
+
+
+class InsideAnswer(NamedTuple):
+    """Whether a robot keeps a margin, and on which side its base is."""
+
+    clears: BoolOrBools
+    """Whether every link keeps more than the margin."""
+    base: SideOrSides
+    """The side of the first point of the centreline."""
+
+
+class Certificate(NamedTuple):
+    """Bounds on distances that hold whatever was rounded on the way."""
+
+    lower: Floats
+    """(N - 1,): the distance is at least this."""
+    upper: Floats
+    """(N - 1,): the distance is at most this."""
+
+
+class Gradient(NamedTuple):
+    """A distance, and how it changes."""
+
+    value: FloatOrFloats
+    """The distance, or minus the least translation where robot and mesh overlap."""
+    points: Floats
+    """(N, 3): the derivative with respect to each point, in the robot's frame."""
+    radii: Floats
+    """(N - 1,): the derivative with respect to each radius."""
+    pose: Floats
+    """(4, 4): the derivative with respect to the entries of the pose."""
+    kink: BoolOrBools
+    """Whether other points are as close, for which the derivative is another."""

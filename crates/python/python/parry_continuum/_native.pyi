@@ -1,0 +1,134 @@
+from os import PathLike
+from typing import Any, Literal, final
+
+from numpy.typing import ArrayLike
+
+from ._answers import (
+    BoolOrBools,
+    Certificate,
+    Clearance,
+    Contacts,
+    DecisionOrDecisions,
+    FloatOrFloats,
+    Floats,
+    Gradient,
+    InsideAnswer,
+    Ints,
+    Minimum,
+    MotionAnswer,
+    PerLink,
+    SideOrSides,
+)
+
+__all__ = ["Mesh", "__version__", "load", "simplify", "stations"]
+
+__version__: str
+
+_Caps = Literal["fitted", "capsules", "cylinders"]
+
+@final
+class Mesh:
+    # Beside an array, anything with `.vertices` and `.faces`.
+    def __new__(cls, vertices: Any, faces: ArrayLike | None = None) -> Mesh: ...
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def faces(self) -> Ints: ...
+    def move(self, vertices: ArrayLike) -> None: ...
+    def prepare(self) -> None: ...
+    def distance(
+        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+    ) -> FloatOrFloats: ...
+    def minimum(
+        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+    ) -> Minimum: ...
+    def per_link(
+        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+    ) -> PerLink: ...
+    def clears(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        *,
+        pose: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> BoolOrBools: ...
+    def clears_inside(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        *,
+        pose: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> InsideAnswer: ...
+    def within(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        prominence: float = 0.0,
+        *,
+        pose: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> Contacts: ...
+    def side(self, points: ArrayLike) -> SideOrSides: ...
+    def clearance(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        tolerance: float,
+        *,
+        tangents: ArrayLike | None = None,
+        pose: ArrayLike | None = None,
+    ) -> Clearance: ...
+    def tube_clears(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        tangents: ArrayLike | None = None,
+        pose: ArrayLike | None = None,
+    ) -> DecisionOrDecisions: ...
+    def clears_motion(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        caps: Literal["fitted", "capsules"] = "fitted",
+    ) -> MotionAnswer: ...
+    def time_of_contact(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        caps: Literal["fitted", "capsules"] = "fitted",
+    ) -> MotionAnswer: ...
+    def certify(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        answer: PerLink,
+        *,
+        pose: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> Certificate: ...
+    def distance_and_gradient(
+        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+    ) -> Gradient: ...
+    def __copy__(self) -> Mesh: ...
+    def __deepcopy__(self, _memo: Any, /) -> Mesh: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
+def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
+def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...

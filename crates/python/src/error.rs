@@ -1,0 +1,161 @@
+//! What Python raises: one exception for all that can be wrong with what was handed over.
+
+use parry_continuum::proximity::{MeshError, ProximityError};
+use parry_continuum::{MatrixError, RobotError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{IntoPyDict, PyType};
+
+/// Why something has no answer, before Python is told.
+#[derive(Clone, Debug)]
+pub(crate) enum Refused {
+    Robot(RobotError),
+    Query(ProximityError),
+    Mesh(MeshError),
+    Matrix(MatrixError),
+    /// What the crate has no word for: shapes and types of arrays, files, a defect.
+    Other {
+        kind: &'static str,
+        text: String,
+        index: Option<usize>,
+    },
+}
+
+impl Refused {
+    pub(crate) fn other(kind: &'static str, text: impl Into<String>) -> Self {
+        Self::Other { kind, text: text.into(), index: None }
+    }
+
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Robot(error) => error.kind(),
+            Self::Query(error) => error.kind(),
+            Self::Mesh(error) => error.kind(),
+            Self::Matrix(error) => error.kind(),
+            Self::Other { kind, .. } => kind,
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Robot(error) => error.to_string(),
+            Self::Query(error) => error.to_string(),
+            Self::Mesh(error) => error.to_string(),
+            Self::Matrix(error) => error.to_string(),
+            Self::Other { text, .. } => text.clone(),
+        }
+    }
+
+    /// The point, radius, vertex, face or the like that is at fault, counted from 0.
+    fn index(&self) -> Option<usize> {
+        match self {
+            Self::Robot(error) | Self::Query(ProximityError::Motion(error)) => index_in_robot(error),
+            Self::Mesh(error) | Self::Query(ProximityError::Mesh(error)) => index_in_mesh(error),
+            Self::Query(ProximityError::OutOfRange { link, .. }) => Some(*link),
+            Self::Query(ProximityError::TooFast { section, .. }) => Some(*section),
+            Self::Query(_) | Self::Matrix(_) => None,
+            Self::Other { index, .. } => *index,
+        }
+    }
+
+    /// The least that can be asked for, where more was asked.
+    fn possible(&self) -> Option<f64> {
+        match self {
+            Self::Query(ProximityError::ToleranceTooFine { possible, .. }) => Some(*possible),
+            _ => None,
+        }
+    }
+
+    /// The exception, which names the robot of a batch.
+    pub(crate) fn raise(self, py: Python<'_>, robot: Option<usize>) -> PyErr {
+        let text = match robot {
+            Some(robot) => format!("robot {robot}: {}", self.text()),
+            None => self.text(),
+        };
+        let make = || -> PyResult<PyErr> {
+            let details = [
+                ("kind", self.kind().into_pyobject(py)?.into_any()),
+                ("robot", robot.into_pyobject(py)?),
+                ("index", self.index().into_pyobject(py)?),
+                ("possible", self.possible().into_pyobject(py)?),
+            ];
+            let error = class(py)?.call((text,), Some(&details.into_py_dict(py)?))?;
+            Ok(PyErr::from_value(error))
+        };
+        make().unwrap_or_else(|error| error)
+    }
+}
+
+fn index_in_robot(error: &RobotError) -> Option<usize> {
+    match error {
+        RobotError::PointNotFinite { index, .. }
+        | RobotError::PointOutOfRange { index, .. }
+        | RobotError::BadRadius { index, .. }
+        | RobotError::FlatCapWithoutAxis { index }
+        | RobotError::HidesLength { index, .. }
+        | RobotError::BadTangent { index, .. }
+        | RobotError::TurnsTooSharply { index, .. }
+        | RobotError::BendsWithinRadius { index, .. } => Some(*index),
+        _ => None,
+    }
+}
+
+fn index_in_mesh(error: &MeshError) -> Option<usize> {
+    match error {
+        MeshError::NotFinite { vertex, .. } | MeshError::OutOfRange { vertex, .. } => Some(*vertex),
+        MeshError::NoSuchVertex { triangle, .. } => Some(*triangle),
+        _ => None,
+    }
+}
+
+/// `ContinuumError`, which is written in Python.
+fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    CLASS.import(py, "parry_continuum._errors", "ContinuumError")
+}
+
+/// Robots are given as `points` and `radii`, so these are the names in their errors.
+impl From<RobotError> for Refused {
+    fn from(mut error: RobotError) -> Self {
+        match &mut error {
+            RobotError::LengthsDiffer { parameter, .. }
+            | RobotError::BadRadius { parameter, .. }
+            | RobotError::HidesLength { parameter, .. }
+            | RobotError::PointNotFinite { parameter, .. }
+            | RobotError::PointOutOfRange { parameter, .. }
+            | RobotError::BadTangent { parameter, .. }
+            | RobotError::TooFewPoints { parameter, .. } => {
+                *parameter = match *parameter {
+                    "segment_radii" => "radii",
+                    "end_tangents" => "tangents",
+                    "from" => "start",
+                    "to" => "end",
+                    other => other,
+                };
+            }
+            _ => {}
+        }
+        Self::Robot(error)
+    }
+}
+
+impl From<ProximityError> for Refused {
+    fn from(error: ProximityError) -> Self {
+        match error {
+            ProximityError::Motion(error) => error.into(),
+            other => Self::Query(other),
+        }
+    }
+}
+
+impl From<MeshError> for Refused {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
+}
+
+impl From<MatrixError> for Refused {
+    fn from(error: MatrixError) -> Self {
+        Self::Matrix(error)
+    }
+}

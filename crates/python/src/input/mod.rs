@@ -1,0 +1,11 @@
+//! From what Python hands over to plain numbers, checked.
+
+mod caps;
+mod faces;
+mod numbers;
+mod robots;
+
+pub(crate) use caps::Caps;
+pub(crate) use faces::faces;
+pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
+pub(crate) use robots::{Block, Given, Robots};

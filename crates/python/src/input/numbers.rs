@@ -1,0 +1,96 @@
+//! An array of any type and memory order, as `f64` one after the other.
+
+use crate::error::Refused;
+use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use parry_continuum::parry::math::Vector;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyFloat;
+
+/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
+pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
+
+impl<'py> Numbers<'py> {
+    /// What is an array already is taken as it is; else numpy makes one. `name` is the parameter's.
+    pub(crate) fn new(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
+            && array.is_c_contiguous()
+            && is_aligned(array)
+        {
+            return Ok(Self(array.clone()));
+        }
+        let py = given.py();
+        let refuse = |text: String| Refused::other("bad_type", text).raise(py, None);
+        let array = as_array(given, name)?;
+        if !matches!(array.dtype().kind(), b'f' | b'i' | b'u') {
+            let dtype = array.dtype();
+            return Err(refuse(format!("`{name}` has the type {dtype}; give an array of floats")));
+        }
+        let array = numpy(py)?.call_method1("require", (array, "float64", "CA"))?;
+        match array.cast_into::<PyArrayDyn<f64>>() {
+            Ok(array) => Ok(Self(array)),
+            Err(_) => Err(refuse(format!("`{name}` is no array of numbers; give an array of floats"))),
+        }
+    }
+
+    /// A single number, where it is one.
+    pub(crate) fn single(given: &Bound<'py, PyAny>) -> Option<f64> {
+        given.cast_exact::<PyFloat>().ok().map(|number| number.value())
+    }
+
+    pub(crate) fn shape(&self) -> &[usize] {
+        self.0.shape()
+    }
+
+    /// All numbers, in the order of the last index first.
+    pub(crate) fn values(&self) -> &[f64] {
+        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and gives
+        // the numbers up before Python's code runs again.
+        unsafe { self.0.as_slice() }.unwrap_or_default()
+    }
+
+    /// The numbers as points. Their shape must end in 3.
+    pub(crate) fn points(&self) -> &[[f64; 3]] {
+        self.values().as_chunks::<3>().0
+    }
+}
+
+/// Whether numbers lie where the machine wants them: a field of a packed structure need not.
+fn is_aligned(array: &Bound<'_, PyArrayDyn<f64>>) -> bool {
+    array.data().is_aligned()
+}
+
+/// Points as the crate's vectors.
+pub(crate) fn vectors(points: &[[f64; 3]]) -> Vec<Vector> {
+    points.iter().map(|&point| Vector::from_array(point)).collect()
+}
+
+/// The module `numpy`.
+pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+    static NUMPY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let module = NUMPY.get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.into_any().unbind()))?;
+    Ok(module.bind(py))
+}
+
+/// A shape as numpy writes it.
+pub(crate) fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// What numpy makes of an argument, whatever its type.
+pub(crate) fn as_array<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
+    let py = given.py();
+    let refuse = |why: String| {
+        let text = format!("`{name}` is no array of numbers ({why}); give a numpy array");
+        Refused::other("bad_type", text).raise(py, None)
+    };
+    let array = numpy(py)?.call_method1("asarray", (given,)).map_err(|error| {
+        // Ctrl-C says nothing of the argument.
+        if error.is_instance_of::<PyException>(py) { refuse(error.to_string()) } else { error }
+    })?;
+    array.cast_into::<PyUntypedArray>().map_err(|error| refuse(error.to_string()))
+}

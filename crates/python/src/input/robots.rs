@@ -1,0 +1,265 @@
+//! One robot or many, as arrays describe them.
+
+use super::numbers::{Numbers, shape_text};
+use crate::error::Refused;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::{RobotError, pose_from_matrix};
+use pyo3::prelude::*;
+use std::ops::Range;
+
+/// One robot, or a batch of them, as Python describes them. What is asked of it needs the GIL.
+pub(crate) struct Robots<'py> {
+    /// How many robots the batch has; none where one robot was given, without a first index.
+    pub count: Option<usize>,
+    /// How many points each of them has.
+    pub points_each: usize,
+    points: Numbers<'py>,
+    /// More points: where a motion ends, or the directions of a curve.
+    more: Option<Numbers<'py>>,
+    radii: Radii<'py>,
+    poses: Poses<'py>,
+}
+
+enum Radii<'py> {
+    Number(f64),
+    Shared(Numbers<'py>),
+    Each(Numbers<'py>),
+}
+
+enum Poses<'py> {
+    Identity,
+    Shared(Numbers<'py>),
+    Each(Numbers<'py>),
+}
+
+/// Which robots of a batch share what.
+#[derive(Clone, Copy, Default)]
+struct Shared {
+    radii: bool,
+    pose: bool,
+}
+
+/// A copy of some robots, which needs no GIL. It is filled again and again.
+#[derive(Default)]
+pub(crate) struct Block {
+    /// The place of its first robot in the batch.
+    first: usize,
+    points_each: usize,
+    more_each: usize,
+    points: Vec<Vector>,
+    more: Vec<Vector>,
+    radii: Vec<f64>,
+    matrices: Vec<[f64; 16]>,
+    shared: Shared,
+}
+
+/// One robot of a block.
+pub(crate) struct Given<'a> {
+    /// Its place in the batch.
+    pub number: usize,
+    pub points: &'a [Vector],
+    pub more: &'a [Vector],
+    pub radii: &'a [f64],
+    matrix: Option<&'a [f64; 16]>,
+}
+
+fn refuse(py: Python<'_>, text: String) -> PyErr {
+    Refused::other("bad_shape", text).raise(py, None)
+}
+
+/// Points of one robot, (N, 3), or of many, (B, N, 3).
+fn points<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Numbers<'py>, Option<usize>, usize)> {
+    let numbers = Numbers::new(given, name)?;
+    match *numbers.shape() {
+        [each, 3] => Ok((numbers, None, each)),
+        [count, each, 3] => Ok((numbers, Some(count), each)),
+        ref shape => {
+            let advice = match *shape {
+                [3, _] => "give its transpose, `.T`",
+                [_, 3, _] => "give its transpose, `.swapaxes(1, 2)`",
+                _ => "give a row of three coordinates for each point",
+            };
+            let text =
+                format!("`{name}` has the shape {}, not (N, 3) or (B, N, 3); {advice}", shape_text(shape));
+            Err(refuse(given.py(), text))
+        }
+    }
+}
+
+impl<'py> Robots<'py> {
+    /// Robots by their points, radii and poses. `name` is what the function calls its points.
+    pub(crate) fn new(
+        name: &str,
+        given: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        pose: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let (points, count, points_each) = points(given, name)?;
+        let radii = Radii::new(radii, count, points_each)?;
+        let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
+        Ok(Self { count, points_each, points, more: None, radii, poses })
+    }
+
+    /// The same with as many points more, such as those at which a motion ends.
+    pub(crate) fn with_as_many(
+        mut self,
+        name: &str,
+        given: &Bound<'py, PyAny>,
+        other: &str,
+    ) -> PyResult<Self> {
+        let (more, ..) = points(given, name)?;
+        if more.shape() != self.points.shape() {
+            let text = format!(
+                "`{name}` has the shape {}, and `{other}` has {}; give both the same shape",
+                shape_text(more.shape()),
+                shape_text(self.points.shape())
+            );
+            return Err(refuse(given.py(), text));
+        }
+        self.more = Some(more);
+        Ok(self)
+    }
+
+    /// The same with directions of each robot's curve, at its two ends or at all of its points.
+    pub(crate) fn with_tangents(mut self, given: Option<&Bound<'py, PyAny>>) -> PyResult<Self> {
+        let Some(given) = given else { return Ok(self) };
+        let (tangents, count, each) = points(given, "tangents")?;
+        if count != self.count || !(each == 2 || each == self.points_each) {
+            let text = format!(
+                "`tangents` has the shape {} beside `points` of {}; give two directions for each robot, at its ends, or one \
+                 for each point",
+                shape_text(tangents.shape()),
+                shape_text(self.points.shape())
+            );
+            return Err(refuse(given.py(), text));
+        }
+        self.more = Some(tangents);
+        Ok(self)
+    }
+
+    /// How many robots there are.
+    pub(crate) fn len(&self) -> usize {
+        self.count.unwrap_or(1)
+    }
+
+    /// How many segments each of them has.
+    pub(crate) fn segments_each(&self) -> usize {
+        self.points_each.saturating_sub(1)
+    }
+
+    /// The shape of an array that has a number for each robot, and then what `last` says.
+    pub(crate) fn shape(&self, last: &[usize]) -> Vec<usize> {
+        self.count.iter().chain(last).copied().collect()
+    }
+
+    /// Copies some of the robots.
+    pub(crate) fn copy(&self, robots: Range<usize>, block: &mut Block) {
+        block.first = robots.start;
+        let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
+            let each = from.points().len() / self.len().max(1);
+            to.clear();
+            let range = each * robots.start..each * robots.end;
+            to.extend(from.points()[range].iter().map(|&point| Vector::from_array(point)));
+            each
+        };
+        block.points_each = copy_points(&self.points, &mut block.points);
+        block.more_each = 0;
+        block.more.clear();
+        if let Some(more) = &self.more {
+            block.more_each = copy_points(more, &mut block.more);
+        }
+        block.radii.clear();
+        match &self.radii {
+            Radii::Number(radius) => block.radii.resize(self.segments_each(), *radius),
+            Radii::Shared(radii) => block.radii.extend(radii.values()),
+            Radii::Each(radii) => {
+                let each = self.segments_each();
+                block.radii.extend(&radii.values()[each * robots.start..each * robots.end]);
+            }
+        }
+        block.matrices.clear();
+        match &self.poses {
+            Poses::Identity => {}
+            Poses::Shared(pose) => block.matrices.extend(pose.values().as_chunks::<16>().0),
+            Poses::Each(poses) => block.matrices.extend(&poses.values().as_chunks::<16>().0[robots]),
+        }
+        block.shared = Shared {
+            radii: !matches!(self.radii, Radii::Each(_)),
+            pose: matches!(self.poses, Poses::Shared(_)),
+        };
+    }
+}
+
+impl<'py> Radii<'py> {
+    fn new(given: &Bound<'py, PyAny>, count: Option<usize>, points: usize) -> PyResult<Self> {
+        if let Some(radius) = Numbers::single(given) {
+            return Ok(Self::Number(radius));
+        }
+        let numbers = Numbers::new(given, "radii")?;
+        let segments = points.saturating_sub(1);
+        let lengths_differ = |radii: usize| {
+            let (parameter, expected) = ("radii", segments);
+            let error = RobotError::LengthsDiffer { parameter, points, expected, radii };
+            Refused::Robot(error).raise(given.py(), None)
+        };
+        match (numbers.shape(), count) {
+            ([], _) => Ok(Self::Number(numbers.values()[0])),
+            (&[radii], _) if radii == segments || points < 2 => Ok(Self::Shared(numbers)),
+            (&[radii], _) => Err(lengths_differ(radii)),
+            (&[robots, radii], Some(count)) if robots == count && radii == segments => {
+                Ok(Self::Each(numbers))
+            }
+            (&[robots, radii], Some(count)) if robots == count => Err(lengths_differ(radii)),
+            (shape, _) => {
+                let fit = count.map_or(String::new(), |count| format!(" or ({count}, {segments})"));
+                let text = format!(
+                    "`radii` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
+                    shape_text(shape)
+                );
+                Err(refuse(given.py(), text))
+            }
+        }
+    }
+}
+
+impl<'py> Poses<'py> {
+    fn new(given: &Bound<'py, PyAny>, count: Option<usize>) -> PyResult<Self> {
+        let numbers = Numbers::new(given, "pose")?;
+        match (numbers.shape(), count) {
+            ([4, 4], _) => Ok(Self::Shared(numbers)),
+            (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
+            (shape, _) => {
+                let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
+                let text = format!(
+                    "`pose` has the shape {}; give None, or the shape (4, 4){fit}",
+                    shape_text(shape)
+                );
+                Err(refuse(given.py(), text))
+            }
+        }
+    }
+}
+
+impl Block {
+    /// The robot at this place in the block.
+    pub(crate) fn robot(&self, place: usize) -> Given<'_> {
+        let of = |each: usize| each * place..each * (place + 1);
+        let segments = of(self.points_each.saturating_sub(1));
+        Given {
+            number: self.first + place,
+            points: &self.points[of(self.points_each)],
+            more: &self.more[of(self.more_each)],
+            radii: if self.shared.radii { &self.radii } else { &self.radii[segments] },
+            matrix: self.matrices.get(if self.shared.pose { 0 } else { place }),
+        }
+    }
+}
+
+impl Given<'_> {
+    /// The robot's pose in the mesh's frame.
+    pub(crate) fn pose(&self) -> Result<Pose, Refused> {
+        let Some(matrix) = self.matrix else { return Ok(Pose::IDENTITY) };
+        let row = |row: usize| std::array::from_fn(|column| matrix[4 * row + column]);
+        Ok(pose_from_matrix(std::array::from_fn(row))?)
+    }
+}

@@ -1,0 +1,30 @@
+//! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python package beside it.
+//!
+//! `input` makes plain numbers of what Python hands over, `threads` asks about them without the GIL, `queries` has a file
+//! for each question, and `output` makes arrays of the answers.
+
+mod error;
+mod input;
+mod mesh;
+mod output;
+mod queries;
+mod robots;
+mod threads;
+
+use pyo3::prelude::*;
+
+/// The compiled half of `parry_continuum`.
+#[pymodule(gil_used = true)]
+mod _native {
+    #[pymodule_export]
+    use super::mesh::{Mesh, load};
+    #[pymodule_export]
+    use super::robots::{simplify, stations};
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        threads::watch_forks();
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,92 @@
+//! From plain numbers to what Python gets: arrays, and tuples with names.
+
+use crate::input::numpy;
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{Decision, Side};
+use pyo3::IntoPyObjectExt;
+use pyo3::call::PyCallArgs;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+
+/// An array of this shape.
+pub(crate) fn array<'py, T: Element>(
+    py: Python<'py>,
+    shape: Vec<usize>,
+    numbers: Vec<T>,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    PyArray1::from_vec(py, numbers).reshape(shape)
+}
+
+/// An array of this shape, or the number itself where the shape is that of one.
+pub(crate) fn array_or_number<'py, T>(
+    py: Python<'py>,
+    shape: Vec<usize>,
+    numbers: Vec<T>,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    T: Element + Copy + IntoPyObject<'py>,
+{
+    match (&shape[..], &numbers[..]) {
+        ([], &[number]) => number.into_bound_py_any(py),
+        _ => Ok(array(py, shape, numbers)?.into_any()),
+    }
+}
+
+/// Points one after the other.
+pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
+    points.into_iter().flat_map(|point| point.to_array()).collect()
+}
+
+/// An answer of the package's Python half: the class of that name, made of these values.
+pub(crate) fn answer<'py>(
+    py: Python<'py>,
+    class: &str,
+    values: impl PyCallArgs<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    answers(py)?.getattr(class)?.call1(values)
+}
+
+fn answers(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+    static ANSWERS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let import = || Ok::<_, PyErr>(py.import("parry_continuum._answers")?.into_any().unbind());
+    Ok(ANSWERS.get_or_try_init(py, import)?.bind(py))
+}
+
+/// A member of the class `Side` or `Decision`, or an array of their values.
+pub(crate) fn members<'py>(
+    py: Python<'py>,
+    class: &str,
+    shape: Vec<usize>,
+    values: Vec<i8>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match (&shape[..], &values[..]) {
+        ([], &[value]) => answer(py, class, (value,)),
+        _ => Ok(array(py, shape, values)?.into_any()),
+    }
+}
+
+/// As the class `Side` has it.
+pub(crate) fn side_value(side: Side) -> i8 {
+    match side {
+        Side::Inside => -1,
+        Side::Undecided => 0,
+        Side::Outside => 1,
+    }
+}
+
+/// As the class `Decision` has it.
+pub(crate) fn decision_value(decision: Decision) -> i8 {
+    match decision {
+        Decision::Contact => -1,
+        Decision::Undecided => 0,
+        Decision::Clear => 1,
+    }
+}
+
+/// An array of texts.
+pub(crate) fn texts<'py>(py: Python<'py>, texts: Vec<&str>) -> PyResult<Bound<'py, PyAny>> {
+    let is_empty = texts.is_empty();
+    let array = numpy(py)?.call_method1("array", (texts,))?;
+    if is_empty { array.call_method1("astype", ("U",)) } else { Ok(array) }
+}

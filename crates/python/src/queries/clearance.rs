@@ -1,0 +1,188 @@
+//! How near a curved tube is, between bounds.
+
+use crate::error::Refused;
+use crate::input::{Given, Robots};
+use crate::mesh::Mesh;
+use crate::output::{answer, array, array_or_number, decision_value, flat, members};
+use crate::threads::{Session, ask_each};
+use parry_continuum::Tube;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::Clearance;
+use pyo3::prelude::*;
+
+impl Session {
+    /// Makes the session's tube that of a robot, in the memory that it has.
+    fn set_tube(&mut self, robot: &Given<'_>) -> Result<Pose, Refused> {
+        let ends = match robot.more {
+            [first, .., last] => Some([*first, *last]),
+            _ => None,
+        };
+        match &mut self.tube {
+            Some(tube) => tube.set_samples(robot.points, robot.radii, ends)?,
+            tube => *tube = Some(Tube::from_samples(robot.points, robot.radii, ends)?),
+        }
+        robot.pose()
+    }
+}
+
+/// `set_tube` leaves one.
+fn no_tube() -> Refused {
+    Refused::other("defect", "no tube was made; this is a defect of parry-continuum, please report it")
+}
+
+#[pymethods]
+impl Mesh {
+    /// The clearance of curved tubes, between proven bounds.
+    ///
+    /// A robot is taken for what it is: a smooth tube through its points, with flat ends. Between two points it bends no more
+    /// than the points show. ``lower <= clearance <= upper`` always holds, rounding included.
+    ///
+    /// Of a batch, a robot that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of
+    /// its error. Of all others the status is the empty string.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, pose
+    ///     As for `distance`.
+    /// tolerance : float
+    ///     How far apart the bounds may be, at least 0.
+    /// tangents : (2, 3) or (B, 2, 3) array, optional
+    ///     The directions of the curve at its two ends, towards the tip, of any length. Without them the points alone tell how a
+    ///     flat end is turned, which widens the bounds near it.
+    ///
+    /// Returns
+    /// -------
+    /// Clearance
+    ///     Numbers and points of one robot, or arrays with one for each robot. ``resolved`` says whether the bounds are as close
+    ///     as was asked for.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The tolerance is negative or NaN. Of one robot: its points turn too sharply for a tube, or as for `distance`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import Mesh
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> angle = np.linspace(0, 1, 20)
+    /// >>> arc = np.stack([3 * np.sin(angle), 0 * angle, 2 + 3 * np.cos(angle)], 1)
+    /// >>> found = floor.clearance(arc, 0.5, tolerance=0.01)
+    /// >>> bool(found.resolved), bool(found.lower <= found.upper <= found.lower + 0.01)
+    /// (True, True)
+    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, pose = None))]
+    fn clearance<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        tolerance: f64,
+        tangents: Option<&Bound<'py, PyAny>>,
+        pose: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?.with_tangents(tangents)?;
+        if tolerance.is_nan() || tolerance < 0.0 {
+            let error = parry_continuum::proximity::ProximityError::Negative {
+                parameter: "tolerance",
+                value: tolerance,
+            };
+            return Err(Refused::from(error).raise(py, None));
+        }
+        let is_batch = robots.count.is_some();
+        let mut all: Vec<Option<Clearance>> = Vec::with_capacity(robots.len());
+        let mut status = Vec::with_capacity(robots.len());
+        let ask =
+            |session: &mut Session, robot: &Given<'_>, row: &mut [(Option<Clearance>, &'static str)]| {
+                let pose = session.set_tube(robot);
+                let found = pose.and_then(|pose| {
+                    let tube = session.tube.as_ref().ok_or_else(no_tube)?;
+                    Ok(session.search.clearance(tube, &pose, tolerance)?)
+                });
+                row[0] = match found {
+                    Ok(found) => (Some(found), ""),
+                    Err(refused) if is_batch => (None, refused.kind()),
+                    Err(refused) => return Err(refused),
+                };
+                Ok(())
+            };
+        ask_each(py, &self.engine(py), &robots, ((None, ""), 1), ask, |_, found| {
+            all.extend(found.iter().map(|row| row.0));
+            status.extend(found.iter().map(|row| row.1));
+        })?;
+        let shape = || robots.shape(&[]);
+        let numbers = |of: fn(&Clearance) -> f64| {
+            array_or_number(py, shape(), all.iter().map(|it| it.as_ref().map_or(f64::NAN, of)).collect())
+        };
+        let places = |of: fn(&Clearance) -> u32| {
+            let places = all.iter().map(|it| it.as_ref().map_or(-1, |it| of(it).into()));
+            array_or_number(py, shape(), places.collect::<Vec<i64>>())
+        };
+        let points = |of: fn(&Clearance) -> Vector| {
+            array(py, robots.shape(&[3]), flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))))
+        };
+        let resolved = all.iter().map(|it| it.as_ref().is_some_and(|it| it.resolved)).collect();
+        let status = match robots.count {
+            Some(_) => crate::output::texts(py, status)?,
+            None => "".into_pyobject(py)?.into_any(),
+        };
+        let values = (
+            numbers(|found| found.lower)?,
+            numbers(|found| found.upper)?,
+            array_or_number(py, shape(), resolved)?,
+            numbers(|found| found.uncertainty)?,
+            points(|found| found.on_robot)?,
+            points(|found| found.on_mesh)?,
+            places(|found| found.segment)?,
+            numbers(|found| found.arc_length)?,
+            places(|found| found.triangle)?,
+            status,
+        );
+        answer(py, "Clearance", values)
+    }
+
+    /// Whether curved tubes keep more than a margin away.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, tangents, pose
+    ///     As for `clearance`.
+    /// margin : float
+    ///     A length, at least 0.
+    /// resolution : float
+    ///     The answer is undecided only where the clearance is within this of the margin.
+    ///
+    /// Returns
+    /// -------
+    /// Decision or (B,) array of int8
+    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
+    ///     what can be had. Of a batch, ``robot`` is the first that is refused.
+    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, pose = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn tube_clears<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        margin: f64,
+        resolution: f64,
+        tangents: Option<&Bound<'py, PyAny>>,
+        pose: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?.with_tangents(tangents)?;
+        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
+            let pose = session.set_tube(robot)?;
+            let tube = session.tube.as_ref().ok_or_else(no_tube)?;
+            row[0] = decision_value(session.search.tube_clears(tube, &pose, margin, resolution)?);
+            Ok(())
+        };
+        ask_each(py, &self.engine(py), &robots, (0, 1), ask, |_, found| all.extend(found))?;
+        members(py, "Decision", robots.shape(&[]), all)
+    }
+}

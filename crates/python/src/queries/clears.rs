@@ -1,0 +1,106 @@
+//! Whether a robot keeps a margin.
+
+use super::distance::no_chain;
+use crate::input::{Caps, Given, Robots};
+use crate::mesh::Mesh;
+use crate::output::{answer, array_or_number, members, side_value};
+use crate::threads::{Session, ask_each};
+use parry_continuum::proximity::Proximity;
+use pyo3::prelude::*;
+
+#[pymethods]
+impl Mesh {
+    /// Whether robots keep more than a margin away: exactly ``distance(...) > margin``, for less work.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, pose, caps
+    ///     As for `distance`.
+    /// margin : float
+    ///     A length, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// bool or (B,) array of bool
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The margin is negative or NaN, or as for `distance`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import Mesh
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.4), floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.5)
+    /// (True, False)
+    #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
+    fn clears<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        margin: f64,
+        pose: Option<&Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?;
+        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
+            session.set_chain(robot, caps)?;
+            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            row[0] = session.search.clears(chain, &robot.pose()?, margin)?;
+            Ok(())
+        };
+        ask_each(py, &self.engine(py), &robots, (false, 1), ask, |_, found| all.extend(found))?;
+        array_or_number(py, robots.shape(&[]), all)
+    }
+
+    /// Whether robots keep more than a margin away, and on which side their bases are.
+    ///
+    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole. An open mesh has no inside:
+    /// there ask for the `side` of every point that matters.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, pose, caps
+    ///     As for `distance`.
+    /// margin : float
+    ///     A length, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// InsideAnswer
+    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `clears`.
+    #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
+    fn clears_inside<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        margin: f64,
+        pose: Option<&Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?;
+        let (mut clears, mut bases) = (Vec::new(), Vec::new());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [(bool, i8)]| {
+            session.set_chain(robot, caps)?;
+            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let found = session.search.clears_inside(chain, &robot.pose()?, margin)?;
+            row[0] = (found.clears, side_value(found.base));
+            Ok(())
+        };
+        ask_each(py, &self.engine(py), &robots, ((false, 0), 1), ask, |_, found| {
+            clears.extend(found.iter().map(|found| found.0));
+            bases.extend(found.iter().map(|found| found.1));
+        })?;
+        let clears = array_or_number(py, robots.shape(&[]), clears)?;
+        answer(py, "InsideAnswer", (clears, members(py, "Side", robots.shape(&[]), bases)?))
+    }
+}

@@ -1,0 +1,134 @@
+//! How the distance changes with all that the robot is made of.
+//!
+//! The library gives the derivative with respect to the ends p and q of the link that is closest, both in the mesh's frame.
+//! With the pose x -> R x + t, p = R a + t for a point a of the robot: the derivative with respect to a is R^T times that with
+//! respect to p, that with respect to t is the sum over the two ends, and that with respect to R is the sum of g a^T, with g
+//! the derivative with respect to an end. All other points and radii do not count: only the closest link moves the distance.
+
+use super::distance::no_chain;
+use crate::error::Refused;
+use crate::input::{Caps, Given, Robots};
+use crate::mesh::Mesh;
+use crate::output::{answer, array, array_or_number};
+use crate::threads::{Session, ask_each};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::Proximity;
+use pyo3::prelude::*;
+
+/// What there is of one robot.
+#[derive(Clone, Copy)]
+struct Row {
+    value: f64,
+    segment: usize,
+    ends: [Vector; 2],
+    radius: f64,
+    pose: [f64; 16],
+    kink: bool,
+}
+
+const NOTHING: Row = Row {
+    value: f64::NAN,
+    segment: 0,
+    ends: [Vector::NAN; 2],
+    radius: f64::NAN,
+    pose: [f64::NAN; 16],
+    kink: false,
+};
+
+fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refused> {
+    let (closest, pose) = session.minimum(robot, caps)?;
+    let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+    let contact = session.search.contact(chain, &pose, &closest)?;
+    let segment = closest.segment as usize;
+    let mut row = Row { value: contact.depth.unwrap_or(closest.distance), segment, ..NOTHING };
+    if let Some(found) = session.search.derivative(chain, &pose, &closest)? {
+        let back = pose.rotation.inverse();
+        (row.ends, row.radius, row.kink) = ([back * found.start, back * found.end], found.radius, found.kink);
+        row.pose = [0.0; 16];
+        for (rate, point) in [(found.start, robot.points[segment]), (found.end, robot.points[segment + 1])] {
+            for (i, rate) in rate.to_array().into_iter().enumerate() {
+                for (j, x) in point.to_array().into_iter().chain([1.0]).enumerate() {
+                    row.pose[4 * i + j] += rate * x;
+                }
+            }
+        }
+    }
+    Ok(row)
+}
+
+#[pymethods]
+impl Mesh {
+    /// The distance with its derivative with respect to every point, radius and pose.
+    ///
+    /// Where robot and mesh are apart the value is the distance; where they overlap it is minus the length of the least
+    /// translation that parts the closest link from its triangle, so that it goes on through the wall.
+    ///
+    /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
+    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. The
+    /// derivatives are NaN where neither side of the triangle is the robot's.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, pose, caps
+    ///     As for `distance`.
+    ///
+    /// Returns
+    /// -------
+    /// Gradient
+    ///     ``value``; ``points`` (N, 3), in the robot's frame; ``radii`` (N - 1,), whose sum belongs to one radius for all
+    ///     segments; ``pose`` (4, 4), the derivative with respect to the entries of the matrix, for changes that leave it rigid;
+    ///     ``kink``. Of a batch, each with B in front.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `distance`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import Mesh
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> found = floor.distance_and_gradient([[0, 0, 4], [0, 0, 3], [1, 0, 2]], 0.5, caps="capsules")
+    /// >>> found.value, found.points[2], found.radii
+    /// (1.5, array([0., 0., 1.]), array([ 0., -1.]))
+    #[pyo3(signature = (points, radii, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, pose=None, caps=\"fitted\")")]
+    fn distance_and_gradient<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        pose: Option<&Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?;
+        let (count, each, segments) = (robots.len(), robots.points_each, robots.segments_each());
+        let (mut values, mut kinks, mut poses) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        let (mut of_points, mut of_radii) = (vec![0.0; 3 * count * each], vec![0.0; count * segments]);
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
+            row[0] = ask(session, robot, caps)?;
+            Ok(())
+        };
+        ask_each(py, &self.engine(py), &robots, (NOTHING, 1), ask, |first, rows| {
+            for (robot, row) in (first..).zip(rows) {
+                values.push(row.value);
+                kinks.push(row.kink);
+                poses.extend(row.pose);
+                for (end, rate) in row.ends.iter().enumerate() {
+                    let place = 3 * (robot * each + row.segment + end);
+                    of_points[place..place + 3].copy_from_slice(&rate.to_array());
+                }
+                of_radii[robot * segments + row.segment] = row.radius;
+            }
+        })?;
+        let found = (
+            array_or_number(py, robots.shape(&[]), values)?,
+            array(py, robots.shape(&[each, 3]), of_points)?,
+            array(py, robots.shape(&[segments]), of_radii)?,
+            array(py, robots.shape(&[4, 4]), poses)?,
+            array_or_number(py, robots.shape(&[]), kinks)?,
+        );
+        answer(py, "Gradient", found)
+    }
+}

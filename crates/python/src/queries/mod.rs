@@ -1,0 +1,11 @@
+//! The questions that a mesh is asked, a file for each.
+
+mod certify;
+mod clearance;
+mod clears;
+mod distance;
+mod gradient;
+mod motion;
+mod per_link;
+mod side;
+mod within;

@@ -1,0 +1,101 @@
+//! Every contact of a robot.
+
+use super::distance::no_chain;
+use crate::input::{Caps, Given, Robots};
+use crate::mesh::Mesh;
+use crate::output::{answer, array, flat};
+use crate::threads::{Session, ask_each};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{Contact, Proximity};
+use pyo3::prelude::*;
+
+#[pymethods]
+impl Mesh {
+    /// Every contact at most a margin away: where the distance between a link and the mesh has a local minimum.
+    ///
+    /// A wall that bends towards a link is one contact, however many triangles it has, and a link in a narrow lumen has one on
+    /// each side. Contacts come robot by robot, segment by segment, the nearest first.
+    ///
+    /// Where the two are apart ``depth`` is the distance, and ``normal`` points from the wall to the robot. Where they overlap
+    /// ``depth`` is minus the length of the least translation, along ``normal``, that parts the link from that triangle. The
+    /// normal is NaN where neither side of the triangle is the robot's.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, pose, caps
+    ///     As for `distance`.
+    /// margin : float
+    ///     A length, at least 0.
+    /// prominence : float
+    ///     Leaves out local minima that are shallow: by how much farther every way on the mesh from a contact to a nearer place
+    ///     must first lead. 0 keeps all of them.
+    ///
+    /// Returns
+    /// -------
+    /// Contacts
+    ///     Arrays of one length, with a row for each contact. Those of robot k are
+    ///     ``offsets[k]:offsets[k + 1]``.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The margin or the prominence is negative or NaN, or as for `distance`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import Mesh
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> contacts = floor.within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
+    /// >>> contacts.segment, contacts.distance, contacts.normal
+    /// (array([1]), array([0.5]), array([[0., 0., 1.]]))
+    #[pyo3(signature = (points, radii, margin, prominence = 0.0, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, prominence=0.0, *, pose=None, caps=\"fitted\")")]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn within<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        margin: f64,
+        prominence: f64,
+        pose: Option<&Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new("points", points, radii, pose)?;
+        let (mut all, mut offsets, mut robot_of): (Vec<Contact>, _, _) =
+            (Vec::new(), vec![0_i64], Vec::new());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<Contact>]| {
+            session.set_chain(robot, caps)?;
+            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            session.search.within(chain, &robot.pose()?, margin, prominence, &mut session.contacts)?;
+            row[0].extend(&session.contacts);
+            Ok(())
+        };
+        ask_each(py, &self.engine(py), &robots, (Vec::new(), 1), ask, |first, found| {
+            for (robot, contacts) in (first..).zip(found) {
+                all.extend(contacts);
+                offsets.push(all.len() as i64);
+                robot_of.resize(all.len(), robot as i64);
+            }
+        })?;
+        let count = || vec![all.len()];
+        let numbers = |of: fn(&Contact) -> f64| array(py, count(), all.iter().map(of).collect());
+        let places = |of: fn(&Contact) -> u32| {
+            array(py, count(), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
+        };
+        let points = |of: fn(&Contact) -> Vector| array(py, vec![all.len(), 3], flat(all.iter().map(of)));
+        let values = (
+            places(|contact| contact.segment)?,
+            numbers(|contact| contact.fraction)?,
+            numbers(|contact| contact.arc_length)?,
+            numbers(|contact| contact.distance)?,
+            numbers(|contact| contact.depth.unwrap_or(f64::NAN))?,
+            points(|contact| contact.normal.unwrap_or(Vector::NAN))?,
+            points(|contact| contact.on_robot)?,
+            points(|contact| contact.on_mesh)?,
+            places(|contact| contact.triangle)?,
+            array(py, count(), robot_of)?,
+            array(py, vec![offsets.len()], offsets.clone())?,
+        );
+        answer(py, "Contacts", values)
+    }
+}

@@ -1,0 +1,100 @@
+//! Fewer links for the same robot.
+
+use crate::error::Refused;
+use crate::input::{Block, Robots};
+use crate::output::{array, flat};
+use crate::threads::compute;
+use numpy::PyArrayDyn;
+use parry_continuum::RobotError;
+use parry_continuum::parry::math::Vector;
+use pyo3::prelude::*;
+
+type Arrays<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
+type Fewer = fn(&[Vector], &[f64], f64) -> Result<(Vec<Vector>, Vec<f64>), RobotError>;
+
+/// The fewest points that stay within a tolerance of a centreline.
+///
+/// They are a subset of the given points, keep both ends and every change of radius, and their lines and the given ones lie
+/// within the tolerance of each other.
+///
+/// Parameters
+/// ----------
+/// points : (N, 3) array
+/// radii : float or (N - 1,) array
+/// tolerance : float
+///     A length, at least 0.
+///
+/// Returns
+/// -------
+/// (points, radii)
+///     Arrays of the shapes (M, 3) and (M - 1,).
+///
+/// Raises
+/// ------
+/// ContinuumError
+///     The tolerance is negative or NaN, or the points are no robot.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from parry_continuum import simplify
+/// >>> points, radii = simplify([[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2]], 0.1, 0.01)
+/// >>> len(points)
+/// 3
+#[pyfunction]
+pub(crate) fn simplify<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    radii: &Bound<'py, PyAny>,
+    tolerance: f64,
+) -> PyResult<Arrays<'py>> {
+    fewer(py, points, radii, tolerance, parry_continuum::simplify)
+}
+
+/// Points set evenly along a centreline, within a tolerance of it: nearly as few as `simplify` leaves, in linear time.
+///
+/// Parameters
+/// ----------
+/// points : (N, 3) array
+/// radii : float or (N - 1,) array
+/// tolerance : float
+///     A length, at least 0.
+///
+/// Returns
+/// -------
+/// (points, radii)
+///     Arrays of the shapes (M, 3) and (M - 1,).
+///
+/// Raises
+/// ------
+/// ContinuumError
+///     The tolerance is negative or NaN, or the points are no robot.
+#[pyfunction]
+pub(crate) fn stations<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    radii: &Bound<'py, PyAny>,
+    tolerance: f64,
+) -> PyResult<Arrays<'py>> {
+    fewer(py, points, radii, tolerance, parry_continuum::stations)
+}
+
+fn fewer<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    radii: &Bound<'py, PyAny>,
+    tolerance: f64,
+    fewer: Fewer,
+) -> PyResult<Arrays<'py>> {
+    let robots = Robots::new("points", points, radii, None)?;
+    if robots.count.is_some() {
+        let text = "`points` is a batch; give one robot, of the shape (N, 3)";
+        return Err(Refused::other("bad_shape", text).raise(py, None));
+    }
+    let mut block = Block::default();
+    robots.copy(0..1, &mut block);
+    let robot = block.robot(0);
+    let found = compute(py, || fewer(robot.points, robot.radii, tolerance))?;
+    let (points, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;
+    Ok((array(py, vec![points.len(), 3], flat(points))?, array(py, vec![radii.len()], radii)?))
+}

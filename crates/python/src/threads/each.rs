@@ -1,0 +1,139 @@
+//! Asks about each robot: one on this thread, a batch in chunks on all cores.
+
+use super::compute::compute;
+use super::engine::{Engine, Session};
+use super::pool::pool;
+use crate::error::Refused;
+use crate::input::{Block, Given, Robots};
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Fewer robots are answered on the thread that asks: to wake others would take longer.
+const FEW: usize = 16;
+
+/// A worker takes so many robots at a time, or fewer: enough that taking them costs nothing.
+const SHARE: usize = 8;
+
+/// After about so long signals are looked at, and Python's other threads get their turn.
+const CHUNK: Duration = Duration::from_millis(50);
+
+/// The robots of a chunk are copied, so that there are no more of them than this.
+const LARGEST_CHUNK: usize = 1 << 16;
+
+/// Answers about each robot, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with the place
+/// of the first of them.
+///
+/// The first robot that is refused ends it. All robots are asked about the same mesh, whatever moves meanwhile.
+pub(crate) fn ask_each<T: Clone + Send>(
+    py: Python<'_>,
+    engine: &Engine,
+    robots: &Robots<'_>,
+    (empty, width): (T, usize),
+    answer: impl Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    mut take: impl FnMut(usize, &[T]),
+) -> PyResult<()> {
+    let of_batch = |robot: usize| robots.count.map(|_| robot);
+    let (count, mut block, mut answers) = (robots.len(), Block::default(), Vec::new());
+    let (mut start, mut chunk) = (0, 4 * FEW);
+    while start < count {
+        let end = count.min(start + chunk);
+        let begin = Instant::now();
+        answers.clear();
+        answers.resize((end - start) * width, empty.clone());
+        robots.copy(start..end, &mut block);
+        let rows = Rows { block: &block, width, answer: &answer };
+        let refused = if count < FEW {
+            alone(py, engine, |session| rows.ask(session, 0, &mut answers))?
+        } else {
+            rows.ask_on_all_cores(py, engine, &mut answers)?
+        };
+        if let Some((place, refused)) = refused {
+            return Err(refused.raise(py, of_batch(start + place)));
+        }
+        take(start, &answers);
+        if robots.count.is_some() {
+            py.check_signals()?;
+        }
+        let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
+        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(FEW, LARGEST_CHUNK);
+        start = end;
+    }
+    Ok(())
+}
+
+/// A session for one question, without the GIL.
+pub(crate) fn alone<T: Send>(
+    py: Python<'_>,
+    engine: &Engine,
+    ask: impl FnOnce(&mut Session) -> T + Send,
+) -> PyResult<T> {
+    let mut session = engine.lend(py)?;
+    let answer = compute(py, || ask(&mut session));
+    // What a defect leaves is not used again.
+    engine.take_back(py, 1, answer.is_ok().then_some(session));
+    answer
+}
+
+/// The robots of a chunk, and what is asked of each.
+struct Rows<'a, A> {
+    block: &'a Block,
+    width: usize,
+    answer: &'a A,
+}
+
+impl<A> Rows<'_, A> {
+    /// Asks about the robots from the place `first` on, one for each row of answers. Returns the first that is refused.
+    fn ask<T>(&self, session: &mut Session, first: usize, answers: &mut [T]) -> Option<(usize, Refused)>
+    where
+        A: Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused>,
+    {
+        answers.chunks_mut(self.width).zip(first..).find_map(|(row, place)| {
+            (self.answer)(session, &self.block.robot(place), row).err().map(|refused| (place, refused))
+        })
+    }
+
+    /// The same for all robots of the block, by a session on each core.
+    fn ask_on_all_cores<T: Send>(
+        &self,
+        py: Python<'_>,
+        engine: &Engine,
+        answers: &mut [T],
+    ) -> PyResult<Option<(usize, Refused)>>
+    where
+        A: Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    {
+        let pool = pool(py)?;
+        let (threads, count) = (pool.current_num_threads(), answers.len() / self.width);
+        // A few for each thread, because robots differ in the time they take.
+        let share = (count / (4 * threads)).clamp(1, SHARE);
+        let workers = threads.min(count.div_ceil(share));
+        let mut sessions = (0..workers).map(|_| engine.lend(py)).collect::<PyResult<Vec<_>>>()?;
+        let refused = Mutex::new(None::<(usize, Refused)>);
+        let shares = Mutex::new(answers.chunks_mut(share * self.width).enumerate());
+        // Its locks are this call's own, so a fork leaves them to nobody.
+        let work = |session: &mut Session| {
+            loop {
+                let next = shares.lock().unwrap_or_else(PoisonError::into_inner).next();
+                let Some((number, answers)) = next else { return };
+                let Some(found) = self.ask(session, share * number, answers) else { continue };
+                let mut refused = refused.lock().unwrap_or_else(PoisonError::into_inner);
+                if refused.as_ref().is_none_or(|(place, _)| found.0 < *place) {
+                    *refused = Some(found);
+                }
+                // Those before it are all taken, and those behind it do not count any more.
+                shares.lock().unwrap_or_else(PoisonError::into_inner).by_ref().for_each(drop);
+                return;
+            }
+        };
+        let done = compute(py, || {
+            pool.scope(|scope| {
+                let work = &work;
+                sessions.iter_mut().for_each(|session| scope.spawn(move |_| work(session)));
+            });
+        });
+        engine.take_back(py, workers, done.is_ok().then_some(sessions).into_iter().flatten());
+        done?;
+        Ok(refused.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+}

@@ -1,0 +1,107 @@
+"""Answers are those of the Rust library, bit for bit, whether one robot is asked about or many."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from parry_continuum import Mesh
+from shapes import Array, poses, robots, soup, sphere
+
+CRATE = Path(__file__).parent.parent
+MARGIN, TOLERANCE = 0.5, 0.01
+
+
+def rust(*numbers: object) -> Array:
+    command = ["cargo", "run", "--quiet", "--release", "--locked", "--example", "answers"]
+    given = np.concatenate([np.ravel(np.asarray(n, float)) for n in numbers]).tobytes()
+    environment = {"CARGO_TARGET_DIR": str(CRATE / "target"), **os.environ}
+    done = subprocess.run(command, cwd=CRATE, env=environment, input=given, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+    return np.frombuffer(done.stdout)
+
+
+def witness(found: object, at: object = ()) -> list[object]:
+    fields = ["on_robot", "on_mesh", "segment", "arc_length", "triangle"]
+    return [np.asarray(getattr(found, field))[at] for field in fields]
+
+
+def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> Array:
+    """The same numbers, from batches."""
+    out: list[list[object]] = [[] for _ in points]
+    for caps in ("fitted", "capsules", "cylinders"):
+        closest = mesh.minimum(points, radii, pose=pose, caps=caps)
+        links = mesh.per_link(points, radii, pose=pose, caps=caps)
+        proof = mesh.certify(points, radii, links, pose=pose, caps=caps)
+        inside = mesh.clears_inside(points, radii, MARGIN, pose=pose, caps=caps)
+        contacts = mesh.within(points, radii, MARGIN, pose=pose, caps=caps)
+        assert_array_equal(inside.clears, mesh.clears(points, radii, MARGIN, pose=pose, caps=caps))
+        assert_array_equal(closest.distance, mesh.distance(points, radii, pose=pose, caps=caps))
+        for k, row in enumerate(out):
+            row += [closest.distance[k], *witness(closest, k)]
+            for s in np.flatnonzero(links.triangle[k] >= 0):
+                row += [links.distance[k, s], links.on_robot[k, s], links.on_mesh[k, s], s]
+                row += [links.arc_length[k, s], links.triangle[k, s], proof.lower[k, s], proof.upper[k, s]]
+            row += [inside.clears[k], inside.base[k]]
+            rows = range(*contacts.offsets[k : k + 2])
+            row += [len(rows)]
+            for c in rows:
+                assert contacts.robot[c] == k
+                row += [contacts.fraction[c], contacts.distance[c], contacts.depth[c], contacts.normal[c]]
+                row += witness(contacts, c)
+    tube = mesh.clearance(points, radii, TOLERANCE, pose=pose)
+    motions = [mesh.clears_motion(points, end, radii, 0.0, TOLERANCE, caps=caps) for caps in ("fitted", "capsules")]
+    for k, row in enumerate(out):
+        row += [tube.lower[k], tube.upper[k], tube.resolved[k], tube.uncertainty[k], *witness(tube, k)]
+        for motion in motions:
+            row += [motion.interval[k], motion.decision[k]]
+    return np.concatenate([np.ravel(np.asarray(n, float)) for row in out for n in row])
+
+
+@pytest.mark.parametrize("name", ["sphere", "soup"])
+def test_batches_are_the_librarys(name: str) -> None:
+    random = np.random.default_rng(3)
+    vertices, faces = sphere() if name == "sphere" else soup(random)
+    points, pose = robots(random, 40), poses(random, 40)
+    points[::5, 4] = points[::5, 3]  # segments without length
+    end = points + random.normal(scale=2, size=points.shape)
+    radii = np.repeat(random.uniform(0.05, 0.3, (40, 1)), 11, axis=1)
+    radii[::3, 6:] *= 0.5
+    given = [[p, e, r, t] for p, e, r, t in zip(points, end, radii, pose)]
+    numbers = [n for robot in given for n in robot]
+    expected = rust([len(vertices), len(faces), 40, 12], vertices, faces, *numbers)
+    found = python(Mesh(vertices, faces), points, end, radii, pose)
+    assert len(expected) > 15_000
+    assert_array_equal(found.view(np.uint64), expected.view(np.uint64))
+
+
+def test_one_is_as_many() -> None:
+    random = np.random.default_rng(5)
+    mesh = Mesh(*sphere())
+    points, pose = robots(random, 30), poses(random, 30)
+    radii = random.uniform(0.05, 0.3, (30, 11))
+    for k, (p, r, t) in enumerate(zip(points, radii, pose)):
+        for name, extra in [
+            ("distance", ()),
+            ("minimum", ()),
+            ("per_link", ()),
+            ("clears", (1.0,)),
+            ("clears_inside", (1.0,)),
+            ("distance_and_gradient", ()),
+        ]:
+            one = getattr(mesh, name)(p, r, *extra, pose=t)
+            many = getattr(mesh, name)(points, radii, *extra, pose=pose)
+            for a, b in zip(one if isinstance(one, tuple) else [one], many if isinstance(many, tuple) else [many]):
+                assert_array_equal(a, b[k])
+        # One radius and one pose for all.
+        assert mesh.distance(p, 0.2, pose=t) == mesh.distance(points, 0.2, pose=t)[k]
+        assert mesh.distance(p, r) == mesh.distance(points, r)[k]
+        one = mesh.within(p, r, 1.0, pose=t)
+        many = mesh.within(points, radii, 1.0, pose=pose)
+        for a, b in zip(one[:9], many[:9]):
+            assert_array_equal(a, b[many.offsets[k] : many.offsets[k + 1]])

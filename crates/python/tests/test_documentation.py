@@ -1,0 +1,45 @@
+"""Examples run: those of docstrings, and those of the README."""
+
+from __future__ import annotations
+
+import doctest
+import re
+from pathlib import Path
+
+import pytest
+
+import parry_continuum
+from parry_continuum import Mesh
+
+METHODS = {name: value for name, value in vars(Mesh).items() if not name.startswith("_")}
+DOCUMENTED = {
+    "parry_continuum": parry_continuum,
+    **{name: getattr(parry_continuum, name) for name in parry_continuum.__all__ if name != "__version__"},
+    **METHODS,
+}
+PAGE = Path(__file__).parent.parent / "README.md"
+README = PAGE.read_text()
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
+def test_docstrings(name: str) -> None:
+    text = DOCUMENTED[name].__doc__
+    assert text and len(text) > 30, f"{name} is not documented"
+    if callable(DOCUMENTED[name]) and name in METHODS and name != "prepare":
+        assert all(section in text for section in ("Parameters", "Raises")), f"{name} lacks a section"
+    test = doctest.DocTestParser().get_doctest(text, {}, name, None, None)
+    assert doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test).failed == 0
+
+
+def test_most_methods_have_examples() -> None:
+    assert sum(">>>" in value.__doc__ for value in METHODS.values()) > 10
+
+
+def test_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = list(re.finditer(r"```python\n(.*?)```", README, re.DOTALL))
+    assert len(blocks) > 4
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for block in blocks:
+        lines_before = README[: block.start(1)].count("\n") * "\n"
+        exec(compile(lines_before + block[1], PAGE, "exec"), names)

@@ -1,0 +1,90 @@
+"""Derivatives beside differences of distances."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from parry_continuum import Mesh
+from shapes import Array, poses, robots, sphere
+
+MESH = Mesh(*sphere())
+STEP = 1e-6
+
+
+def differences(ask: object, given: Array) -> Array:
+    """Central ones, of one number each."""
+    found = np.zeros_like(given)
+    for index in np.ndindex(given.shape):
+        more, less = given.copy(), given.copy()
+        more[index] += STEP
+        less[index] -= STEP
+        found[index] = (ask(more) - ask(less)) / (2 * STEP)  # type: ignore[operator]
+    return found
+
+
+def test_apart() -> None:
+    """With respect to all points and radii, for flat and round ends."""
+    random = np.random.default_rng(21)
+    checked = 0
+    for points, pose in zip(robots(random, 40, points=6), poses(random, 40)):
+        radii = np.full(5, 0.2)
+        for caps in ("fitted", "capsules", "cylinders"):
+            found = MESH.distance_and_gradient(points, radii, pose=pose, caps=caps)
+            assert found.value == MESH.distance(points, radii, pose=pose, caps=caps) or found.value <= 0
+            of_points = differences(lambda p: MESH.distance(p, radii, pose=pose, caps=caps), points)
+            if caps != "fitted":  # radii that differ are steps, with other caps
+                of_radii = differences(lambda r: MESH.distance(points, r, pose=pose, caps=caps), radii)
+            # A kink within the step of the differences: two links share a joint, or two triangles an edge.
+            is_smooth = not found.kink and found.value > 1e-3
+            links = np.sort(MESH.per_link(points, radii, pose=pose, caps=caps).distance)
+            if is_smooth and links[1] - links[0] > 1e-4:
+                checked += 1
+                assert_allclose(found.points, of_points, atol=1e-6)
+                if caps != "fitted":
+                    assert_allclose(found.radii, of_radii, atol=1e-6)
+    assert checked > 40
+
+
+def test_pose() -> None:
+    """Along rigid motions: the derivative with respect to the matrix, times how the matrix changes."""
+    random = np.random.default_rng(22)
+    checked = 0
+    for points, pose in zip(robots(random, 40, points=6), poses(random, 40)):
+        found = MESH.distance_and_gradient(points, 0.2, pose=pose, caps="capsules")
+        links = np.sort(MESH.per_link(points, 0.2, pose=pose, caps="capsules").distance)
+        if found.value < 1e-3 or found.kink or links[1] - links[0] < 1e-4:
+            continue
+        checked += 1
+        x, y, z, *shift = random.normal(size=6)
+        twist = np.array([[0, -z, y, shift[0]], [z, 0, -x, shift[1]], [-y, x, 0, shift[2]], [0, 0, 0, 0]])
+
+        def moved(t: float) -> float:
+            # exp(t twist) up to the third order, which is rigid but for 1e-18
+            step = t * twist
+            matrix = (np.eye(4) + step + step @ step / 2 + step @ step @ step / 6) @ pose
+            matrix[3] = [0, 0, 0, 1]
+            return float(MESH.distance(points, 0.2, pose=matrix, caps="capsules"))
+
+        expected = (moved(STEP) - moved(-STEP)) / (2 * STEP)
+        assert abs(np.sum(found.pose * (twist @ pose)) - expected) < 1e-6
+    assert checked > 15
+
+
+def test_overlapping() -> None:
+    """Below the floor's surface the value goes on, and so does its slope."""
+    floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    for height in (0.3, 0.1, 0.01):
+        robot = np.array([[-1.0, 0, height + 1], [0, 0, height], [1, 0, height + 2]])
+        found = floor.distance_and_gradient(robot, 0.5, caps="capsules")
+        assert abs(found.value - (height - 0.5)) < 1e-15
+        assert_allclose(found.points[1], [0, 0, 1], atol=1e-12)
+        assert_allclose(np.delete(found.points, 1, axis=0), 0, atol=1e-12)
+        assert found.radii.sum() == -1
+
+
+def test_no_side() -> None:
+    """A wire that lies in the wall has no derivative."""
+    floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    found = floor.distance_and_gradient([[-1, 0, 0], [1, 0, 0]], 0.0)
+    assert np.isnan(found.points).all() and np.isnan(found.pose).all() and found.value == 0

@@ -1,0 +1,106 @@
+"""Whatever is handed over, there is an answer or a `ContinuumError`: no crash, no hang, no other exception."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from parry_continuum import ContinuumError, Mesh, simplify, stations
+from shapes import poses, robots, soup, sphere
+
+MESHES = [Mesh(*sphere(10.0, 12, 6)), Mesh(*soup(np.random.default_rng(0)))]
+NUMBERS = [0.0, -0.0, 1.0, -1.0, 1e-320, 1e-160, 1e160, 1e300, -1e308, np.nan, np.inf, -np.inf]
+OTHERS: list[object] = [None, "", "tube", b"\0", {}, [], [[]], [[[]]], object(), 1 + 2j, True, [None, 1], [[1, 2], [3]], print]
+
+
+def spoilt(random: np.random.Generator, array: np.ndarray) -> object:
+    """What is handed over in the place of an array: itself, or something that is wrong with it."""
+    array = np.array(array, float)
+    match random.integers(24):
+        case 0:
+            return OTHERS[random.integers(len(OTHERS))]
+        case 1:
+            return array.T
+        case 2:
+            return array[..., :-1]
+        case 3:
+            return array[None]
+        case 4:
+            return array.astype(random.choice(["c16", "S5", "O", "M8[s]", "?", "f2", "i1"]), casting="unsafe")
+        case 5:
+            return array[:0]
+        case 6:
+            return array * random.choice(NUMBERS)
+        case 7 if array.size:
+            array.flat[random.integers(array.size)] = random.choice(NUMBERS)
+            return array
+        case 8:
+            return np.broadcast_to(array.ravel()[:1], array.shape)
+        case 9:
+            return np.ma.masked_array(array)
+        case _:
+            return array
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_five_thousand_inputs() -> None:
+    random = np.random.default_rng(31)
+    refused: dict[str, int] = {}
+    answered = 0
+    for _ in range(5000):
+        count, points = random.integers(1, 20), random.integers(1, 8)
+        robot = robots(random, count, points)
+        pose = poses(random, count)
+        if random.random() < 0.3:
+            robot, pose = robot[0], pose[0]
+        radii = random.choice([0.0, 0.1, 1.0, -1.0, np.nan]) * np.ones(points - 1)
+        number = random.choice([0.0, 0.1, 3.0, *NUMBERS])
+        ends = robot[..., [0, -1], :]
+        given = {
+            "points": spoilt(random, robot),
+            "radii": spoilt(random, radii),
+            "pose": random.choice([None, "given"]) and spoilt(random, pose),
+            "caps": random.choice(["fitted", "capsules", "cylinders", "none"], p=[0.4, 0.3, 0.2, 0.1]),
+        }
+        plain = {"points": given["points"], "radii": given["radii"]}
+        motion = {"start": given["points"], "end": spoilt(random, robot), "radii": given["radii"]}
+        tube = {**plain, "pose": given["pose"], "tangents": random.choice([None, "given"]) and spoilt(random, ends)}
+        mesh = MESHES[random.integers(2)]
+        faces = mesh.faces.astype(float)
+        ask = [
+            lambda: mesh.distance(**given),
+            lambda: mesh.minimum(**given),
+            lambda: mesh.per_link(**given),
+            lambda: mesh.clears(margin=number, **given),
+            lambda: mesh.clears_inside(margin=number, **given),
+            lambda: mesh.within(margin=number, prominence=0.0, **given),
+            lambda: mesh.distance_and_gradient(**given),
+            lambda: mesh.certify(answer=mesh.per_link(robot, 0.1), **given),
+            lambda: mesh.clearance(tolerance=max(number, 1e-3), **tube),
+            lambda: mesh.tube_clears(margin=number, resolution=0.1, **tube),
+            lambda: mesh.clears_motion(margin=number, resolution=0.1, **motion),
+            lambda: mesh.time_of_contact(margin=number, resolution=0.1, **motion),
+            lambda: mesh.side(given["points"]),
+            lambda: Mesh(mesh.vertices, mesh.faces).move(spoilt(random, mesh.vertices)),
+            lambda: Mesh(mesh.vertices, spoilt(random, faces)),
+            lambda: Mesh(spoilt(random, mesh.vertices), random.integers(-3, 400, (5, 3))),
+            lambda: simplify(tolerance=number, **plain),
+            lambda: stations(tolerance=number, **plain),
+        ]
+        try:
+            ask[random.integers(len(ask))]()
+            answered += 1
+        except ContinuumError as error:
+            refused[error.kind] = refused.get(error.kind, 0) + 1
+            assert error.kind != "defect", error
+    assert answered > 500
+    assert len(refused) > 12, refused
+
+
+def test_arguments_that_are_missing() -> None:
+    with pytest.raises(TypeError):
+        MESHES[0].distance()  # type: ignore[call-arg]
+    with pytest.raises(TypeError):
+        MESHES[0].clears([[0, 0, 0], [1, 0, 0]], 0.1, "far")  # type: ignore[arg-type]
+    with pytest.raises(TypeError):
+        MESHES[0].distance([[0, 0, 0], [1, 0, 0]], 0.1, None, "fitted")  # type: ignore[misc]
