@@ -17,7 +17,7 @@
 //! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.
 //!
 //! q is known to the deviation of the curve from its samples, and a face's normal to its tilt, which moves a rim by r
-//! times that.
+//! times that. Of a face whose normal is not known the centre is in the tube, at least.
 
 use super::placed_tube::PlacedTube;
 use crate::robot::{Section, length};
@@ -48,7 +48,7 @@ impl PlacedTube<'_> {
         let reach = away + foot.off + rounding;
         let mut best = OnTube { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
-        for (end, face) in section.faces.iter().enumerate() {
+        for (end, face) in self.tube.faces(section).iter().enumerate() {
             let Some(face) = face else { continue };
             let face = self.face(face);
             let offset = x - face.centre;
@@ -68,12 +68,20 @@ impl PlacedTube<'_> {
             is_beside = false;
             let across = offset - face.outward * ahead;
             let size = across.length();
-            let upper = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
-                + section.radius * face.tilt
-                + rounding;
+            let rim = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
+                + section.radius * face.tilt;
+            // However the face is turned, its centre is there, and the place. (The tilt may be infinite, and times 0 NaN.)
+            let beside = away + foot.off;
+            let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
+            let upper = least + rounding;
             if upper < best.upper {
-                let share = if size > section.radius { section.radius / size } else { 1.0 };
-                best = OnTube { upper, arc: face_arc, point: face.centre + across * share };
+                best = OnTube { upper, arc: face_arc, point: face.centre };
+                if least == beside {
+                    best = OnTube { upper, arc: foot.arc, point: place };
+                } else if least == rim {
+                    let share = if size > section.radius { section.radius / size } else { 1.0 };
+                    best.point = face.centre + across * share;
+                }
             }
         }
         if is_beside {

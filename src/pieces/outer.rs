@@ -31,7 +31,8 @@
 //! A + x, and e / (A + x) is at most x. The back moves aside by less than a slack.
 //!
 //! Points of the discs are known to `error`: everything is `error` wider. What is led by the chord may also be where the
-//! centreline's points are off, which turns the chord by up to 2 error / |chord|.
+//! centreline's points are off, which turns the chord by up to 2 error / |chord|. Where directions may be off by a stated
+//! turn, w reaches as much farther along d.
 
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
@@ -158,7 +159,7 @@ impl PlacedTube<'_> {
         let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
         if flat != [false; 2] {
             let unit = along / chord;
-            let tilt = 0.5 * curvature * length + 2.0 * (error + self.slack) / chord;
+            let tilt = 0.5 * curvature * length + 2.0 * (error + self.slack) / chord + self.tube.turn();
             let beyond = section.radius * tilt + error + self.slack;
             wider += section.radius * tilt;
             if flat[0] {
@@ -168,7 +169,9 @@ impl PlacedTube<'_> {
                 end += unit * beyond;
             }
         }
-        let radius = section.radius + over + 2.0 * error + self.slack;
+        // The ends of a chord may be off to either side; what turns a flat body about them puts its wall off once more.
+        let errors = if flat == [false; 2] { error } else { 2.0 * error };
+        let radius = section.radius + over + errors + self.slack;
         Outer { body: PlacedLink::between(start, end, radius, flat), over: wider }
     }
 }

@@ -53,7 +53,23 @@ impl<'a> PlacedTube<'a> {
 
     /// The flat ends of a section that bodies may end with.
     pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
-        section.faces.map(|face| face.filter(|face| face.lasting.is_safe() || !self.is_moving))
+        let is_sure = |face: &Face| (face.lasting.is_safe() || !self.is_moving) && face.tilt < Real::INFINITY;
+        self.tube.faces(section).map(|face| face.filter(is_sure))
+    }
+
+    /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
+    /// not.
+    pub(crate) fn doubt(&self, piece: &Piece) -> Real {
+        let (section, arcs) = (self.section(piece.section), self.arcs(piece));
+        let near = 2.0 * (section.radius + self.tube.error());
+        let away = [arcs[0] - section.start, section.end - arcs[1]];
+        let of = |end: usize| if away[end] <= near { self.tube.doubt(section, end) } else { 0.0 };
+        of(0).max(of(1))
+    }
+
+    /// How far apart the bounds of a piece have to be because of all that was stated of the tube, or was not.
+    pub(crate) fn stated(&self, piece: &Piece) -> Real {
+        self.uncertainty() + self.doubt(piece)
     }
 
     /// Whether a piece has a flat end that bodies take for round.

@@ -81,6 +81,24 @@ impl Chain {
         Ok(chain)
     }
 
+    /// The robot with this centreline whose tube has the same radius everywhere: [`from_centreline`](Self::from_centreline)
+    /// with one radius for all segments.
+    ///
+    /// # Errors
+    /// Fewer than two points, a coordinate that is not finite or beyond 1e150, a radius that is negative or not finite, or
+    /// points that are all equal.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, parry::math::Vector};
+    ///
+    /// let rod = Chain::with_constant_radius(&[Vector::ZERO, Vector::Z, Vector::Z + Vector::X], 0.1)?;
+    /// assert_eq!(rod.links().len(), 2);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    pub fn with_constant_radius(points: &[Vector], radius: Real) -> Result<Self, RobotError> {
+        Self::from_centreline(points, &radius_for_all(points, radius)?)
+    }
+
     /// Makes this chain what [`from_centreline`](Self::from_centreline) makes of the arguments, in the memory that it
     /// has: a control loop whose robot keeps its number of points allocates nothing.
     ///
@@ -297,6 +315,12 @@ pub(super) fn without_length(points: &[Vector], radii: &[Real], parameter: &'sta
         }
         None => RobotError::AllPointsEqual,
     }
+}
+
+/// One radius for each segment.
+pub(super) fn radius_for_all(points: &[Vector], radius: Real) -> Result<Vec<Real>, RobotError> {
+    check_radii("radius", &[radius])?;
+    Ok(vec![radius; points.len().saturating_sub(1)])
 }
 
 /// [`check`] of the parameters `points` and `segment_radii`.

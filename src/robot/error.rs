@@ -74,6 +74,14 @@ pub enum RobotError {
         /// How many radii were given.
         radii: usize,
     },
+    /// Each point needs a tangent.
+    #[error("{points} points need as many `tangents`, got {tangents}")]
+    TangentsDiffer {
+        /// How many points were given.
+        points: usize,
+        /// How many tangents were given.
+        tangents: usize,
+    },
     /// A motion needs as many points at its end as at its start.
     #[error("`from` has {from} points and `to` has {to}; give both the same number")]
     PointsDiffer {

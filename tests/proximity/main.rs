@@ -12,6 +12,7 @@ mod discs;
 mod far_parts;
 mod fuzz;
 mod large;
+mod measured;
 mod motion;
 mod moved;
 mod parity;

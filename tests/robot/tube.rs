@@ -92,6 +92,74 @@ fn bad_functions_are_named() {
 }
 
 #[test]
+fn bad_frames_are_named() {
+    let along = [Vector::Z; 3];
+    let refuse = |tangents: &[Vector]| Tube::from_frames(&line(3), tangents, &[0.1; 2]).unwrap_err();
+    assert_eq!(refuse(&along[..2]), RobotError::TangentsDiffer { points: 3, tangents: 2 });
+    for bad in [Vector::ZERO, Vector::X * f64::NAN, Vector::X * f64::INFINITY] {
+        let RobotError::BadTangent { parameter: "tangents", index: 1, .. } =
+            refuse(&[Vector::Z, bad, Vector::Z])
+        else {
+            panic!("{bad}");
+        };
+    }
+    // Backwards, across, and a turn that is too much.
+    for (bad, least) in [(-Vector::Z, 3.0), (Vector::X, 1.5), (Vector::new(0.9, 0.0, 0.5), 0.9)] {
+        let found = refuse(&[Vector::Z, bad, Vector::Z]);
+        let RobotError::TurnsTooSharply { index: 1, after: 0, turn } = found else { panic!("{found}") };
+        assert!(turn >= least, "{found}");
+    }
+    assert_eq!(
+        Tube::from_frames(&[Vector::X; 3], &along, &[0.1; 2]).unwrap_err(),
+        RobotError::AllPointsEqual
+    );
+    let tube = |scale: f64| {
+        let points: Vec<_> = line(3).iter().map(|point| *point * scale).collect();
+        Tube::from_frames(&points, &along, &[0.1 * scale; 2]).unwrap().length()
+    };
+    assert_eq!(
+        [tube(2.0_f64.powi(300)), tube(2.0_f64.powi(-300))].map(f64::log2),
+        [300.0, -300.0].map(|k| k + tube(1.0).log2())
+    );
+}
+
+#[test]
+fn bad_measurements_are_named() {
+    let refuse = |deviation| Tube::fit(&line(3), &[0.1; 2], deviation).unwrap_err();
+    for value in [-1.0, f64::INFINITY] {
+        assert_eq!(refuse(value), RobotError::Negative { parameter: "deviation", value });
+    }
+    assert_eq!(Tube::fit(&[Vector::X; 3], &[0.1; 2], 0.5).unwrap_err(), RobotError::AllPointsEqual);
+    assert!(Tube::fit(&line(1), &[], 0.5).is_err() && Tube::fit(&line(3), &[0.1], 0.5).is_err());
+    let tube = Tube::fit(&line(2), &[0.1], 0.0).unwrap();
+    assert!(tube.residual() == 0.0 && tube.length() == line(2)[1].length());
+    let tube = tube.with_turn(0.1).unwrap();
+    for value in [-0.1, f64::INFINITY] {
+        let found = tube.clone().with_turn(value).unwrap_err();
+        assert_eq!(found, RobotError::Negative { parameter: "turn", value });
+    }
+    assert!(tube.with_turn(f64::NAN).is_err());
+}
+
+#[test]
+fn one_radius_serves_all_segments() {
+    let (points, tangents) = (line(4), Some([Vector::Z; 2]));
+    let [all, one] = [Chain::from_centreline(&points, &[0.3; 3]), Chain::with_constant_radius(&points, 0.3)];
+    assert_eq!(all.unwrap(), one.unwrap());
+    let one = Tube::with_constant_radius(&points, 0.3, tangents).unwrap();
+    assert_eq!(
+        format!("{one:?}"),
+        format!("{:?}", Tube::from_samples(&points, &[0.3; 3], tangents).unwrap())
+    );
+    for radius in [-1.0, f64::INFINITY] {
+        let expected = RobotError::BadRadius { parameter: "radius", index: 0, value: radius, limit: 1e150 };
+        assert_eq!(Chain::with_constant_radius(&points, radius).unwrap_err(), expected);
+        assert_eq!(Tube::with_constant_radius(&points, radius, None).unwrap_err(), expected);
+    }
+    assert!(Chain::with_constant_radius(&[], 0.3).is_err());
+}
+
+#[test]
 fn broken_promises_of_functions_are_found() {
     let section = TubeSection { length: 2.0, radius: 0.5, curvature: 0.1 };
     let verify =

@@ -66,7 +66,7 @@ impl Arcs {
 
     /// The point and the direction at an arc length.
     pub fn at(&self, s: Real) -> (Vector, Vector) {
-        let k = self.arcs.iter().position(|arc| s <= arc.0).unwrap_or(self.arcs.len() - 1);
+        let k = self.arcs.partition_point(|arc| arc.0 < s).min(self.arcs.len() - 1);
         let start = if k == 0 { 0.0 } else { self.arcs[k - 1].0 };
         let (_, frame, bend) = self.arcs[k];
         let frame = frame * along(bend, s - start);

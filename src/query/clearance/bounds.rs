@@ -31,12 +31,15 @@ pub(crate) fn clearance(
         None => tube.first_bound(),
     };
     tube.begin(best.upper.max(tolerance), &mut memory.pieces);
-    let mut bounds = Bounds { aim, best, lower: Real::INFINITY, left: MOST_PIECES, settled };
+    let doubtful = Doubtful { lower: Real::INFINITY, doubt: 0.0 };
+    let mut bounds = Bounds { aim, best, lower: Real::INFINITY, doubtful, left: MOST_PIECES, settled };
     refine(tube, &mut memory.pieces, &mut bounds)?;
-    let Bounds { best, lower, .. } = bounds;
+    let Bounds { best, lower, doubtful, .. } = bounds;
     let Found { upper, section, witness } = best;
     memory.last = Some((&best).into());
     let lower = if memory.pieces.is_empty() { lower.min(upper) } else { 0.0 };
+    let doubt = if doubtful.lower < upper - aim { doubtful.doubt } else { 0.0 };
+    let uncertainty = uncertainty + doubt;
     let resolved = upper - lower <= tolerance + uncertainty;
     Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
 }
@@ -47,9 +50,18 @@ struct Bounds<S> {
     aim: Real,
     best: Found,
     lower: Real,
+    /// The part of that where it is not known which way a face stands.
+    doubtful: Doubtful,
     /// How many pieces may still be halved.
     left: u32,
     settled: S,
+}
+
+/// What is settled although its bounds are farther apart, because more is not known.
+struct Doubtful {
+    lower: Real,
+    /// How much farther.
+    doubt: Real,
 }
 
 impl<S: FnMut(&Piece, &Outer, Real)> Bounds<S> {
@@ -79,9 +91,16 @@ impl<S: FnMut(&Piece, &Outer, Real)> Question<Piece> for Bounds<S> {
         self.settle(piece, outer, bound);
     }
 
-    fn judge(&mut self, _: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
+    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
         if near.found.upper < self.best.upper {
             self.best = *near.found;
+        }
+        let doubt = tube.tube.doubt(near.piece);
+        if doubt > 0.0 && near.nearest.distance >= self.best.upper - self.aim - doubt {
+            let Doubtful { lower, doubt: most } = self.doubtful;
+            self.doubtful = Doubtful { lower: lower.min(near.nearest.distance), doubt: most.max(doubt) };
+            self.settle(near.piece, near.outer, near.nearest.distance);
+            return Ok(Verdict::Settled);
         }
         if near.nearest.distance >= self.best.upper - self.aim || self.left == 0 {
             self.settle(near.piece, near.outer, near.nearest.distance);

@@ -51,14 +51,14 @@ impl Question<Piece> for Keeps<'_> {
 
     fn keeps_away(&mut self, _: &Piece, _: &Outer, _: Real) {}
 
-    fn judge(&mut self, _: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
+    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
         let upper = near.found.upper;
         if upper <= self.margin {
             self.decision = Decision::Contact;
             *self.last = Some(near.found.into());
             return Ok(Verdict::Answered);
         }
-        if upper - near.nearest.distance <= self.resolution {
+        if upper - near.nearest.distance <= self.resolution + tube.tube.stated(near.piece) {
             self.decision = Decision::Undecided;
             return Ok(Verdict::Settled);
         }
@@ -66,7 +66,8 @@ impl Question<Piece> for Keeps<'_> {
     }
 
     fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Piece>) -> Result<(), ProximityError> {
-        tube.check_resolved(near.found.upper - near.nearest.distance, self.resolution)?;
+        let stated = tube.tube.stated(near.piece);
+        tube.check_resolved(near.found.upper - near.nearest.distance - stated, self.resolution)?;
         self.decision = Decision::Undecided;
         Ok(())
     }

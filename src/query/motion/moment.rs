@@ -120,7 +120,8 @@ impl<M: Motion> Question<Waiting> for Moment<'_, M> {
             self.fail(tube, near)?;
             return Ok(Verdict::Settled);
         }
-        if self.is_fine() && upper - near.nearest.distance <= 0.5 * self.resolution {
+        let apart = upper - near.nearest.distance - tube.tube.stated(near.piece);
+        if self.is_fine() && apart <= 0.5 * self.resolution {
             self.seen.is_undecided = true;
             return Ok(Verdict::Settled);
         }
@@ -130,7 +131,8 @@ impl<M: Motion> Question<Waiting> for Moment<'_, M> {
     fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
         let may_open = tube.tube.may_open(near.piece);
         if self.is_fine() && !may_open {
-            tube.check_resolved(near.found.upper - near.nearest.distance, self.resolution)?;
+            let stated = tube.tube.stated(near.piece);
+            tube.check_resolved(near.found.upper - near.nearest.distance - stated, self.resolution)?;
         }
         if self.is_fine() && (!may_open || self.reach().max(self.opening) <= self.resolution / 128.0) {
             self.seen.is_undecided = true;

@@ -103,7 +103,8 @@ impl Tube {
             segments.extend([segment; 2]);
             start = end;
         }
-        (self.error, self.merged) = (0.0, 0.0);
+        (self.error, self.merged, self.turn) = (0.0, 0.0, None);
+        (self.residual, self.deviation) = (0.0, 0.0);
         // Lengths along the tube are rounded too.
         self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });

@@ -1,14 +1,20 @@
 //! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
 
+mod arch;
 mod curve;
 mod direction_at_end;
 mod faces;
+mod fit;
+mod frames;
 mod from_chain;
 mod function;
+mod laid;
 mod lasting;
 mod own_samples;
 mod samples;
 mod section;
+mod smoothing_spline;
+mod stated;
 mod verify;
 
 pub use function::TubeSection;
@@ -16,6 +22,7 @@ pub(super) use function::check_sections;
 pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
 
+use super::chain::radius_for_all;
 use super::{Cap, RobotError};
 pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
@@ -35,6 +42,10 @@ use parry3d_f64::math::{Real, Vector};
 /// - [`from_samples`](Self::from_samples): the curve goes through the samples, and each section bends nowhere more than
 ///   its samples show at most. Within that its curvature may jump anywhere. A curve that turns more sharply between two
 ///   samples than at any of them is not covered: sample more densely.
+/// - [`from_frames`](Self::from_frames): the curve goes through the points in the directions given, and bends as these
+///   show.
+/// - [`fit`](Self::fit): measured points. The curve is no farther from the fitted one than was stated, whatever it does
+///   there.
 /// - [`from_function`](Self::from_function): the curve is the function, and its curvature in each section is at most
 ///   what is stated. [`verify`](Self::verify) tries that on samples.
 /// - `Tube::from(&chain)`: straight pieces with the chain's caps, whose queries have no error but rounding.
@@ -60,6 +71,11 @@ pub struct Tube {
     spare: (Curve, Vec<Section>),
     /// How far the curve may be from what was given.
     error: Real,
+    /// How far the directions at flat ends may be from what was given; none if nobody said.
+    turn: Option<Real>,
+    /// How far it is from the points that it was fitted to, at most; and how far the curve may be from it.
+    residual: Real,
+    deviation: Real,
     /// By how much points that were taken for one lie apart, and radii that were taken for one differ.
     merged: Real,
     /// The largest coordinate of the centreline, or its length, or more.
@@ -81,6 +97,7 @@ impl Clone for Tube {
         self.curve.clone_from(&source.curve);
         self.sections.clone_from(&source.sections);
         (self.error, self.merged, self.reach) = (source.error, source.merged, source.reach);
+        (self.turn, self.residual, self.deviation) = (source.turn, source.residual, source.deviation);
     }
 }
 
@@ -118,6 +135,19 @@ impl Tube {
         Ok(tube)
     }
 
+    /// The tube of the same radius everywhere around a smooth curve through `points`: [`from_samples`](Self::from_samples)
+    /// with one radius for all segments.
+    ///
+    /// # Errors
+    /// As [`from_samples`](Self::from_samples).
+    pub fn with_constant_radius(
+        points: &[Vector],
+        radius: Real,
+        end_tangents: Option<[Vector; 2]>,
+    ) -> Result<Self, RobotError> {
+        Self::from_samples(points, &radius_for_all(points, radius)?, end_tangents)
+    }
+
     /// Makes this tube what [`from_samples`](Self::from_samples) makes of the arguments, in the memory that it has: a
     /// control loop whose robot keeps its number of points allocates nothing. An error stated by
     /// [`with_error`](Self::with_error) stays.
@@ -136,27 +166,10 @@ impl Tube {
         if measured.is_err() {
             self.exchange();
             (self.reach, self.merged) = before;
+        } else {
+            (self.residual, self.deviation) = (0.0, 0.0);
         }
         measured
-    }
-
-    /// The same tube, each point of which may be off by up to `error`, because the sensor or the kinematics are. For a
-    /// centreline that is off by c and whose direction is off by an angle a, that is c + radius a: the rim of a flat face
-    /// moves as the face turns. All bounds of answers count it.
-    ///
-    /// # Errors
-    /// The error is not finite or negative.
-    pub fn with_error(mut self, error: Real) -> Result<Self, RobotError> {
-        if !(0.0..Real::INFINITY).contains(&error) {
-            return Err(RobotError::Negative { parameter: "error", value: error });
-        }
-        self.error = error;
-        Ok(self)
-    }
-
-    /// Takes back the error that was stated.
-    pub(crate) fn forget_error(&mut self) {
-        self.error = 0.0;
     }
 
     /// The length of the centreline; between samples, of the lines that join them.
@@ -166,11 +179,6 @@ impl Tube {
 
     pub(crate) fn sections(&self) -> &[Section] {
         &self.sections
-    }
-
-    /// How far a point of the tube may be from where it is said to be: what was stated, and what was taken for one.
-    pub(crate) fn error(&self) -> Real {
-        self.error + self.merged
     }
 
     /// The largest coordinate of the tube in its frame, or more.
@@ -237,6 +245,9 @@ impl Tube {
             sections: Vec::new(),
             spare: (Curve::default(), Vec::new()),
             error: 0.0,
+            turn: None,
+            residual: 0.0,
+            deviation: 0.0,
             merged: 0.0,
             reach: 0.0,
             ends: Vec::new(),
@@ -245,10 +256,12 @@ impl Tube {
     }
 }
 
-/// Discs behind a flat face must not stick out of it, which they would where the centreline bends within a radius.
+/// Discs behind a flat face must not stick out of it, which they would where the centreline bends within a radius. Of a
+/// face whose direction nobody knows nothing is said.
 fn check_faces(section: &Section, index: impl FnOnce() -> usize) -> Result<(), RobotError> {
     let Section { shown_at, radius, faces, .. } = *section;
-    match faces.iter().zip(shown_at).find(|(face, curvature)| face.is_some() && curvature * radius >= 1.0) {
+    let is_known = |face: &Option<Face>| face.is_some_and(|face| face.tilt < Real::INFINITY);
+    match faces.iter().zip(shown_at).find(|(face, curvature)| is_known(face) && curvature * radius >= 1.0) {
         Some((_, curvature)) => Err(RobotError::BendsWithinRadius { index: index(), curvature, radius }),
         None => Ok(()),
     }

@@ -24,7 +24,7 @@ use super::curve::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
 use super::lasting::Lasting;
 use super::own_samples::{Bend, OwnSamples};
-use super::section::{Face, Section};
+use super::section::{Face, Section, stretch};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
@@ -94,20 +94,7 @@ struct Open {
 
 impl Open {
     fn new(first: usize, start: Real, radius: Real) -> Self {
-        let section = Section {
-            first: first as u32,
-            last: first as u32,
-            start,
-            end: start,
-            radius,
-            curvature: 0.0,
-            mean_curvature: 0.0,
-            curvature_at: [0.0; 2],
-            shown_at: [0.0; 2],
-            is_even: true,
-            stretch: 1.0,
-            faces: [None; 2],
-        };
+        let section = Section::beginning(first, start, radius);
         let [first_radius, least_radius] = [radius; 2];
         Self {
             section,
@@ -185,25 +172,7 @@ impl Open {
         if self.is_uneven {
             bounds.resize(first, CurveBound::default());
             sharpest = own.bound_unevenly(if self.turns < 2 { self.at_ends } else { 0.0 }, bounds);
-            let section = &mut self.section;
-            section.is_even = false;
-            let all = || bounds[first..].iter().zip(arcs[first..].windows(2));
-            section.curvature = all().fold(0.0, |most: Real, (bound, _)| most.max(bound.curvature));
-            let turn: Real = all().map(|(bound, arcs)| bound.curvature * (arcs[1] - arcs[0])).sum();
-            section.mean_curvature = (turn / (section.end - section.start)).min(section.curvature);
-            let bend =
-                all().fold(0.0, |most: Real, (bound, arcs)| most.max(bound.curvature * (arcs[1] - arcs[0])));
-            section.stretch = stretch(bend);
-            let near = 2.0 * section.radius;
-            section.curvature_at = [0, 1].map(|end| {
-                let is_near = |arcs: &[Real]| {
-                    if end == 0 { arcs[0] - section.start <= near } else { section.end - arcs[1] <= near }
-                };
-                all()
-                    .filter(|(_, arcs)| is_near(arcs))
-                    .fold(0.0, |most: Real, (bound, _)| most.max(bound.curvature))
-            });
-            section.shown_at = section.curvature_at;
+            self.section.bound_by(&bounds[first..], &arcs[first..=last]);
         } else {
             let shown = if self.turns > 0 {
                 own.between_samples(self.sharpest - first, self.section.curvature)
@@ -230,11 +199,6 @@ impl Open {
             None => Ok(self.section),
         }
     }
-}
-
-/// How many times as long as a polyline the curve may be that turns by so much over a segment.
-fn stretch(bend: Real) -> Real {
-    1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF
 }
 
 impl Tube {

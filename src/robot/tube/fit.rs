@@ -1,0 +1,244 @@
+//! A tube fitted to measured points.
+//!
+//! The points are off by the noise of a sensor. A smoothing spline goes near them, as smooth as cross-validation finds
+//! best, or as rough as it takes to come within the stated deviation of each. Its parameter is its own arc length: the
+//! first one is the length of the polyline, which noise makes far too long where points are dense, and two more splines
+//! are fitted by the lengths of the last one. A number of splines that does not depend on the points is tried, each in
+//! time proportional to their number.
+//!
+//! **What its bounds hold for.** All tubes whose centreline is within the deviation of the fitted one, in place: each of
+//! its points is that near to its counterpart. Nothing is known of directions. A disc of the tube lies in the ball of its
+//! radius around its centre, however it is turned; so bodies around balls, wider by the deviation, hold the tube. From
+//! the inside: let q be the centreline's point nearest to x. Unless q is an end of its section, x is in the plane of the
+//! disc there, and |x - q| - r away or less, where |x - q| is at most the deviation more than from any point of the
+//! fitted curve. If q may be an end, its centre is a point of the tube at least. So the only places where a direction is
+//! missed are flat faces: there the bounds are a radius apart, and that is what not stating a direction costs.
+//!
+//! With a stated `turn`, every direction near a face is within it of the fitted one, and the derivation of bodies at a
+//! face holds with the tilt `turn` (`pieces::outer`).
+
+use super::Tube;
+use super::curve::CurveBound;
+use super::laid::{Laid, NextPoint};
+use super::section::stretch;
+use super::smoothing_spline::SmoothingSpline;
+use crate::distance::Scalar;
+use crate::robot::RobotError;
+use crate::robot::chain::check_segments;
+use crate::robot::scale::direction;
+use parry3d_f64::math::{Real, Vector};
+
+/// Knots closer than this share of their mean distance are set so far apart.
+const CLOSEST: Real = 1.0 / (1 << 20) as Real;
+
+/// How often the parameter is set anew.
+const PASSES: u32 = 3;
+
+/// A segment is laid in no more parts.
+const MOST_PARTS: u32 = 64;
+
+impl Tube {
+    /// The tube around a smooth curve within `deviation` of each of the measured `points`, with one radius for each
+    /// segment between them. Steps in radius stay at their points. `deviation` is how far a point may be from the truth:
+    /// five times the standard deviation of a sensor, say. Points may lie as densely as they like, and repeat.
+    ///
+    /// All bounds of answers hold for every tube whose centreline is within `deviation` of the fitted one, point by point,
+    /// however it wriggles in between. So they hold for the robot if that is within `deviation` of the curve that you see. At
+    /// flat faces it matters which way the centreline leads, too. As long as that is not stated, the lower bound takes a face
+    /// for a ball and the upper one for its centre, so they stay a radius apart there; [`with_turn`](Self::with_turn) states
+    /// it. Both are part of an answer's `uncertainty`, and none of the tolerance.
+    ///
+    /// The curve is a cubic smoothing spline, as smooth as cross-validation finds best (see the source for references). How
+    /// far it is from the points is its [`residual`](Self::residual).
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::math::Vector};
+    ///
+    /// let noise = |k: usize| Vector::new(f64::sin(k as f64 * 7.0), f64::cos(k as f64 * 5.0), 0.0) * 0.02;
+    /// let points: Vec<_> = (0..200).map(|k| Vector::Z * (k as f64 * 0.2) + noise(k)).collect();
+    /// let tube = Tube::fit(&points, &[0.5; 199], 0.1)?;
+    /// assert!(tube.residual() <= 0.1 && (tube.length() - 39.8).abs() < 0.1);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a deviation that is negative or not finite; points so
+    /// far apart that the curve within the deviation could turn by more than 1 rad in a 64th of the way from one to the next.
+    pub fn fit(points: &[Vector], segment_radii: &[Real], deviation: Real) -> Result<Self, RobotError> {
+        check_segments(points, segment_radii)?;
+        if !(0.0..Real::INFINITY).contains(&deviation) {
+            return Err(RobotError::Negative { parameter: "deviation", value: deviation });
+        }
+        // Squares of lengths neither overflow nor vanish at a size near 1, around the first point.
+        let origin = points[0];
+        let reach =
+            points.iter().fold(0.0, |most: Real, point| (*point - origin).abs().max_element().max(most));
+        if !(reach > 0.0) {
+            return Err(RobotError::AllPointsEqual);
+        }
+        let (scale, largest) = (
+            reach.power_of_two_to_unity(),
+            points.iter().fold(0.0, |most: Real, point| point.abs().max_element().max(most)),
+        );
+        let near: Vec<_> = points.iter().map(|&point| (point - origin) * scale).collect();
+        let spline = smooth(&near, deviation * scale);
+        let mut tube = Self::empty();
+        tube.residual = spline.largest_residual(&near) / scale;
+        let rounding = 16.0 * Real::UNIT_ROUNDOFF * largest;
+        lay(&mut tube, &spline, segment_radii, origin, scale, deviation * scale, rounding)?;
+        tube.deviation = deviation;
+        Ok(tube)
+    }
+}
+
+/// The spline near points at the size 1.
+fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
+    let lengths: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).length()).collect();
+    let mut knots = knots_apart(&lengths);
+    let mut spline = best(&knots, points, deviation);
+    for _ in 1..PASSES {
+        // The lengths of the spline between its knots, by their chords and a point between.
+        let lengths: Vec<_> = (0..points.len() - 1)
+            .map(|k| {
+                let middle = spline.at(k, 0.5)[0];
+                (middle - spline.values[k]).length() + (spline.values[k + 1] - middle).length()
+            })
+            .collect();
+        knots = knots_apart(&lengths);
+        spline = best(&knots, points, deviation);
+    }
+    spline
+}
+
+/// Ascending numbers with these distances, none of them nearly 0.
+fn knots_apart(lengths: &[Real]) -> Vec<Real> {
+    let least = CLOSEST * lengths.iter().sum::<Real>() / lengths.len() as Real;
+    let mut knots = vec![0.0];
+    let mut sum = 0.0;
+    for length in lengths {
+        sum += length.max(least);
+        knots.push(sum);
+    }
+    knots
+}
+
+/// The spline with the best score of those within the deviation.
+fn best(knots: &[Real], points: &[Vector], deviation: Real) -> SmoothingSpline {
+    const STEPS: u32 = 20;
+    let length = knots[knots.len() - 1];
+    let spacing = length / (knots.len() - 1) as Real;
+    // A spline levels what is shorter than (weight * spacing)^(1/4).
+    let [shortest, longest] = [0.3 * spacing, 2.0 * length];
+    let weight = |step: Real| {
+        let over = shortest * libm::exp2(libm::log2(longest / shortest) * step / Real::from(STEPS));
+        over * over * (over * over / spacing)
+    };
+    let try_step = |step: Real| SmoothingSpline::new(knots, points, weight(step));
+    let fits = |spline: &SmoothingSpline| spline.largest_residual(points) <= deviation;
+    let mut least = (Real::INFINITY, 0.0);
+    for step in 0..=STEPS {
+        let score = try_step(Real::from(step)).1;
+        if score < least.0 {
+            least = (score, Real::from(step));
+        }
+    }
+    let (mut apart, mut at) = (0.5, least);
+    for _ in 0..4 {
+        for step in [least.1 - apart, least.1 + apart] {
+            let score = try_step(step).1;
+            if score < at.0 {
+                at = (score, step);
+            }
+        }
+        least = at;
+        apart *= 0.5;
+    }
+    let spline = try_step(least.1).0;
+    if fits(&spline) {
+        return spline;
+    }
+    // The smoothest that fits.
+    let (mut low, mut high) = (None, least.1);
+    for back in 0..40 {
+        let step = least.1 - Real::from(1 << back.min(6));
+        if fits(&try_step(step).0) {
+            low = Some(step);
+            break;
+        }
+        high = step;
+        if step < -200.0 {
+            break;
+        }
+    }
+    let Some(mut low) = low else { return SmoothingSpline::new(knots, points, 0.0).0 };
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        if fits(&try_step(middle).0) { low = middle } else { high = middle }
+    }
+    try_step(low).0
+}
+
+/// Lays the tube along the spline.
+///
+/// # Errors
+/// It turns by more than 1 rad within a part, or bends within its radius next to a face.
+fn lay(
+    tube: &mut Tube,
+    spline: &SmoothingSpline,
+    radii: &[Real],
+    origin: Vector,
+    scale: Real,
+    deviation: Real,
+    rounding: Real,
+) -> Result<(), RobotError> {
+    let place = |point: Vector| origin + point * (1.0 / scale);
+    let curve = std::mem::take(&mut tube.curve);
+    let mut laid = Laid::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
+    // Chords leave the curve by little beside what is open anyway.
+    let target = (deviation / 64.0).max(2.0_f64.powi(-24));
+    let (mut stretched, mut gap): (Real, Real) = (1.0, 0.0);
+    let mut last = spline.values[0];
+    for (k, &radius) in radii.iter().enumerate() {
+        let h = spline.knots[k + 1] - spline.knots[k];
+        let bend = spline.seconds[k].length().max(spline.seconds[k + 1].length());
+        let chord = (spline.values[k + 1] - spline.values[k]).length();
+        let wanted = (h * (bend / (8.0 * target)).sqrt()).max(2.0 * h * bend).ceil();
+        let parts = (wanted as u32).clamp(1, MOST_PARTS);
+        let mut next = Vec::new();
+        for part in 0..parts {
+            let [from, to] = [part, part + 1].map(|part| Real::from(part) / Real::from(parts));
+            let point = if part + 1 == parts { spline.values[k + 1] } else { spline.at(k, to)[0] };
+            let length = (point - last).length();
+            if length <= 2.0 * rounding * scale {
+                gap = gap.max(length);
+                continue;
+            }
+            let most = [from, to]
+                .map(|share| (spline.seconds[k] * (1.0 - share) + spline.seconds[k + 1] * share).length())
+                .into_iter()
+                .fold(0.0, Real::max);
+            let slowest = spline.at(k, 0.5 * (from + to))[1].length() - 0.5 * most * h / Real::from(parts);
+            let curvature =
+                if most > 0.0 { most / (slowest.max(0.0) * slowest) * (1.0 + 1e-12) } else { 0.0 };
+            let turn = curvature * length;
+            // Written so that NaN is too much.
+            if !(turn <= 1.0) {
+                return Err(RobotError::TurnsTooSharply { index: k, after: k, turn });
+            }
+            stretched = stretched.max(stretch(turn));
+            next.push(NextPoint {
+                point: place(point),
+                length: length / scale,
+                bound: CurveBound { curvature: curvature * scale, off: rounding },
+            });
+            last = point;
+        }
+        if next.is_empty() {
+            gap = gap.max(chord);
+            continue;
+        }
+        let ends = [0.0, 1.0].map(|share| direction(spline.at(k, share)[1]));
+        laid.lay(k as u32, radius, ends, next.into_iter());
+    }
+    laid.finish(tube, Real::INFINITY, stretched, gap / scale)
+}

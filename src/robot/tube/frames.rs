@@ -1,0 +1,106 @@
+//! A tube from frames: points of the centreline with the directions that it has there. What is assumed between two of them is
+//! told in `arch`.
+
+use super::Tube;
+use super::arch::Arch;
+use super::laid::Laid;
+use crate::distance::Scalar;
+use crate::robot::RobotError;
+use crate::robot::chain::check_segments;
+use crate::robot::scale::direction;
+use crate::robot::steps::is_same;
+use parry3d_f64::math::{Real, Vector};
+
+/// The two neighbours of an arch on either side, as far as there are any.
+fn around<'a>(number: usize, find: impl Fn(usize) -> Option<&'a Arch>) -> [[Option<&'a Arch>; 2]; 2] {
+    let before = number.checked_sub(1).and_then(&find);
+    let far = before.and(number.checked_sub(2)).and_then(&find);
+    let behind = find(number + 1);
+    [[before, far], [behind, behind.and_then(|_| find(number + 2))]]
+}
+
+impl Tube {
+    /// The tube around a smooth curve through `points` in the directions `tangents` (of any length, towards the tip), with
+    /// one radius for each segment between them: what a forward kinematics computes. Directions make the curve known far
+    /// better than points alone; so few of them serve, and flat faces are known at steps in radius too.
+    ///
+    /// Between two frames the curve may bend as the directions show there and in the neighbouring segments of the section, and
+    /// anything between; its curvature may jump from the one to the other at any place. What that leaves open counts in the
+    /// bounds of each answer, and is nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
+    /// segment and its neighbours, is not covered: give more frames there.
+    ///
+    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::math::Vector};
+    ///
+    /// // An arc of radius 20, by three frames.
+    /// let angles = [0.0_f64, 0.3, 0.6];
+    /// let points = angles.map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 20.0);
+    /// let tangents = angles.map(|a| Vector::new(a.sin(), 0.0, a.cos()));
+    /// let tube = Tube::from_frames(&points, &tangents, &[0.5; 2])?;
+    /// assert!((tube.length() - 12.0).abs() < 1e-4);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero or not finite.
+    pub fn from_frames(
+        points: &[Vector],
+        tangents: &[Vector],
+        segment_radii: &[Real],
+    ) -> Result<Self, RobotError> {
+        let mut tube = Self::empty();
+        check_segments(points, segment_radii)?;
+        if tangents.len() != points.len() {
+            return Err(RobotError::TangentsDiffer { points: points.len(), tangents: tangents.len() });
+        }
+        let directions: Vec<_> = tangents.iter().map(|&tangent| direction(tangent)).collect();
+        let is_bad = |tangent: &Vector| !tangent.is_finite() || *tangent == Vector::ZERO;
+        if let Some(index) = directions.iter().position(is_bad) {
+            return Err(RobotError::BadTangent { parameter: "tangents", index, value: tangents[index] });
+        }
+        // Squares of lengths neither overflow nor vanish at a size near 1.
+        let reach = points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
+        let scale = reach.power_of_two_to_unity();
+        let reach = reach * scale;
+        let (rounding, one_place) = (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
+        let (mut arches, mut last, mut gap) = (Vec::<Arch>::new(), 0, 0.0);
+        for (k, &radius) in segment_radii.iter().enumerate() {
+            let ends = [points[last] * scale, points[k + 1] * scale];
+            let apart = (ends[1] - ends[0]).length();
+            if apart <= one_place {
+                gap = apart.max(gap);
+                continue;
+            }
+            let arch =
+                Arch::between(k as u32, radius, ends, [directions[last], directions[k + 1]], rounding + gap);
+            arches.extend(arch);
+            last = k + 1;
+        }
+        let unscale = 1.0 / scale;
+        let curve = std::mem::take(&mut tube.curve);
+        let mut laid = Laid::begin(curve, std::mem::take(&mut tube.sections), points[0]);
+        let mut stretch: Real = 1.0;
+        for (number, arch) in arches.iter().enumerate() {
+            let own = |k: usize| arches.get(k).filter(|other| is_same(arch.radius, other.radius));
+            let any = |k: usize| arches.get(k);
+            // A section of one segment shows nothing of how it changes; its neighbours do.
+            let neighbours = around(number, own);
+            let neighbours = if neighbours.iter().all(|side| side[0].is_none()) {
+                around(number, any)
+            } else {
+                neighbours
+            };
+            let known = arch.bound(arch.ball(neighbours), rounding + gap).map_err(|turn| {
+                let after = arch.segment as usize;
+                RobotError::TurnsTooSharply { index: after + arch.sharper_end(), after, turn }
+            })?;
+            stretch = stretch.max(known.stretch);
+            let end = arches.get(number + 1).map_or(points[last] * scale, |next| next.start);
+            laid.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
+        }
+        laid.finish(&mut tube, 0.0, stretch, gap * unscale)?;
+        Ok(tube)
+    }
+}

@@ -1,0 +1,95 @@
+//! Tubes of frames: their bounds hold wherever the curve bends as the frames show.
+
+use super::{Seen, discs, judge};
+use continuum_testing::{Arcs, Random};
+use parry_continuum::Tube;
+use parry_continuum::parry::math::Vector;
+use std::f64::consts::TAU;
+
+/// How the curvature goes along a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// Arcs that are at least twice as long as a segment.
+    Arcs,
+    /// It changes evenly: a clothoid.
+    Clothoid,
+    /// It is constant, and turns about the curve.
+    Helix,
+    /// It swings.
+    Swing,
+}
+
+/// A stretch as very short arcs: of each its length and curvature vector. No segment of the frames is longer than `spacing`.
+fn stretch(random: &mut Random, kind: Kind, length: f64, spacing: f64, sharpest: f64) -> Vec<(f64, Vector)> {
+    let bend = |size: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (sharpest * size);
+    let angle = TAU * random.unit();
+    if kind == Kind::Arcs {
+        let most = ((length / (2.0 * spacing)) as u32).clamp(1, 4);
+        let count = 1 + random.below(most);
+        return (0..count)
+            .map(|_| (length / f64::from(count), bend(random.unit(), TAU * random.unit())))
+            .collect();
+    }
+    const PARTS: u32 = 500;
+    let [from, to] = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
+    // From one segment to the next a helix turns by up to 0.5 rad about the curve, and a swing goes on by as much.
+    let turns = random.between(0.0, 0.5) * length / spacing;
+    let at = |k: u32| {
+        let share = (f64::from(k) + 0.5) / f64::from(PARTS);
+        match kind {
+            Kind::Clothoid => bend(from + (to - from) * share, angle),
+            Kind::Helix => bend(from, angle + turns * share),
+            _ => bend(to * (from + turns * share).sin(), angle),
+        }
+    };
+    (0..PARTS).map(|k| (length / f64::from(PARTS), at(k))).collect()
+}
+
+/// Frames of a curve, with a radius for each segment: no segment is longer than `spacing`, nor less than half as long.
+fn frames(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<Vector>, Vec<f64>) {
+    let (start, tangent) = arcs.at(0.0);
+    let (mut points, mut tangents, mut radii, mut from) = (vec![start], vec![tangent], Vec::new(), 0.0);
+    for part in &arcs.stretches {
+        let mut lengths = Vec::new();
+        while lengths.iter().sum::<f64>() < part.length {
+            lengths.push(spacing * random.between(0.6, 1.0));
+        }
+        let fit = part.length / lengths.iter().sum::<f64>();
+        let mut along = 0.0;
+        for length in lengths {
+            along += length * fit;
+            let (point, tangent) = arcs.at(from + along);
+            points.push(point);
+            // Of any length.
+            tangents.push(tangent * random.between(0.5, 2.0));
+            radii.push(part.radius);
+        }
+        from += part.length;
+    }
+    (points, tangents, radii)
+}
+
+#[test]
+fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
+    let (mut random, mut seen, mut kinds) = (Random::new(71), Seen::default(), [0; 4]);
+    for round in 0..1_000 {
+        let mut arcs = Arcs::from_frame(random.pose(5.0));
+        let spacing = random.between(0.5, 3.0);
+        let kind = [Kind::Arcs, Kind::Clothoid, Kind::Helix, Kind::Swing][round % 4];
+        for _ in 0..=random.below(2) {
+            let radius = random.between(0.1, 1.0);
+            let sharpest = (0.5 / spacing).min(0.8 / radius) * random.unit();
+            let length = spacing * random.between(3.0, 20.0);
+            let parts = stretch(&mut random, kind, length, spacing, sharpest);
+            arcs.push(radius, &parts);
+        }
+        let (points, tangents, radii) = frames(&mut random, &arcs, spacing);
+        let tube = Tube::from_frames(&points, &tangents, &radii).unwrap();
+        let curve = |s: f64| arcs.at(s);
+        let before = seen.resolved;
+        judge(&mut random, &tube, (&discs(&arcs), &curve), [4.0, 0.01], 10, &mut seen);
+        kinds[round % 4] += seen.resolved - before;
+    }
+    assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
+    assert!(seen.resolved > 9_000, "{seen:?} {kinds:?}");
+}
