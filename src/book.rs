@@ -12,6 +12,9 @@ pub mod queries {}
 #[doc = include_str!("../docs/book/threads.md")]
 pub mod threads {}
 
+#[doc = include_str!("../docs/book/robots.md")]
+pub mod robots {}
+
 #[doc = include_str!("../docs/book/inside.md")]
 pub mod inside {}
 

@@ -80,6 +80,7 @@ mod pieces;
 pub mod proximity;
 mod query;
 mod robot;
+mod scene;
 mod search;
 mod threads;
 

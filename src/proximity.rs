@@ -1,4 +1,4 @@
-//! Robot against mesh: distances, contacts, margins and motions.
+//! Robot against mesh, and robot against robot: distances, contacts, margins and motions.
 //!
 //! Build an engine once for each mesh and ask it often. [`BvhSearch`] answers everything; [`Exhaustive`] and the GPU's
 //! engine answer what the trait [`Proximity`] has, with the same distances.
@@ -39,6 +39,26 @@
 //! | on which side of the mesh is a point? | [`side`](BvhSearch::side) |
 //! | is the robot inside, and does it keep a margin? | [`clears_inside`](BvhSearch::clears_inside) |
 //!
+//! **Two robots, or one and itself**
+//!
+//! | question | call |
+//! |---|---|
+//! | which links of two robots are closest, how far apart, and where? | [`between`], [`RobotPair::minimum`] |
+//! | do two robots keep a margin? | [`clears_between`], [`RobotPair::clears`] |
+//! | of each link, the closest of the other robot | [`RobotPair::per_link`] |
+//! | every place where two robots are near | [`RobotPair::within`] |
+//! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
+//! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
+//!
+//! **Several structures and robots**
+//!
+//! | question | call |
+//! |---|---|
+//! | do all robots keep all margins? | [`Scene::clears`] |
+//! | where is the least room, and to which structure? | [`Scene::tightest`] |
+//! | how near is each structure? | [`Scene::per_structure`] |
+//! | every contact, with its structure | [`Scene::contacts`] |
+//!
 //! **Many at once, and a mesh that moves**
 //!
 //! | to do | call |
@@ -68,14 +88,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The book has more on [the queries](crate::book::queries), [threads](crate::book::threads) and
+//! The book has more on [the queries](crate::book::queries), [several robots](crate::book::robots), [threads](crate::book::threads) and
 //! [controllers](crate::book::control).
 
 #[cfg(feature = "gpu")]
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
-    Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer, LinkFeature,
-    LinkProximity, MeshError, MotionAnswer, ProximityError, ShapeInContact, Side, TriangleFeature, TubePiece,
+    Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
+    LinkFeature, LinkProximity, MeshError, MotionAnswer, PlacementFault, ProximityError, RobotProximity,
+    SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece,
     Witness, Work,
 };
-pub use crate::engine::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
+pub use crate::engine::{
+    BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,
+    self_minimum,
+};
+pub use crate::scene::Scene;

@@ -79,6 +79,30 @@ pub enum ProximityError {
         /// The largest magnitude accepted.
         limit: Real,
     },
+    /// One of two robots cannot be placed.
+    #[error("`{parameter}`: {fault}")]
+    Placement {
+        /// The robot's pose, as the function that was called names it.
+        parameter: &'static str,
+        /// What is wrong with it.
+        fault: PlacementFault,
+    },
+    /// A joint is so sharp that its links overlap over more than half of the shorter one, which leaves no saying which parts
+    /// of the robot are neighbours.
+    #[error(
+        "joint {joint} bends by {angle} rad between links of radius {radius}, the shorter of which has the length {length}; \
+         make the radius smaller, or spread the bend over more points"
+    )]
+    JointTooSharp {
+        /// The joint before the link with this number.
+        joint: usize,
+        /// By how much it bends, rad.
+        angle: Real,
+        /// The larger radius of its links.
+        radius: Real,
+        /// The length of the shorter link.
+        length: Real,
+    },
     /// The pose carries a tube beyond that range.
     #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
     TubeOutOfRange {
@@ -191,6 +215,37 @@ pub enum ProximityError {
     Device(#[from] DeviceFailure),
 }
 
+/// Why a robot cannot be placed at its pose.
+#[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[non_exhaustive]
+pub enum PlacementFault {
+    /// The pose has a component that is NaN or infinite.
+    #[error("the pose is not finite; check its translation and rotation")]
+    PoseNotFinite,
+    /// The rotation scales: the length of its quaternion is not 1, even for single precision.
+    #[error("the pose has a quaternion of length {length}; normalise its rotation")]
+    PoseNotRigid {
+        /// The length of the quaternion.
+        length: Real,
+    },
+    /// The pose carries a link beyond the range in which squares of coordinates are finite.
+    #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
+    OutOfRange {
+        /// The link's position in the chain.
+        link: usize,
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
+}
+
+impl PlacementFault {
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    pub fn kind(&self) -> &'static str {
+        self.into()
+    }
+}
+
 impl MeshError {
     /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
     pub fn kind(&self) -> &'static str {
@@ -199,12 +254,24 @@ impl MeshError {
 }
 
 impl ProximityError {
+    /// The same of one of two robots, whose pose the function that was called names so.
+    pub(crate) fn of_robot(self, parameter: &'static str) -> Self {
+        let fault = match self {
+            Self::PoseNotFinite => PlacementFault::PoseNotFinite,
+            Self::PoseNotRigid { length } => PlacementFault::PoseNotRigid { length },
+            Self::OutOfRange { link, limit } => PlacementFault::OutOfRange { link, limit },
+            other => return other,
+        };
+        Self::Placement { parameter, fault }
+    }
+
     /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that of the error
     /// that it passes on.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Motion(error) => error.kind(),
             Self::Mesh(error) => error.kind(),
+            Self::Placement { fault, .. } => fault.kind(),
             #[cfg(feature = "gpu")]
             Self::Device(error) => error.kind(),
             other => other.into(),

@@ -37,7 +37,13 @@ impl<T: Scalar> Frame<T> {
     /// A point in this frame.
     #[inline(always)]
     pub(crate) fn point(&self, point: Vec3<T>) -> Vec3<T> {
-        (point * self.shrink - self.origin * self.shrink) * self.fit
+        self.way(self.origin, point)
+    }
+
+    /// The way from one point to another in this frame, as exact as their difference.
+    #[inline(always)]
+    pub(crate) fn way(&self, from: Vec3<T>, to: Vec3<T>) -> Vec3<T> {
+        (to * self.shrink - from * self.shrink) * self.fit
     }
 
     /// A length in this frame.

@@ -21,6 +21,7 @@
 mod at_level;
 mod bounds;
 pub(crate) mod depth;
+mod disc_disc;
 mod disc_solver;
 mod dispatch;
 mod double_double;
@@ -30,6 +31,7 @@ mod frame;
 #[doc(hidden)] // for this project's own studies and tests
 pub mod laboratory;
 pub(crate) mod lanes;
+mod modified_cylinder_modified_cylinder;
 mod plane_disc;
 mod point_disc;
 mod point_modified_cylinder;
@@ -46,13 +48,17 @@ mod vec3;
 pub(crate) use disc_solver::{Convex, DiscSolver};
 pub(crate) use dispatch::dispatch;
 pub(crate) use face::Face;
+pub(crate) use modified_cylinder_modified_cylinder::TwoLinks;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
 pub(crate) use scalar::Mask;
+pub(crate) use segment_segment::parameters as segment_parameters;
 pub(crate) use triangle_modified_cylinder::Axial;
 
+pub use disc_disc::disc_disc;
 /// For this project's own tests and studies.
 #[doc(hidden)]
 pub use double_double::DoubleDouble;
+pub use modified_cylinder_modified_cylinder::modified_cylinder_modified_cylinder;
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;

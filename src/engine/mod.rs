@@ -3,6 +3,7 @@
 pub(crate) mod bvh;
 mod exhaustive;
 mod proximity;
+mod robot_pair;
 
 pub use bvh::BvhSearch;
 pub use exhaustive::{Exhaustive, SearchPrecision};
@@ -10,3 +11,4 @@ pub use proximity::Proximity;
 #[cfg(feature = "gpu")]
 pub(crate) use proximity::placed;
 pub(crate) use proximity::{Engine, any_triangle};
+pub use robot_pair::{RobotPair, between, clears_between, self_clears, self_minimum};

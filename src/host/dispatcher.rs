@@ -8,7 +8,7 @@ use super::link_triangle::LinkTrianglePair;
 use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
-use super::robot_pair::{RobotPair, links_of};
+use super::robot_surface::{RobotSurface, links_of};
 use super::straight_cast;
 use super::thin::Thin;
 use super::voxels;
@@ -107,7 +107,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.intersection_test();
         }
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
@@ -145,7 +145,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.distance();
         }
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
@@ -187,7 +187,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(prediction)?;
         let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.contact(prediction);
         }
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
@@ -224,7 +224,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(max_dist)?;
         let thin = Thin::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotPair::of(pos12, g1, g2) {
+        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
         }
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {

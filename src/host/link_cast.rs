@@ -20,7 +20,7 @@ use super::closing::{Closing, Reach, Support};
 use super::footing::{centre, outward};
 use super::link_triangle::{self, LinkTrianglePair};
 use super::range::in_range;
-use super::robot_pair::links_of;
+use super::robot_surface::links_of;
 use super::straight_cast::iterated_contact;
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};

@@ -18,7 +18,7 @@ use super::joint::WhichShape;
 use super::link_triangle::LinkTrianglePair;
 use super::parts::{check_scale, has_parts};
 use super::range::{check_margin, check_pose};
-use super::robot_pair::links_of;
+use super::robot_surface::links_of;
 use super::thin::Thin;
 use super::watched::Watched;
 use super::{

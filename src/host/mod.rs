@@ -36,7 +36,7 @@ mod ray;
 mod rim;
 mod robot_halfspace;
 mod robot_mesh_manifold;
-mod robot_pair;
+mod robot_surface;
 mod shape;
 mod straight_cast;
 mod support_map;

@@ -7,7 +7,7 @@
 
 use super::axial::unit;
 use super::range::in_range;
-use super::robot_pair::links_of;
+use super::robot_surface::links_of;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{

@@ -7,7 +7,7 @@
 
 use super::link_triangle::LinkTrianglePair;
 use super::link_triangle_manifold;
-use super::robot_pair::links_of;
+use super::robot_surface::links_of;
 use parry3d_f64::bounding_volume::BoundingVolume;
 use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::details::{NormalConstraints, VoxelsShapeContactManifoldsWorkspace};

@@ -8,7 +8,7 @@
 //! A capsule of parry's is a link with two round caps, and answered as one.
 
 use super::range::LEAST_SHARE;
-use super::robot_pair::links_of;
+use super::robot_surface::links_of;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};

@@ -19,6 +19,7 @@ mod placed_link;
 mod placed_robot;
 mod ranked;
 mod search_link;
+mod two_links;
 
 pub(crate) use best::Best;
 pub(crate) use checks::rigid_pose;
@@ -32,3 +33,4 @@ pub(crate) use placed_link::PlacedLink;
 pub(crate) use placed_robot::PlacedRobot;
 pub(crate) use ranked::{Ranked, rank_each, rounding};
 pub(crate) use search_link::SearchLink;
+pub(crate) use two_links::NearestOfLinks;

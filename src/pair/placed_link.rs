@@ -52,14 +52,18 @@ impl PlacedLink {
     /// The answer about the link with this number.
     pub(crate) fn answer(&self, number: usize, nearest: &Nearest) -> LinkProximity {
         let Nearest { triangle, distance, on_robot, on_mesh } = *nearest;
-        let length = self.along.dot(Vector::from(self.axis));
-        let arc_length = self.before + self.share_of(on_mesh) * length;
+        let arc_length = self.arc_length_of(on_mesh);
         let witness = Witness { on_robot, on_mesh, triangle, arc_length, segment: self.segment };
         LinkProximity { link: number as u32, distance, witness }
     }
 
     pub(crate) fn is_finite(&self) -> bool {
         self.start.is_finite() && self.end.is_finite() && self.radius.is_finite()
+    }
+
+    /// Where along the robot its axis is nearest to a point.
+    pub(crate) fn arc_length_of(&self, point: Vector) -> Real {
+        self.before + self.share_of(point) * self.along.dot(Vector::from(self.axis))
     }
 
     /// The share of the axis at which it is nearest to a point.

@@ -9,5 +9,6 @@ mod errata;
 mod errata_links;
 #[cfg(feature = "laboratory")]
 mod lanes;
+mod link_links;
 mod metamorphic;
 mod slivers;

@@ -59,6 +59,29 @@ impl Case {
     }
 }
 
+/// A reference distance between two links, to 30 digits.
+#[derive(Clone, Debug, Deserialize)]
+pub struct LinkCase {
+    pub id: String,
+    pub cat: String,
+    /// The ends of both axes.
+    pub links: [[[f64; 3]; 2]; 2],
+    pub radii: [f64; 2],
+    /// Which caps are flat.
+    pub flat: [[bool; 2]; 2],
+    pub d: String,
+    pub scale: f64,
+    pub mag: f64,
+    pub f32: bool,
+}
+
+impl LinkCase {
+    /// The expected distance, rounded to f64.
+    pub fn distance(&self) -> f64 {
+        self.d.parse().expect("a decimal number")
+    }
+}
+
 /// Reads one JSON value a line.
 pub fn read_lines<T: for<'a> Deserialize<'a>>(text: &str) -> Vec<T> {
     text.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect()
@@ -67,4 +90,9 @@ pub fn read_lines<T: for<'a> Deserialize<'a>>(text: &str) -> Vec<T> {
 /// The reference distances.
 pub fn distance_cases() -> Vec<Case> {
     read_lines(include_str!("../../../tests/data/distance.jsonl"))
+}
+
+/// The reference distances between two links, written by `crates/studies/reference/link_link.py`.
+pub fn link_cases() -> Vec<LinkCase> {
+    read_lines(include_str!("../../../tests/data/link_link.jsonl"))
 }

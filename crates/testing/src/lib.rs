@@ -27,7 +27,7 @@ mod random;
 pub mod rotation;
 
 pub use arcs::{Arcs, Stretch};
-pub use cases::{Case, distance_cases, read_lines};
+pub use cases::{Case, LinkCase, distance_cases, link_cases, read_lines};
 pub use random::Random;
 
 /// The answers of a batch, each of which there has to be.

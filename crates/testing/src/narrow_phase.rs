@@ -20,4 +20,8 @@ called! {
     point_modified_cylinder(point: Vec3<T>, start: Vec3<T>, end: Vec3<T>, radius: T, flat: [T::Mask; 2]);
     triangle_capsule(triangle: [Vec3<T>; 3], start: Vec3<T>, end: Vec3<T>, radius: T);
     triangle_modified_cylinder(triangle: [Vec3<T>; 3], start: Vec3<T>, end: Vec3<T>, radius: T, flat: [T::Mask; 2]);
+    disc_disc(centre1: Vec3<T>, normal1: Vec3<T>, radius1: T, centre2: Vec3<T>, normal2: Vec3<T>, radius2: T);
+    modified_cylinder_modified_cylinder(
+        axis1: [Vec3<T>; 2], radius1: T, flat1: [T::Mask; 2], axis2: [Vec3<T>; 2], radius2: T, flat2: [T::Mask; 2]
+    );
 }

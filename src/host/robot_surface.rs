@@ -32,7 +32,7 @@ impl<'a> Surface<'a> {
 }
 
 /// A robot and a surface, in either order.
-pub(super) struct RobotPair<'a> {
+pub(super) struct RobotSurface<'a> {
     links: &'a [ModifiedCylinder],
     surface: Surface<'a>,
     pos12: &'a Pose,
@@ -48,7 +48,7 @@ struct NearestPair {
     on_surface: Vector,
 }
 
-impl<'a> RobotPair<'a> {
+impl<'a> RobotSurface<'a> {
     /// The pair, if the shapes are one.
     pub fn of(pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
         let pair = |robot, surface, robot_is_first| {

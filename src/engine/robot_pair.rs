@@ -1,0 +1,238 @@
+//! Two robots beside one another.
+
+use crate::answer::{ProximityError, RobotProximity};
+use crate::query::check_margin;
+use crate::query::robots::{OneRobot, OwnMemory, PairMemory, TwoRobots};
+use crate::robot::Chain;
+use parry3d_f64::math::{Pose, Real};
+
+/// Questions about two robots, exactly: which links are closest, and whether all keep a margin.
+///
+/// It remembers what was nearest, which bounds the next query: any robots and poses may follow, and small motions are
+/// answered fastest. A clone has the memory too; each thread should have one of its own. [`between`] and [`clears_between`]
+/// are the same without a memory.
+///
+/// Both poses bring their robot into one frame, in which the answers are. Distances are unsigned, 0 where the robots touch
+/// or overlap, and exact as those to a mesh.
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::RobotPair};
+/// use parry_continuum::parry::math::{Pose, Vector};
+///
+/// let catheter = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
+/// let endoscope = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 30.0, Vector::new(5.0, 0.0, 40.0)], &[2.0, 2.0])?;
+/// let mut pair = RobotPair::new();
+/// for step in 0..10 {
+///     let beside = Pose::translation(6.0 + f64::from(step), 0.0, 0.0);
+///     let closest = pair.minimum(&catheter, &Pose::IDENTITY, &endoscope, &beside)?;
+///     println!("links {:?} are {} mm apart", closest.links, closest.distance);
+/// #   assert!((closest.distance - 3.0 - f64::from(step)).abs() < 1e-12);
+/// }
+/// assert!(pair.clears(&catheter, &Pose::IDENTITY, &endoscope, &Pose::translation(6.0, 0.0, 0.0), 2.5)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct RobotPair {
+    memory: PairMemory,
+    own: OwnMemory,
+}
+
+/// What the parameters are called.
+const POSES: [&str; 2] = ["pose_a", "pose_b"];
+
+impl RobotPair {
+    /// With an empty memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets the last answers.
+    pub fn forget(&mut self) {
+        self.memory.forget();
+        self.own.forget();
+    }
+
+    /// The two links that are closest. Of equal distances the lowest link of `a` counts, then the lowest of `b`.
+    ///
+    /// # Errors
+    /// A pose is not finite or not rigid, or moves a link out of range.
+    pub fn minimum(
+        &mut self,
+        a: &Chain,
+        pose_a: &Pose,
+        b: &Chain,
+        pose_b: &Pose,
+    ) -> Result<RobotProximity, ProximityError> {
+        Ok(TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.minimum(&mut self.memory))
+    }
+
+    /// For each link of `a`, in order, the closest link of `b`. `out` is cleared first.
+    ///
+    /// # Errors
+    /// As [`minimum`](Self::minimum).
+    pub fn per_link(
+        &mut self,
+        a: &Chain,
+        pose_a: &Pose,
+        b: &Chain,
+        pose_b: &Pose,
+        out: &mut Vec<RobotProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.per_link(out);
+        Ok(())
+    }
+
+    /// Whether all links of one robot are farther than `margin` from all of the other: true exactly when the distance of
+    /// [`minimum`](Self::minimum) is more than it.
+    ///
+    /// # Errors
+    /// As [`minimum`](Self::minimum), or the margin is negative or NaN.
+    pub fn clears(
+        &mut self,
+        a: &Chain,
+        pose_a: &Pose,
+        b: &Chain,
+        pose_b: &Pose,
+        margin: Real,
+    ) -> Result<bool, ProximityError> {
+        check_margin(margin)?;
+        Ok(TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.clears(margin, &mut self.memory))
+    }
+
+    /// Every place where the robots are at most `margin` apart, in the order of the links. `out` is cleared first.
+    ///
+    /// A place is a pair of links of which no neighbours, one link on along either robot or both, are closer. Neighbours that
+    /// are as close count as one place, at the lowest links: two robots that overlap along a stretch do so once.
+    ///
+    /// # Errors
+    /// As [`clears`](Self::clears).
+    pub fn within(
+        &mut self,
+        a: &Chain,
+        pose_a: &Pose,
+        b: &Chain,
+        pose_b: &Pose,
+        margin: Real,
+        out: &mut Vec<RobotProximity>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.within(margin, &mut self.memory, out);
+        Ok(())
+    }
+
+    /// As [`self_minimum`], with a memory.
+    ///
+    /// # Errors
+    /// As [`self_minimum`].
+    pub fn self_minimum(&mut self, robot: &Chain) -> Result<Option<RobotProximity>, ProximityError> {
+        Ok(OneRobot::new(robot, &mut self.own)?.minimum(&mut self.own))
+    }
+
+    /// As [`self_clears`], in memory that is used again.
+    ///
+    /// # Errors
+    /// As [`self_clears`].
+    pub fn self_clears(&mut self, robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
+        check_margin(margin)?;
+        Ok(OneRobot::new(robot, &mut self.own)?.clears(margin, &mut self.own))
+    }
+}
+
+/// The two links that are closest: [`RobotPair::minimum`] without a memory.
+///
+/// # Errors
+/// As [`RobotPair::minimum`].
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::between};
+/// use parry_continuum::parry::math::{Pose, Vector};
+///
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
+/// // Tip to tip, the second robot comes from the other side.
+/// let facing = Pose::new(Vector::Z * 85.0, Vector::X * std::f64::consts::PI);
+/// let closest = between(&robot, &Pose::IDENTITY, &robot, &facing)?;
+/// assert!((closest.distance - 5.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn between(a: &Chain, pose_a: &Pose, b: &Chain, pose_b: &Pose) -> Result<RobotProximity, ProximityError> {
+    RobotPair::new().minimum(a, pose_a, b, pose_b)
+}
+
+/// Whether two robots keep a margin: [`RobotPair::clears`] without a memory.
+///
+/// # Errors
+/// As [`RobotPair::clears`].
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::clears_between};
+/// use parry_continuum::parry::math::{Pose, Vector};
+///
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
+/// let beside = Pose::translation(3.0, 0.0, 0.0);
+/// assert!(clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 0.5)?);
+/// assert!(!clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 1.0)?); // a margin is kept by what is farther
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn clears_between(
+    a: &Chain,
+    pose_a: &Pose,
+    b: &Chain,
+    pose_b: &Pose,
+    margin: Real,
+) -> Result<bool, ProximityError> {
+    RobotPair::new().clears(a, pose_a, b, pose_b, margin)
+}
+
+/// Where a robot comes closest to itself, or nothing if no two of its parts can: a straight robot, or one that bends too
+/// little.
+///
+/// Parts that are close only because they are neighbours do not count. Asked for are
+///
+/// - two links with a turn of at least pi between them, which is the sum of the angles of the joints;
+/// - a flat face (the base, the tip, the wider side of a step) and a link, with a turn of at least pi / 2;
+/// - two flat faces that are turned towards one another.
+///
+/// No other two places can be a local minimum of the distance, however the robot is bent: a closed curve turns by at least 2
+/// pi, of which the two corners of arc and chord take pi at most (Fenchel's theorem). So a bend never collides with its own
+/// neighbourhood, and no number of neighbours has to be chosen.
+///
+/// # Errors
+/// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle / 2) is more than half
+/// of its length. The rule is one for tubes thinner than they bend.
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::self_minimum};
+/// use parry_continuum::parry::math::Vector;
+///
+/// // A hairpin: two straight legs and half a circle of radius 10 between them.
+/// let angles = (0..=20).map(|k| std::f64::consts::PI * f64::from(k) / 20.0);
+/// let arc = angles.map(|a| Vector::new(10.0 * (1.0 - a.cos()), 0.0, 30.0 + 10.0 * a.sin()));
+/// let points: Vec<_> = [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
+/// let robot = Chain::from_centreline(&points, &[1.5; 22])?;
+/// let closest = self_minimum(&robot)?.ok_or("too straight")?;
+/// assert!((closest.distance - 17.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityError> {
+    RobotPair::new().self_minimum(robot)
+}
+
+/// Whether a robot keeps a margin to itself: true exactly when [`self_minimum`] finds nothing, or something farther than
+/// `margin`.
+///
+/// # Errors
+/// As [`self_minimum`], or the margin is negative or NaN.
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::self_clears};
+/// use parry_continuum::parry::math::Vector;
+///
+/// let straight = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
+/// assert!(self_clears(&straight, 100.0)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
+    RobotPair::new().self_clears(robot, margin)
+}

@@ -1,0 +1,85 @@
+//! Two placed links, and how near they are.
+//!
+//! As a link and a triangle they are measured in coordinates of their own: from the first link's start, multiplied by the
+//! power of two that brings the largest of them near one.
+
+use super::coordinates::SLACK;
+use super::placed_link::PlacedLink;
+use crate::answer::RobotProximity;
+use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction};
+use parry3d_f64::math::{Real, Vector};
+
+/// The nearest points of two links, one and the same where they meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearestOfLinks {
+    pub distance: Real,
+    pub on_first: Vector,
+    pub on_second: Vector,
+}
+
+impl NearestOfLinks {
+    /// The answer about two links with these numbers.
+    pub(crate) fn answer(&self, links: [usize; 2], [first, second]: [&PlacedLink; 2]) -> RobotProximity {
+        let Self { distance, on_first, on_second } = *self;
+        let arc_lengths = [first.arc_length_of(on_second), second.arc_length_of(on_first)];
+        RobotProximity { links: links.map(|link| link as u32), distance, on_first, on_second, arc_lengths }
+    }
+}
+
+impl PlacedLink {
+    /// The nearest points of two links.
+    pub(crate) fn measure_link(&self, other: &Self) -> NearestOfLinks {
+        let (pair, unit) = self.with_link(other);
+        self.nearest_of_links(unit, &pair.closest(&pair.axes(), |mask| mask))
+    }
+
+    /// The nearest points of the flat face at one of its ends and another link.
+    pub(crate) fn face_to_link(&self, end: usize, other: &Self) -> NearestOfLinks {
+        let (pair, unit) = self.with_link(other);
+        self.nearest_of_links(unit, &pair.closest_to_cap(end_of(&pair.first, end), |mask| mask))
+    }
+
+    /// The nearest points of the flat faces at one end of each link.
+    pub(crate) fn face_to_face(&self, ends: [usize; 2], other: &Self) -> NearestOfLinks {
+        let (pair, unit) = self.with_link(other);
+        let centres = [end_of(&pair.first, ends[0]), pair.second_start + end_of(&pair.second, ends[1])];
+        self.nearest_of_links(unit, &pair.closest_caps(centres))
+    }
+
+    fn nearest_of_links(&self, unit: Real, closest: &Closest<Real>) -> NearestOfLinks {
+        let place = |point: Vec3<Real>| self.start() + Vector::from(point) * unit;
+        let on_first = place(closest.point1);
+        let on_second = if closest.distance > 0.0 { place(closest.point2) } else { on_first };
+        NearestOfLinks { distance: closest.distance * unit, on_first, on_second }
+    }
+
+    /// The same if they are at most `bound` apart. The capsules around the links spare what they can.
+    pub(crate) fn measure_link_within(&self, bound: Real, other: &Self) -> Option<NearestOfLinks> {
+        let (pair, unit) = self.with_link(other);
+        let apart = pair.axes().gap.norm() - pair.first.radius - pair.second.radius - SLACK;
+        if apart * unit > bound {
+            return None;
+        }
+        Some(self.measure_link(other)).filter(|nearest| nearest.distance <= bound)
+    }
+
+    /// Both in coordinates of their own, and what 1 is there.
+    fn with_link(&self, other: &Self) -> (TwoLinks<Real>, Real) {
+        let [start, end] = [other.start(), other.end()].map(|point| point - self.start());
+        let extent = start.abs().max(end.abs()).max_element().max(self.extent()).max(other.radius());
+        let scale = extent.power_of_two_to_unity();
+        let link = |placed: &Self| {
+            let end = Vec3::from(placed.along() * scale);
+            // A length whose square vanishes beside the other link gives no direction.
+            let axis = if gives_direction(end.norm_squared()) { placed.axis() } else { Vec3::zero(0.0) };
+            Link { end, axis, radius: placed.radius() * scale, flat: placed.flat() }
+        };
+        let second_start = Vec3::from(start * scale);
+        (TwoLinks { first: link(self), second: link(other), second_start }, 1.0 / scale)
+    }
+}
+
+/// An end of a link, seen from its start.
+fn end_of(link: &Link<Real>, end: usize) -> Vec3<Real> {
+    if end == 0 { Vec3::zero(0.0) } else { link.end }
+}

@@ -1,0 +1,119 @@
+//! Two trees of links at once, the nearer pair of nodes first.
+//!
+//! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
+//! divided. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it
+//! is looked at, unless that distance is 0 and its lowest links come after those that were found.
+
+use super::outlines::{Outlines, SearchFrame};
+use crate::pair::PlacedRobot;
+use crate::robot::LinkNode;
+use parry3d_f64::math::Real;
+use std::ops::Range;
+
+/// A node of a tree, and the first of its links.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    node: usize,
+    first: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    places: [Place; 2],
+    at_least: Real,
+}
+
+/// What a pair of links must not exceed to be looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limit {
+    pub distance: Real,
+    /// The links that are that far, if some are.
+    pub links: Option<[usize; 2]>,
+}
+
+impl Limit {
+    /// Nothing is looked at any more.
+    pub const NOTHING: Self = Self { distance: Real::NEG_INFINITY, links: None };
+
+    pub fn of(distance: Real) -> Self {
+        Self { distance, links: None }
+    }
+
+    fn leaves_out(&self, entry: &Entry) -> bool {
+        let firsts = entry.places.map(|place| place.first);
+        entry.at_least > self.distance
+            || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
+    }
+}
+
+/// What a descent keeps from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Descent {
+    stack: Vec<Entry>,
+    outlines: [Outlines; 2],
+}
+
+impl Descent {
+    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `asks` is given two ranges
+    /// of links, and tells whether a pair of them is asked for.
+    pub fn run(
+        &mut self,
+        robots: [&PlacedRobot; 2],
+        mut limit: Limit,
+        asks: impl Fn([Range<usize>; 2]) -> bool,
+        mut visit: impl FnMut([usize; 2]) -> Limit,
+    ) {
+        let frame = SearchFrame::around(robots);
+        let Self { stack, outlines } = self;
+        for (outlines, robot) in outlines.iter_mut().zip(robots) {
+            outlines.start(robot);
+        }
+        stack.clear();
+        let root = Place { node: 0, first: 0 };
+        if asks(robots.map(|robot| 0..robot.links().len())) {
+            stack.push(Entry { places: [root; 2], at_least: 0.0 });
+        }
+        while let Some(entry) = stack.pop() {
+            if limit.leaves_out(&entry) {
+                continue;
+            }
+            let nodes = [0, 1].map(|robot: usize| robots[robot].link_tree()[entry.places[robot].node]);
+            let counts = nodes.map(|node| node.links());
+            if counts == [1, 1] {
+                limit = visit(entry.places.map(|place| place.first));
+                continue;
+            }
+            let divided = usize::from(counts[1] > counts[0]);
+            let kept = 1 - divided;
+            let other = outlines[kept].get(&frame, robots[kept], entry.places[kept].node);
+            let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|half| {
+                let outline = outlines[divided].get(&frame, robots[divided], half.node);
+                let mut places = entry.places;
+                places[divided] = half;
+                Entry { places, at_least: frame.outside(outline.at_least(&other)) }
+            });
+            let [low, high] = halves;
+            // The nearer one is taken first, and of equals that with the lower links.
+            let nearer_last = if high.at_least < low.at_least { [low, high] } else { [high, low] };
+            let links = |entry: &Entry, robot: usize| {
+                let Place { node, first } = entry.places[robot];
+                first..first + robots[robot].link_tree()[node].links()
+            };
+            stack.extend(
+                nearer_last
+                    .into_iter()
+                    .filter(|entry| !limit.leaves_out(entry) && asks([links(entry, 0), links(entry, 1)])),
+            );
+        }
+    }
+}
+
+/// The two children of a node.
+fn halves(tree: &[LinkNode], Place { node, first }: Place) -> [Place; 2] {
+    let low = Place { node: node + 1, first };
+    let below = match tree[low.node] {
+        LinkNode::Inner { below, .. } => below,
+        LinkNode::Leaf(_) => 0,
+    };
+    [low, Place { node: low.node + 1 + below, first: first + tree[low.node].links() }]
+}

@@ -1,0 +1,10 @@
+//! Robots beside robots: how near the links of one are to those of another.
+
+mod descent;
+mod local_minima;
+mod one_robot;
+mod outlines;
+mod two_robots;
+
+pub(crate) use one_robot::{OneRobot, OwnMemory};
+pub(crate) use two_robots::{PairMemory, TwoRobots};

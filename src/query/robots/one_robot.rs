@@ -1,0 +1,258 @@
+//! A robot and itself: which of its parts can come to be near one another, and how near they are.
+//!
+//! Neighbouring links touch, and those around a bend are near for no other reason. So the question is about pairs of
+//! places that are a local minimum of the distance: two places that come no nearer when either moves along the robot.
+//! Three kinds of pairs are asked for, and no margin decides which.
+//!
+//! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two links, at which the
+//! distance of the axes is a local minimum, and v the unit vector from x to y. The part of the centreline from x to y
+//! and the way back along the chord are a closed polygon. Its exterior angles sum up to at least 2 pi (Fenchel; equality
+//! for plane convex polygons). At x the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
+//! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and t is at most pi / 2. The
+//! same holds at y, at a joint, where it holds of the direction on the way to y, and at the robot's ends. So the joints
+//! between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi. Where the axes meet there is one corner, of at most pi, and the
+//! same is left. The distance of two barrels is that of their axes less both radii.
+//!
+//! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip, or the wider side of a
+//! step in radius; c is its centre, n its normal, out of the robot. The shortest way leaves it at a point c + a e along v,
+//! where e is perpendicular to n, a >= 0, and v lies between n and e: at the angle alpha from n. It ends, prolonged by the
+//! other link's radius, at a place y of an axis, which it meets at a right angle as above. Close the polygon by the chord
+//! from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with alpha <= beta <= pi / 2. At y it has
+//! turned by beta - alpha, which adds so much to pi / 2. At c the centreline goes on along n, or comes from where n points
+//! away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no more
+//! than 3/2 pi, which leaves pi / 2 for the joints.
+//!
+//! **Two flat faces** at any turn: two steps of a straight robot may face one another. What such a pair has found counts
+//! if the way between the two leaves both faces on their outer sides, or if they meet.
+//!
+//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two links
+//! overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near whom, and
+//! the robot is refused.
+//!
+//! **Rounding.** An angle between two axes errs by less than 16 u, since the axes are unit vectors to 4 u and a sine and a
+//! cosine of them to 8 u, and so the sum over n joints by less than 16 n u and n^2 u for its own additions. [`Turns`] takes
+//! as much off what is asked for.
+
+use super::descent::{Descent, Limit};
+use crate::answer::{ProximityError, RobotProximity};
+use crate::distance::Scalar;
+use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
+use crate::robot::{Chain, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// What one query leaves for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OwnMemory {
+    descent: Descent,
+    turns: Turns,
+    faces: Vec<Face>,
+    /// The links that were nearest.
+    nearest: Option<[usize; 2]>,
+}
+
+impl OwnMemory {
+    pub fn forget(&mut self) {
+        self.nearest = None;
+    }
+}
+
+/// How far a chain's centreline turns.
+#[derive(Clone, Debug, Default)]
+struct Turns {
+    /// By how much the joints up to a link turn, together.
+    before: Vec<Real>,
+    slack: Real,
+}
+
+impl Turns {
+    /// # Errors
+    /// A joint is too sharp.
+    fn measure(&mut self, links: &[ModifiedCylinder]) -> Result<(), ProximityError> {
+        self.before.clear();
+        let mut sum = 0.0;
+        let mut last = links[0].axis();
+        self.before.push(sum);
+        for (joint, pair) in links.windows(2).enumerate() {
+            let axis = pair[1].axis();
+            let (sine, cosine) = (last.cross(axis).length(), last.dot(axis));
+            let radius = pair[0].radius().max(pair[1].radius());
+            let length = pair[0].length().min(pair[1].length());
+            // tan(angle / 2) = sin / (1 + cos), without a division.
+            if 2.0 * radius * sine > length * (1.0 + cosine) || cosine <= -1.0 {
+                let angle = libm::atan2(sine, cosine);
+                return Err(ProximityError::JointTooSharp { joint: joint + 1, angle, radius, length });
+            }
+            sum += libm::atan2(sine, cosine);
+            self.before.push(sum);
+            last = axis;
+        }
+        let count = links.len() as Real;
+        self.slack = (16.0 + count) * count * Real::UNIT_ROUNDOFF;
+        Ok(())
+    }
+
+    /// Whether two links, the second after the first, have a turn of at least `angle` between them, as far as rounding tells.
+    fn reach(&self, angle: Real, first: usize, second: usize) -> bool {
+        self.before[second] - self.before[first] >= angle - self.slack
+    }
+}
+
+/// A flat face of a robot: one end of a link.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    link: usize,
+    end: usize,
+}
+
+impl Face {
+    /// All faces of a chain: its ends, and the wider sides of its steps, where they are flat.
+    fn all(links: &[ModifiedCylinder], faces: &mut Vec<Self>) {
+        faces.clear();
+        for (number, link) in links.iter().enumerate() {
+            let before = number.checked_sub(1).and_then(|before| links.get(before));
+            for (end, neighbour) in [(0, before), (1, links.get(number + 1))] {
+                let is_step = neighbour.is_none_or(|neighbour| neighbour.radius() < link.radius());
+                if link.flat()[end] && is_step {
+                    faces.push(Self { link: number, end });
+                }
+            }
+        }
+    }
+
+    /// The normal, out of the robot.
+    fn outward(&self, robot: &PlacedRobot) -> Vector {
+        let axis = robot.links()[self.link].axis();
+        if self.end == 0 { -axis } else { axis }
+    }
+}
+
+/// A robot in its own frame, and what can come to be near within it.
+pub(crate) struct OneRobot<'a> {
+    robot: PlacedRobot<'a>,
+}
+
+impl<'a> OneRobot<'a> {
+    /// # Errors
+    /// A joint is too sharp.
+    pub fn new(robot: &'a Chain, memory: &mut OwnMemory) -> Result<Self, ProximityError> {
+        let robot = PlacedRobot::new(robot, &Pose::IDENTITY)?;
+        memory.turns.measure(robot.links())?;
+        Face::all(robot.links(), &mut memory.faces);
+        Ok(Self { robot })
+    }
+
+    /// The nearest of all pairs that are asked for.
+    pub fn minimum(&self, memory: &mut OwnMemory) -> Option<RobotProximity> {
+        let OwnMemory { descent, turns, faces, nearest } = memory;
+        let mut best = None;
+        if let Some(links) = nearest.filter(|links| links[1] < self.robot.links().len())
+            && turns.reach(PI, links[0], links[1])
+        {
+            best = self.measure_within(Real::INFINITY, links);
+        }
+        self.between_faces(turns, faces, |found| {
+            best = Some(nearer(best, found));
+            true
+        });
+        descent.run([&self.robot; 2], limit(&best), asks(turns), |links| {
+            let bound = best.map_or(Real::INFINITY, |best| best.distance);
+            if let Some(found) = self.measure_within(bound, links) {
+                best = Some(nearer(best, found));
+            }
+            limit(&best)
+        });
+        *nearest = best.map(|best| best.links.map(|link| link as usize));
+        best
+    }
+
+    /// Whether all pairs that are asked for are farther apart than `margin`.
+    pub fn clears(&self, margin: Real, memory: &mut OwnMemory) -> bool {
+        let OwnMemory { descent, turns, faces, .. } = memory;
+        if !self.between_faces(turns, faces, |found| found.distance > margin) {
+            return false;
+        }
+        let mut is_clear = true;
+        descent.run([&self.robot; 2], Limit::of(margin), asks(turns), |links| {
+            is_clear &= self.measure_within(margin, links).is_none();
+            if is_clear { Limit::of(margin) } else { Limit::NOTHING }
+        });
+        is_clear
+    }
+
+    fn measure_within(&self, bound: Real, links: [usize; 2]) -> Option<RobotProximity> {
+        let [first, second] = links.map(|link| self.robot.link(link));
+        let nearest = first.measure_link_within(bound, &second)?;
+        Some(nearest.answer(links, [&first, &second]))
+    }
+
+    /// Shows `keep` what every face is near, as long as it returns true. Returns whether it always did.
+    fn between_faces(
+        &self,
+        turns: &Turns,
+        faces: &[Face],
+        mut keep: impl FnMut(RobotProximity) -> bool,
+    ) -> bool {
+        for (number, face) in faces.iter().enumerate() {
+            let on_face = self.robot.link(face.link);
+            let outward = face.outward(&self.robot);
+            let leaves = |nearest: &NearestOfLinks| {
+                nearest.distance <= 0.0 || (nearest.on_second - nearest.on_first).dot(outward) >= 0.0
+            };
+            // Those of the links that are asked for at a turn of pi anyway are left to that.
+            let before = (0..face.link.saturating_sub(1))
+                .filter(|&link| turns.reach(0.5 * PI, link, face.link) && !turns.reach(PI, link, face.link));
+            let after = (face.link + 2..self.robot.links().len())
+                .filter(|&link| turns.reach(0.5 * PI, face.link, link) && !turns.reach(PI, face.link, link));
+            for link in before.chain(after) {
+                let other = self.robot.link(link);
+                let nearest = on_face.face_to_link(face.end, &other);
+                if leaves(&nearest) && !keep(in_order([face.link, link], [&on_face, &other], &nearest)) {
+                    return false;
+                }
+            }
+            for facing in &faces[number + 1..] {
+                if facing.link.abs_diff(face.link) < 2 {
+                    continue;
+                }
+                let other = self.robot.link(facing.link);
+                let nearest = on_face.face_to_face([face.end, facing.end], &other);
+                let way = nearest.on_first - nearest.on_second;
+                let meets = nearest.distance <= 0.0 || way.dot(facing.outward(&self.robot)) >= 0.0;
+                if meets
+                    && leaves(&nearest)
+                    && !keep(in_order([face.link, facing.link], [&on_face, &other], &nearest))
+                {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Pairs of links, the second after the first, with a turn of at least pi between them.
+fn asks(turns: &Turns) -> impl Fn([Range<usize>; 2]) -> bool {
+    |[first, second]| turns.reach(PI, first.start, second.end - 1)
+}
+
+fn limit(best: &Option<RobotProximity>) -> Limit {
+    best.as_ref().map_or(Limit::of(Real::INFINITY), |best| Limit {
+        distance: best.distance,
+        links: Some(best.links.map(|link| link as usize)),
+    })
+}
+
+fn nearer(best: Option<RobotProximity>, found: RobotProximity) -> RobotProximity {
+    best.filter(|best| !found.comes_before(best)).unwrap_or(found)
+}
+
+/// The answer with the lower link first.
+fn in_order(links: [usize; 2], placed: [&PlacedLink; 2], nearest: &NearestOfLinks) -> RobotProximity {
+    if links[0] < links[1] {
+        return nearest.answer(links, placed);
+    }
+    let turned = NearestOfLinks { on_first: nearest.on_second, on_second: nearest.on_first, ..*nearest };
+    turned.answer([links[1], links[0]], [placed[1], placed[0]])
+}

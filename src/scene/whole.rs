@@ -1,0 +1,401 @@
+//! A scene, and what is asked of all of it at once.
+
+use super::structure::Structure;
+use crate::answer::{
+    Between, Contact, ProximityError, SceneContact, SceneError, StructureProximity, Tightest,
+};
+use crate::distance::{DoubleDouble, Scalar};
+use crate::engine::{BvhSearch, Proximity, RobotPair};
+use crate::query::{check_margin, check_not_negative};
+use crate::robot::Chain;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// Several structures, each with a margin of its own or none, and the robots among them.
+///
+/// A structure is a mesh with a name. The margin is what a robot must keep from it; the *slack* is the distance less the
+/// margin. A structure without a margin may be touched, as a target is: it is measured by
+/// [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts), and is no part of the other questions.
+///
+/// Robots are given to each question, with their poses in the scene's frame. If a
+/// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
+///
+/// The scene remembers what its engines do, and whom the last answer was about, who is asked first. A clone shares the
+/// meshes and has a memory of its own: one for each thread.
+///
+/// ```
+/// use parry_continuum::Chain;
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+/// use parry_continuum::proximity::{Between, BvhSearch, Scene};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = |centre: Vector, radius: f64| -> Result<BvhSearch, Box<dyn std::error::Error>> {
+///     let (vertices, triangles) = Ball::new(radius).to_trimesh(32, 16);
+///     let vertices: Vec<_> = vertices.iter().map(|vertex| *vertex + centre).collect();
+///     Ok(BvhSearch::from_triangles(&vertices, &triangles)?)
+/// };
+/// let mut scene = Scene::new();
+/// scene.add("wall", ball(Vector::ZERO, 10.0)?, Some(0.5))?;
+/// let vessel = scene.add("vessel", ball(Vector::X * 6.0, 1.0)?, Some(2.0))?;
+/// scene.add("target", ball(Vector::Z * 8.0, 1.0)?, None)?;
+///
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
+/// let robots = [(&robot, Pose::IDENTITY)];
+/// assert!(scene.clears(&robots)?);
+/// let tightest = scene.tightest(&robots)?.ok_or("nothing has a margin")?;
+/// if let Between::Structure(near) = tightest.between {
+///     let name = scene.name(near.structure as usize).unwrap_or_default();
+///     println!("{name} leaves {:.2} mm at link {}", tightest.slack, near.nearest.link);
+///     assert_eq!(name, "vessel");
+/// }
+///
+/// scene.set_margin(vessel, Some(6.0))?;
+/// assert!(!scene.clears(&robots)?);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    structures: Vec<Structure>,
+    robot_margin: Option<Real>,
+    pair: RobotPair,
+    /// Structure and robot that were tightest, and that did not keep a margin.
+    tightest: Option<[usize; 2]>,
+    met: Option<[usize; 2]>,
+    /// How much room structures leave robots at least.
+    order: Vec<(Real, [usize; 2])>,
+    contacts: Vec<Contact>,
+}
+
+/// The tightest so far, and its slack without rounding.
+type Best = Option<(DoubleDouble, Tightest)>;
+
+impl Scene {
+    /// Without structures.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a structure, and returns its number: structures count from 0 in the order in which they are added.
+    ///
+    /// # Errors
+    /// The margin is negative or NaN. The message has the structure's name.
+    pub fn add(
+        &mut self,
+        name: impl Into<String>,
+        search: BvhSearch,
+        margin: Option<Real>,
+    ) -> Result<usize, SceneError> {
+        let structure = Structure::new(name.into(), search, margin);
+        check(margin).map_err(|error| of_structure(&structure, error))?;
+        self.structures.push(structure);
+        Ok(self.structures.len() - 1)
+    }
+
+    /// How many structures there are.
+    pub fn len(&self) -> usize {
+        self.structures.len()
+    }
+
+    /// Whether there is no structure.
+    pub fn is_empty(&self) -> bool {
+        self.structures.is_empty()
+    }
+
+    /// A structure's name.
+    pub fn name(&self, structure: usize) -> Option<&str> {
+        self.structures.get(structure).map(|structure| structure.name.as_str())
+    }
+
+    /// A structure's margin; nothing if it has none.
+    pub fn margin(&self, structure: usize) -> Option<Real> {
+        self.structures.get(structure)?.margin
+    }
+
+    /// Gives a structure another margin, or none.
+    ///
+    /// # Errors
+    /// There is no such structure, or the margin is negative or NaN.
+    pub fn set_margin(&mut self, structure: usize, margin: Option<Real>) -> Result<(), SceneError> {
+        let structure = self.structure(structure)?;
+        check(margin).map_err(|error| of_structure(structure, error))?;
+        structure.margin = margin;
+        Ok(())
+    }
+
+    /// Moves a structure as a whole: `pose` brings its mesh's frame into the scene's. Nothing is built anew.
+    ///
+    /// # Errors
+    /// There is no such structure, or the pose is not finite or not rigid.
+    pub fn set_pose(&mut self, structure: usize, pose: &Pose) -> Result<(), SceneError> {
+        let structure = self.structure(structure)?;
+        structure.set_pose(pose).map_err(|error| of_structure(structure, error))
+    }
+
+    /// Moves the vertices of a structure's mesh, in the mesh's own frame: [`Proximity::set_vertices`].
+    ///
+    /// # Errors
+    /// There is no such structure, the number of vertices differs, or one is not finite or out of range.
+    pub fn set_vertices(&mut self, structure: usize, vertices: &[Vector]) -> Result<(), SceneError> {
+        let structure = self.structure(structure)?;
+        structure.set_vertices(vertices).map_err(|error| of_structure(structure, error.into()))
+    }
+
+    /// The margin that robots keep from one another; nothing if they are not held against one another, which is so at first.
+    ///
+    /// # Errors
+    /// The margin is negative or NaN.
+    pub fn set_robot_margin(&mut self, margin: Option<Real>) -> Result<(), SceneError> {
+        check(margin).map_err(SceneError::BetweenRobots)?;
+        self.robot_margin = margin;
+        Ok(())
+    }
+
+    /// Whether all robots keep all margins: true exactly when the slack of [`tightest`](Self::tightest) is more than 0, or
+    /// there is none. The first margin that is not kept ends the query.
+    ///
+    /// # Errors
+    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's number.
+    pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
+        if let Some([structure, robot]) = self.met.filter(|met| self.have(*met, robots))
+            && !self.clears_one(structure, robot, robots)?
+        {
+            return Ok(false);
+        }
+        self.met = None;
+        for structure in 0..self.structures.len() {
+            for robot in 0..robots.len() {
+                if !self.clears_one(structure, robot, robots)? {
+                    self.met = Some([structure, robot]);
+                    return Ok(false);
+                }
+            }
+        }
+        let Some(margin) = self.robot_margin else { return Ok(true) };
+        for second in 0..robots.len() {
+            for first in 0..second {
+                let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+                if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(between([first, second]))? {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// The least slack, and whom it is between; nothing if no robot is given or nothing has a margin.
+    ///
+    /// Slacks are compared without rounding. Of equal ones that of the lowest structure counts, then that of the lowest robot;
+    /// pairs of robots come last.
+    ///
+    /// # Errors
+    /// As [`clears`](Self::clears).
+    pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
+        let mut best: Best = None;
+        if let Some([structure, robot]) = self.tightest.filter(|last| self.have(*last, robots)) {
+            self.tighter(structure, robot, robots, &mut best)?;
+        }
+        // Those that may be tightest are asked first: they rule out the others.
+        let mut order = std::mem::take(&mut self.order);
+        let asked = self.rank(robots, &mut order).and_then(|()| {
+            order.sort_by(|one, other| one.0.total_cmp(&other.0));
+            for &(room, [structure, robot]) in &order {
+                if best.as_ref().is_some_and(|(_, best)| room > best.slack.next_up()) {
+                    break;
+                }
+                self.tighter(structure, robot, robots, &mut best)?;
+            }
+            Ok(())
+        });
+        self.order = order;
+        asked?;
+        self.tightest = match best.as_ref().map(|(_, best)| best.between) {
+            Some(Between::Structure(near)) => Some([near.structure as usize, near.robot as usize]),
+            _ => None,
+        };
+        let Some(margin) = self.robot_margin else { return Ok(best.map(|(_, best)| best)) };
+        for first in 0..robots.len() {
+            for second in first + 1..robots.len() {
+                let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+                let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(between([first, second]))?;
+                let slack = DoubleDouble::from(nearest.distance) - margin.into();
+                if best.as_ref().is_none_or(|(least, _)| slack.lt(*least)) {
+                    let between = Between::Robots { robots: [first as u32, second as u32], nearest };
+                    best = Some((slack, Tightest { slack: slack.rounded(), between }));
+                }
+            }
+        }
+        Ok(best.map(|(_, best)| best))
+    }
+
+    /// For each structure, in order, where the robots are closest to it, whether it has a margin or not. `out` is cleared
+    /// first, and stays empty where no robot is given.
+    ///
+    /// # Errors
+    /// As [`clears`](Self::clears).
+    pub fn per_structure(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<StructureProximity>,
+    ) -> Result<(), SceneError> {
+        out.clear();
+        for (number, structure) in self.structures.iter_mut().enumerate() {
+            let mut best: Option<StructureProximity> = None;
+            for (robot, (chain, pose)) in robots.iter().enumerate() {
+                let pose = structure.in_mesh(pose);
+                let bound = best.map_or(Real::INFINITY, |best| best.nearest.distance);
+                let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
+                if let Some(found) = found
+                    && best.is_none_or(|best| found.distance < best.nearest.distance)
+                {
+                    best = Some(StructureProximity {
+                        structure: number as u32,
+                        robot: robot as u32,
+                        nearest: structure.placed(found),
+                        slack: structure.margin.map(|margin| found.distance - margin),
+                    });
+                }
+            }
+            out.extend(best);
+        }
+        Ok(())
+    }
+
+    /// Every contact of every robot with every structure that is at most `reach` away: [`Proximity::within`], structure by
+    /// structure and robot by robot. `out` is cleared first.
+    ///
+    /// # Errors
+    /// As [`clears`](Self::clears), or `reach` is negative or NaN.
+    pub fn contacts(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        reach: Real,
+        out: &mut Vec<SceneContact>,
+    ) -> Result<(), SceneError> {
+        out.clear();
+        for (number, structure) in self.structures.iter_mut().enumerate() {
+            check_not_negative("reach", reach).map_err(|error| of_structure(structure, error))?;
+            for (robot, (chain, pose)) in robots.iter().enumerate() {
+                let pose = structure.in_mesh(pose);
+                if structure.at_least(chain, &pose).map_err(of_robot(robot))? > reach {
+                    continue;
+                }
+                structure
+                    .search
+                    .within(chain, &pose, reach, 0.0, &mut self.contacts)
+                    .map_err(of_robot(robot))?;
+                let (structure_number, robot) = (number as u32, robot as u32);
+                out.extend(self.contacts.drain(..).map(|contact| SceneContact {
+                    structure: structure_number,
+                    robot,
+                    contact: structure.placed_contact(contact),
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Builds all that a later query would build.
+    pub fn prepare(&self) {
+        self.structures.iter().for_each(|structure| structure.search.prepare());
+    }
+
+    fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
+        let structures = self.structures.len();
+        self.structures.get_mut(structure).ok_or(SceneError::NoSuchStructure { structure, structures })
+    }
+
+    fn have(&self, [structure, robot]: [usize; 2], robots: &[(&Chain, Pose)]) -> bool {
+        structure < self.structures.len() && robot < robots.len()
+    }
+
+    fn clears_one(
+        &mut self,
+        structure: usize,
+        robot: usize,
+        robots: &[(&Chain, Pose)],
+    ) -> Result<bool, SceneError> {
+        let structure = &mut self.structures[structure];
+        let Some(margin) = structure.margin else { return Ok(true) };
+        let (chain, pose) = &robots[robot];
+        let pose = structure.in_mesh(pose);
+        if structure.at_least(chain, &pose).map_err(of_robot(robot))? > margin {
+            return Ok(true);
+        }
+        structure.search.clears(chain, &pose, margin).map_err(of_robot(robot))
+    }
+
+    /// Writes to `order` how much room each structure that has a margin leaves each robot at least.
+    fn rank(&self, robots: &[(&Chain, Pose)], order: &mut Vec<(Real, [usize; 2])>) -> Result<(), SceneError> {
+        order.clear();
+        for (number, structure) in self.structures.iter().enumerate() {
+            let Some(margin) = structure.margin else { continue };
+            for (robot, (chain, pose)) in robots.iter().enumerate() {
+                let at_least =
+                    structure.at_least(chain, &structure.in_mesh(pose)).map_err(of_robot(robot))?;
+                order.push(((at_least - margin).next_down(), [number, robot]));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a structure and a robot for the tightest if they are.
+    fn tighter(
+        &mut self,
+        number: usize,
+        robot: usize,
+        robots: &[(&Chain, Pose)],
+        best: &mut Best,
+    ) -> Result<(), SceneError> {
+        let structure = &mut self.structures[number];
+        let Some(margin) = structure.margin else { return Ok(()) };
+        let (chain, pose) = &robots[robot];
+        let pose = structure.in_mesh(pose);
+        // No distance with a slack as small is beyond this, whatever is rounded here.
+        let bound =
+            best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up());
+        let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
+        let Some(found) = found else { return Ok(()) };
+        let slack = DoubleDouble::from(found.distance) - margin.into();
+        let is_tighter = best.as_ref().is_none_or(|(least, best)| {
+            let comes_first = match best.between {
+                Between::Structure(near) => [number, robot] < [near.structure as usize, near.robot as usize],
+                Between::Robots { .. } => true,
+            };
+            slack.lt(*least) || (slack.le(*least) && comes_first)
+        });
+        if is_tighter {
+            let rounded = slack.rounded();
+            let near = StructureProximity {
+                structure: number as u32,
+                robot: robot as u32,
+                nearest: structure.placed(found),
+                slack: Some(rounded),
+            };
+            *best = Some((slack, Tightest { slack: rounded, between: Between::Structure(near) }));
+        }
+        Ok(())
+    }
+}
+
+/// A margin that can be kept, if there is one.
+fn check(margin: Option<Real>) -> Result<(), ProximityError> {
+    margin.map_or(Ok(()), check_margin)
+}
+
+fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
+    SceneError::Structure { name: structure.name.clone(), error }
+}
+
+fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
+    move |error| SceneError::Robot { robot, error }
+}
+
+/// Of an error about two robots, which one it is about.
+fn between(robots: [usize; 2]) -> impl Fn(ProximityError) -> SceneError {
+    move |error| match error {
+        ProximityError::Placement { parameter: "pose_b", .. } => {
+            SceneError::Robot { robot: robots[1], error }
+        }
+        error => SceneError::Robot { robot: robots[0], error },
+    }
+}

@@ -1,0 +1,199 @@
+//! A robot and itself: where its parts come near one another, and that neighbours never do.
+
+use continuum_testing::Random;
+use continuum_testing::narrow_phase::point_modified_cylinder;
+use parry_continuum::distance::{Vec3, segment_segment};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{RobotPair, self_clears, self_minimum};
+use parry_continuum::{Cap, Chain, ModifiedCylinder};
+use std::f64::consts::PI;
+
+/// A robot of one radius along a curve over `[0, 1]`.
+fn along(curve: impl Fn(f64) -> Vector, count: u32, radius: f64) -> Chain {
+    let points: Vec<_> = (0..=count).map(|k| curve(f64::from(k) / f64::from(count))).collect();
+    Chain::from_centreline(&points, &vec![radius; count as usize]).unwrap()
+}
+
+/// Half a turn of a circle in the plane of x and z, from one straight leg to another.
+fn hairpin(radius: f64, leg: f64, thickness: f64) -> Chain {
+    let arc = (0..=40).map(|k| PI * f64::from(k) / 40.0);
+    let points: Vec<_> = std::iter::once(Vector::ZERO)
+        .chain(arc.map(|a| Vector::new(radius * (1.0 - a.cos()), 0.0, leg + radius * a.sin())))
+        .chain([Vector::X * (2.0 * radius)])
+        .collect();
+    Chain::from_centreline(&points, &vec![thickness; points.len() - 1]).unwrap()
+}
+
+#[test]
+fn a_straight_robot_never_meets_itself() {
+    for radii in [[0.5, 0.5, 0.5], [1.5, 1.0, 0.5]] {
+        let points: Vec<_> = (0..4).map(|k| Vector::Z * f64::from(k)).collect();
+        let robot = Chain::from_centreline(&points, &radii).unwrap();
+        assert_eq!(self_minimum(&robot).unwrap(), None);
+        assert!(self_clears(&robot, 1e9).unwrap());
+    }
+    let one = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[3.0]).unwrap();
+    assert_eq!(self_minimum(&one).unwrap(), None);
+}
+
+#[test]
+fn a_hairpin_is_as_wide_as_its_waist() {
+    for (radius, thickness) in [(10.0, 1.5), (2.0, 0.9), (1.0, 0.99)] {
+        let robot = hairpin(radius, 5.0, thickness);
+        let found = self_minimum(&robot).unwrap().unwrap();
+        assert!((found.distance - 2.0 * (radius - thickness)).abs() < 1e-12, "{found:?}");
+        assert!(self_clears(&robot, 2.0 * (radius - thickness) - 1e-9).unwrap());
+        assert!(!self_clears(&robot, 2.0 * (radius - thickness) + 1e-9).unwrap());
+    }
+}
+
+/// An arc of curvature 0.5 and radius 0.9: at a turn of 52 degrees its surfaces are nearer than at the waist of any hairpin.
+#[test]
+fn a_bend_does_not_meet_its_own_neighbourhood() {
+    let arc =
+        |turn: f64| move |s: f64| Vector::new(2.0 * (1.0 - (turn * s).cos()), 0.0, 2.0 * (turn * s).sin());
+    let robot = along(arc(0.48 * PI), 40, 0.9);
+    assert_eq!(self_minimum(&robot).unwrap(), None);
+    // Beyond a quarter of a turn base and tip are faces that something may stand on, but nothing does.
+    for turn in [0.55 * PI, 0.8 * PI, 0.99 * PI] {
+        let robot = along(arc(turn), 60, 0.9);
+        assert_eq!(self_minimum(&robot).unwrap(), None, "{turn}");
+        assert!(self_clears(&robot, 1e9).unwrap());
+    }
+}
+
+/// The distance of neighbouring turns of a helix: at the angle near 2 pi where R^2 sin(phi) + (p / 2 pi)^2 phi = 0.
+#[test]
+fn a_helix_meets_itself_at_one_pitch() {
+    let (radius, thickness) = (3.0, 0.4);
+    for pitch in [0.5, 0.79, 0.81, 2.0] {
+        let rise = pitch / (2.0 * PI);
+        let slope = |phi: f64| radius * radius * phi.sin() + rise * rise * phi;
+        let (mut low, mut high) = (1.5 * PI, 2.5 * PI);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if slope(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let chord = (2.0 * radius * radius * (1.0 - low.cos()) + (rise * low).powi(2)).sqrt();
+        let turn = |s: f64| 6.0 * PI * s;
+        let helix = |s: f64| Vector::new(radius * turn(s).cos(), radius * turn(s).sin(), rise * turn(s));
+        let robot = along(helix, 600, thickness);
+        let found = self_minimum(&robot).unwrap().unwrap();
+        // A chord of 1.8 degrees leaves the circle by 4e-4, on either turn alike but for its tilt.
+        let expected = (chord - 2.0 * thickness).max(0.0);
+        assert!((found.distance - expected).abs() < 1e-3, "{pitch}: {} for {expected}", found.distance);
+        assert_eq!(self_clears(&robot, 0.0).unwrap(), pitch > 0.8);
+    }
+}
+
+/// A thick tube, a thin one out of its face, which bends by `turn` and goes on straight.
+fn bent_back(turn: f64, reach: f64) -> Chain {
+    let arc = (0..=30).map(|k| turn * f64::from(k) / 30.0);
+    let mut points = vec![Vector::Z * -10.0, Vector::ZERO];
+    points.extend(arc.map(|a| Vector::new(1.0 - a.cos(), 0.0, 1.0 + a.sin())));
+    let way = Vector::new(turn.sin(), 0.0, turn.cos());
+    points.push(points[points.len() - 1] + way * reach);
+    let radii: Vec<_> = (0..points.len() - 1).map(|k| if k == 0 { 3.0 } else { 0.2 }).collect();
+    Chain::from_centreline(&points, &radii).unwrap()
+}
+
+#[test]
+fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
+    // All the way round, its tip stands on the face.
+    let robot = bent_back(PI, 0.75);
+    let found = self_minimum(&robot).unwrap().unwrap();
+    assert!((found.distance - 0.25).abs() < 1e-9, "{found:?}");
+    assert_eq!(found.links, [0, robot.links().len() as u32 - 1]);
+
+    // By less than half a turn, its side comes near the rim: beside a face that is sampled densely.
+    for turn in [0.6 * PI, 0.7 * PI, 0.8 * PI] {
+        let robot = bent_back(turn, 2.5);
+        let found = self_minimum(&robot).unwrap().unwrap();
+        let last = robot.links()[robot.links().len() - 1];
+        let mut least = f64::INFINITY;
+        for ring in 0..=300 {
+            for spoke in 0..720 {
+                let (sin, cos) = (PI * f64::from(spoke) / 360.0).sin_cos();
+                let point = Vector::new(cos, sin, 0.0) * (3.0 * f64::from(ring) / 300.0);
+                least = least.min(distance_to(&last, point));
+            }
+        }
+        assert!(
+            found.distance <= least + 1e-12 && least < found.distance + 0.03,
+            "{} {least}",
+            found.distance
+        );
+        assert!(!self_clears(&robot, least).unwrap());
+    }
+}
+
+fn distance_to(link: &ModifiedCylinder, point: Vector) -> f64 {
+    let v = |point: Vector| Vec3::from(point.to_array());
+    let flat = link.caps().map(|cap| cap == Cap::Flat);
+    point_modified_cylinder(v(point), v(link.start()), v(link.end()), link.radius(), flat).distance
+}
+
+#[test]
+fn two_steps_face_one_another() {
+    let points: Vec<_> = [0.0, 3.0, 5.0, 8.0].map(|z| Vector::Z * z).to_vec();
+    let robot = Chain::from_centreline(&points, &[2.0, 0.5, 2.0]).unwrap();
+    assert_eq!(self_minimum(&robot).unwrap().unwrap().distance, 2.0);
+}
+
+/// Two axes that are nearest at places within both are a local minimum, whatever the joints between them.
+#[test]
+fn no_local_minimum_is_left_out() {
+    let mut random = Random::new(1);
+    let (mut pair, mut minima, mut none) = (RobotPair::new(), 0, 0);
+    for _ in 0..2000 {
+        let count = 3 + random.below(10);
+        let (mut at, mut way) = (Vector::ZERO, random.direction());
+        let mut points = vec![at];
+        for _ in 0..count {
+            at += way;
+            points.push(at);
+            let sharp = [0.3, 1.2][random.below(2) as usize];
+            way = (way + random.direction() * sharp).normalize_or(Vector::Z);
+        }
+        let radius = 1e-3;
+        let Ok(robot) = Chain::from_centreline(&points, &vec![radius; count as usize]) else { continue };
+        let Ok(found) = pair.self_minimum(&robot) else { continue };
+        for i in 0..count as usize {
+            for j in i + 2..count as usize {
+                let v = |point: Vector| Vec3::from(point.to_array());
+                let axes =
+                    segment_segment([v(points[i]), v(points[i + 1])], [v(points[j]), v(points[j + 1])]);
+                let inside = |k: usize, point: Vec3<f64>| {
+                    let point = Vector::from(<[f64; 3]>::from(point));
+                    let share = (point - points[k]).dot(points[k + 1] - points[k]);
+                    let whole = (points[k + 1] - points[k]).length_squared();
+                    // Not an end that rounding has moved.
+                    1e-9 * whole < share && share < (1.0 - 1e-9) * whole
+                };
+                if inside(i, axes.point1) && inside(j, axes.point2) {
+                    let expected = (axes.distance - 2.0 * radius).max(0.0);
+                    let least = found.expect("a local minimum").distance;
+                    assert!(least <= expected + 1e-12, "{least} {expected}");
+                    minima += 1;
+                }
+            }
+        }
+        none += usize::from(found.is_none());
+        // What is remembered changes no answer.
+        assert_eq!(self_minimum(&robot).unwrap(), found);
+        if let Some(found) = found {
+            assert!(self_clears(&robot, found.distance.next_down()).unwrap() || found.distance == 0.0);
+            assert!(!self_clears(&robot, found.distance).unwrap());
+        }
+    }
+    assert!(minima > 80 && none > 100, "{minima} {none}");
+}
+
+#[test]
+fn a_joint_that_is_too_sharp_is_named() {
+    let points = [Vector::ZERO, Vector::Z, Vector::new(0.2, 0.0, 0.1)];
+    let robot = Chain::from_centreline(&points, &[0.2, 0.2]).unwrap();
+    let error = self_minimum(&robot).unwrap_err();
+    assert_eq!(error.kind(), "joint_too_sharp");
+    assert!(error.to_string().contains("joint 1"), "{error}");
+}

@@ -1,0 +1,190 @@
+//! A scene of several structures: each asked alone says the same.
+
+use continuum_testing::Random;
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::Ball;
+use parry_continuum::proximity::{Between, BvhSearch, Proximity, Scene, SceneError, Tightest, between};
+
+fn ball(centre: Vector, radius: f64) -> BvhSearch {
+    let (vertices, triangles) = Ball::new(radius).to_trimesh(12, 6);
+    let vertices: Vec<_> = vertices.iter().map(|vertex| *vertex + centre).collect();
+    BvhSearch::from_triangles(&vertices, &triangles).unwrap()
+}
+
+fn robot(random: &mut Random) -> Chain {
+    let mut points = vec![random.point() * 8.0];
+    for _ in 0..8 {
+        points.push(points[points.len() - 1] + random.point());
+    }
+    Chain::from_centreline(&points, &[0.3; 8]).unwrap()
+}
+
+/// The tightest pair, every structure and robot asked in turn.
+fn one_by_one(
+    structures: &mut [(BvhSearch, Option<f64>, Pose)],
+    robots: &[(&Chain, Pose)],
+) -> Option<(f64, [usize; 2])> {
+    let mut best: Option<(f64, [usize; 2])> = None;
+    for (number, (search, margin, pose)) in structures.iter_mut().enumerate() {
+        let Some(margin) = *margin else { continue };
+        for (robot, (chain, at)) in robots.iter().enumerate() {
+            let at = if *pose == Pose::IDENTITY { *at } else { pose.inverse() * *at };
+            let slack = search.minimum(chain, &at).unwrap().distance - margin;
+            if best.is_none_or(|(least, _)| slack < least) {
+                best = Some((slack, [number, robot]));
+            }
+        }
+    }
+    best
+}
+
+#[test]
+fn the_tightest_is_that_of_all_structures_in_turn() {
+    let mut random = Random::new(1);
+    let (mut clear, mut met, mut moved) = (0, 0, 0);
+    for round in 0..40 {
+        let mut structures: Vec<_> = (0..8)
+            .map(|_| {
+                let search = ball(random.point() * 10.0, random.between(0.5, 2.0));
+                let margin = [None, Some(0.0), Some(random.between(0.0, 2.0))][random.below(3) as usize];
+                (search, margin, Pose::IDENTITY)
+            })
+            .collect();
+        let mut scene = Scene::new();
+        for (number, (search, margin, _)) in structures.iter().enumerate() {
+            assert_eq!(scene.add(format!("organ {number}"), search.clone(), *margin), Ok(number));
+        }
+        assert_eq!((scene.len(), scene.name(3), scene.name(8)), (8, Some("organ 3"), None));
+        for step in 0..6 {
+            if step > 2 {
+                let number = random.below(8) as usize;
+                structures[number].2 = random.pose(2.0);
+                scene.set_pose(number, &structures[number].2).unwrap();
+                moved += 1;
+            }
+            let chains = [robot(&mut random), robot(&mut random)];
+            let robots = [(&chains[0], random.pose(0.1)), (&chains[1], Pose::IDENTITY)];
+            let expected = one_by_one(&mut structures, &robots);
+            let found = scene.tightest(&robots).unwrap();
+            match (found, expected) {
+                (Some(Tightest { slack, between: Between::Structure(near), .. }), Some((least, pair))) => {
+                    assert_eq!(slack, least, "round {round}");
+                    assert_eq!([near.structure as usize, near.robot as usize], pair);
+                    assert_eq!(near.slack, Some(slack));
+                    let way = near.nearest.on_robot - near.nearest.on_mesh;
+                    assert!((way.length() - near.nearest.distance).abs() < 1e-12);
+                }
+                (found, expected) => assert_eq!((found.is_none(), expected.is_none()), (true, true)),
+            }
+            let clears = scene.clears(&robots).unwrap();
+            assert_eq!(clears, expected.is_none_or(|(slack, _)| slack > 0.0));
+            if clears {
+                clear += 1
+            } else {
+                met += 1
+            }
+
+            let mut each = Vec::new();
+            scene.per_structure(&robots, &mut each).unwrap();
+            assert_eq!(each.len(), 8);
+            for (number, near) in each.iter().enumerate() {
+                let (search, margin, pose) = &mut structures[number];
+                let least = robots.iter().map(|(chain, at)| {
+                    let at = if *pose == Pose::IDENTITY { *at } else { pose.inverse() * *at };
+                    search.minimum(chain, &at).unwrap().distance
+                });
+                assert_eq!(near.nearest.distance, least.fold(f64::INFINITY, f64::min));
+                assert_eq!(near.slack, margin.map(|margin| near.nearest.distance - margin));
+            }
+
+            let mut contacts = Vec::new();
+            scene.contacts(&robots, 1.0, &mut contacts).unwrap();
+            for (number, near) in each.iter().enumerate() {
+                let of_it = contacts.iter().filter(|found| found.structure as usize == number);
+                let least = of_it.map(|found| found.contact.distance).fold(f64::INFINITY, f64::min);
+                assert_eq!(least <= 1.0, near.nearest.distance <= 1.0);
+                if least <= 1.0 {
+                    assert_eq!(least, near.nearest.distance);
+                }
+            }
+        }
+    }
+    assert!(clear > 30 && met > 15 && moved > 50, "{clear} {met} {moved}");
+}
+
+#[test]
+fn of_equal_slacks_the_lowest_structure_counts() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let at = |x: f64| ball(Vector::X * x, 1.0);
+    let mut scene = Scene::new();
+    for x in [9.0, 4.0, -4.0, 4.0] {
+        scene.add("organ", at(x), Some(1.0)).unwrap();
+    }
+    let structure = |scene: &mut Scene| match scene.tightest(&robots).unwrap().map(|found| found.between) {
+        Some(Between::Structure(near)) => near.structure,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(structure(&mut scene), 1);
+    scene.set_margin(1, None).unwrap();
+    // Structure 2 is the mirror image of 3, and may differ by rounding; the same mesh twice does not.
+    scene.set_margin(2, None).unwrap();
+    assert_eq!(structure(&mut scene), 3);
+    scene.set_margin(1, Some(1.0)).unwrap();
+    // It was 3 that was tightest last, and is asked first.
+    assert_eq!(structure(&mut scene), 1);
+}
+
+#[test]
+fn robots_are_held_against_one_another_where_they_have_a_margin() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY), (&robot, Pose::translation(3.0, 0.0, 0.0))];
+    let mut scene = Scene::new();
+    assert_eq!(scene.tightest(&robots).unwrap(), None);
+    assert!(scene.clears(&robots).unwrap());
+    scene.set_robot_margin(Some(0.5)).unwrap();
+    let tightest = scene.tightest(&robots).unwrap().unwrap();
+    let apart = between(&robot, &robots[0].1, &robot, &robots[1].1).unwrap();
+    assert_eq!(tightest.slack, apart.distance - 0.5);
+    assert_eq!(tightest.between, Between::Robots { robots: [0, 1], nearest: apart });
+    assert!(scene.clears(&robots).unwrap());
+    scene.set_robot_margin(Some(2.0)).unwrap();
+    assert!(!scene.clears(&robots).unwrap());
+    // A structure that is tighter counts before them.
+    scene.add("wall", ball(Vector::X * 5.5, 1.0), Some(3.0)).unwrap();
+    assert!(matches!(scene.tightest(&robots).unwrap().unwrap().between, Between::Structure(_)));
+}
+
+#[test]
+fn a_structure_moves_with_its_vertices() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let mut scene = Scene::new();
+    let organ = scene.add("organ", ball(Vector::X * 50.0, 1.0), Some(1.0)).unwrap();
+    assert!(scene.clears(&robots).unwrap());
+    let near: Vec<_> = ball(Vector::X * 2.0, 1.0).vertices().to_vec();
+    scene.set_vertices(organ, &near).unwrap();
+    assert!(!scene.clears(&robots).unwrap());
+}
+
+#[test]
+fn who_is_at_fault_is_named() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let mut scene = Scene::new();
+    let error = scene.add("liver", ball(Vector::ZERO, 1.0), Some(-1.0)).unwrap_err();
+    assert!(error.to_string().contains("`liver`") && error.to_string().contains("`margin`"), "{error}");
+    assert_eq!(error.kind(), "negative");
+    assert!(scene.is_empty());
+    let liver = scene.add("liver", ball(Vector::ZERO, 1.0), Some(1.0)).unwrap();
+    let error = scene.set_vertices(liver, &[Vector::ZERO]).unwrap_err();
+    assert!(error.to_string().contains("`liver`"), "{error}");
+    let nowhere = Pose::from_translation(Vector::splat(f64::INFINITY));
+    let robots = [(&robot, Pose::IDENTITY), (&robot, nowhere)];
+    for error in [scene.clears(&robots[1..]).unwrap_err(), scene.tightest(&robots).unwrap_err()] {
+        assert!(matches!(error, SceneError::Robot { .. }), "{error}");
+        assert_eq!(error.kind(), "pose_not_finite");
+    }
+    assert_eq!(scene.set_margin(7, None).unwrap_err().kind(), "no_such_structure");
+    assert!(scene.contacts(&robots, -1.0, &mut Vec::new()).is_err());
+}
