@@ -9,13 +9,22 @@ use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
+/// So few numbers are copied sooner than their memory is handed to numpy.
+const FEW: usize = 4096;
+
 /// An array of this shape.
-pub(crate) fn array<'py, T: Element>(
+pub(crate) fn array<'py, T: Element + Copy>(
     py: Python<'py>,
     shape: Vec<usize>,
     numbers: Vec<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    PyArray1::from_vec(py, numbers).reshape(shape)
+    if numbers.len() > FEW || numbers.len() != shape.iter().product() {
+        return PyArray1::from_vec(py, numbers).reshape(shape);
+    }
+    let array = PyArrayDyn::zeros(py, shape, false);
+    // SAFETY: the array is new, so that nobody else has it.
+    unsafe { array.as_slice_mut() }?.copy_from_slice(&numbers);
+    Ok(array)
 }
 
 /// An array of this shape, or the number itself where the shape is that of one.
