@@ -18,7 +18,7 @@ pub(crate) fn array<'py, T: Element + Copy>(
     shape: Vec<usize>,
     numbers: Vec<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    if numbers.len() > FEW || numbers.len() != shape.iter().product() {
+    if numbers.len() > FEW || numbers.len() != shape.iter().product::<usize>() {
         return PyArray1::from_vec(py, numbers).reshape(shape);
     }
     let array = PyArrayDyn::zeros(py, shape, false);

@@ -1,0 +1,147 @@
+"""Writes docs/PYTHON_SPEED.md: this package beside its peers, and beside the Rust library.
+
+    pip install './crates/python[bench]' && python crates/python/bench/peers.py
+
+Peers that are not installed are left out, and the page says so. Times are processor time, of all threads together, so that
+what else the machine does counts little.
+"""
+
+import importlib.metadata
+import importlib.util
+import os
+import platform
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from shapes import RADIUS, cavity, robots
+from ways import WAYS
+
+import parry_continuum
+from parry_continuum import Mesh
+
+CRATE = Path(__file__).parent.parent
+PAGE = CRATE.parent.parent / "docs" / "PYTHON_SPEED.md"
+DISTRIBUTIONS = {"fcl": "python-fcl"}
+
+
+def timed(ask, shapes):
+    """The median processor time of a call in microseconds, and the answers."""
+    ask(shapes[0])
+    times, found = [], []
+    for points in shapes:
+        begin = time.process_time()
+        found.append(ask(points))
+        times.append(time.process_time() - begin)
+    return 1e6 * float(np.median(times)), np.array(found)
+
+
+def number(value):
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 1 else f"{value:.2g}"
+
+
+def peers(mesh, vertices, faces, shapes):
+    """Rows of the table."""
+    rows, missing = [], []
+    own, exact = timed(lambda points: mesh.distance(points, RADIUS), shapes)
+    batch = min(timed(lambda _: mesh.distance(shapes, RADIUS), [None] * 5)[0] for _ in range(3)) / len(shapes)
+    touches = f"{np.mean(exact == 0):.0%} of the shapes touch"
+    rows.append(("**`distance`**, one robot", own, "0", "0", "0 %"))
+    rows.append(("**`distance`**, a batch", batch, "0", "0", "0 %"))
+    for name, package, make, caps, count in WAYS:
+        if importlib.util.find_spec(package) is None:
+            missing.append(package)
+            continue
+        taken, found = timed(make(vertices, faces), shapes[:count])
+        true = mesh.distance(shapes[:count], RADIUS, caps=caps)
+        error, is_free = found - true, true > 0
+        over, under = error[is_free].max(initial=0), -error[is_free].min(initial=0)
+        called_free = np.mean(found[~is_free] > 0) if (~is_free).any() else 0
+        rows.append((name, taken, f"{over:.1e}", f"{under:.1e}", f"{called_free:.0%}"))
+        print(rows[-1], flush=True)
+    return rows, sorted(set(missing)), touches
+
+
+def overhead(mesh, vertices, faces, shapes):
+    """Of each question what a robot takes in Rust and in Python, microseconds of one thread's processor time."""
+    given = [[len(vertices), len(faces), *shapes.shape[:2]], vertices, faces, shapes, [RADIUS]]
+    data = np.concatenate([np.ravel(np.asarray(numbers, float)) for numbers in given]).tobytes()
+    command = ["cargo", "run", "--quiet", "--release", "--example", "rust"]
+    environment = {"CARGO_TARGET_DIR": str(CRATE / "target"), **os.environ, "RAYON_NUM_THREADS": "1"}
+    radii = np.full(shapes.shape[1] - 1, RADIUS)
+    asks = {
+        "distance": lambda points: mesh.distance(points, radii),
+        "clears": lambda points: mesh.clears(points, radii, 1.0),
+        "per_link": lambda points: mesh.per_link(points, radii),
+        "within": lambda points: mesh.within(points, radii, 1.0),
+    }
+    rust, python = {}, {}
+    one_by_one = list(shapes)
+
+    def least(table, name, value):
+        table[name] = min(table.get(name, np.inf), value)
+
+    for _ in range(3):
+        lines = subprocess.run(command, cwd=CRATE, env=environment, input=data, capture_output=True, check=True).stdout
+        for line in lines.decode().splitlines():
+            name, one, *many = line.split()
+            least(rust, name, float(one) / 1e3)
+            if many:
+                least(rust, f"{name} of a batch", float(many[0]) / 1e3)
+        for name, ask in asks.items():
+            for _ in range(5):
+                begin = time.thread_time()
+                for points in one_by_one:
+                    ask(points)
+                least(python, name, 1e6 * (time.thread_time() - begin) / len(shapes))
+        for _ in range(5):
+            begin = time.process_time()
+            mesh.distance(shapes, radii)
+            least(python, "distance of a batch", 1e6 * (time.process_time() - begin) / len(shapes))
+    return [(name, rust[name], python[name]) for name in rust]
+
+
+def main(count=500):
+    vertices, faces = cavity()
+    shapes = robots(count)
+    mesh = Mesh(vertices, faces)
+    mesh.prepare()
+    rows, missing, touches = peers(mesh, vertices, faces, shapes)
+    versions = [DISTRIBUTIONS.get(package, package) for package in sorted({way[1] for way in WAYS} - set(missing))]
+    versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in versions)
+    lines = [
+        "# Python beside its peers",
+        "",
+        "Written by `python crates/python/bench/peers.py` (`pip install './crates/python[bench]'` has what it needs), on a machine",
+        f"with {os.cpu_count()} cores ({platform.machine()}, Python {platform.python_version()}), with parry-continuum "
+        f"{parry_continuum.__version__} and {versions}." + (f" Not installed: {', '.join(missing)}." if missing else ""),
+        "",
+        f"A cavity of {len(faces):,} triangles, about 50 mm wide on each side, and robots of {shapes.shape[1] - 1} links, 75 mm "
+        f"long, with the radius {RADIUS} mm; {touches}. Each library is asked as its users ask it. The error is that of",
+        "the distance in mm, of free shapes, beside the exact distance of the shape that the library was given: cylinders,",
+        "capsules, or, where only points are asked about, the robot itself. What reports more room than there is, is in the",
+        "first of the columns of errors; the last is the share of touching shapes that are called free. Times are processor time,",
+        "of all threads together, the median of calls.",
+        "",
+        "| way | a robot, us | too far by, mm | too near by, mm | touching, called free |",
+        "|---|---|---|---|---|",
+        *(f"| {name} | {number(taken)} | {over} | {under} | {called_free} |" for name, taken, over, under, called_free in rows),
+        "",
+        "## What Python adds",
+        "",
+        "Microseconds of one thread's time for a robot, the least of several rounds in turns: arrays in, a chain made of them,",
+        "the answer, arrays out.",
+        "",
+        "| question | Rust | Python | more |",
+        "|---|---|---|---|",
+        *(f"| `{name}` | {rust:.2f} | {python:.2f} | {python - rust:+.2f} |"
+          for name, rust, python in overhead(mesh, vertices, faces, shapes)),
+    ]
+    PAGE.write_text("\n".join(lines) + "\n")
+    print(PAGE.read_text())
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
