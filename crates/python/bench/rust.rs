@@ -33,11 +33,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [vertices, triangles, robots, points]: [usize; 4] = std::array::from_fn(|k| counts[k] as usize);
     let (coordinates, rest) = rest.split_at_checked(3 * vertices).ok_or("there are too few vertices")?;
     let (corners, rest) = rest.split_at_checked(3 * triangles).ok_or("there are too few triangles")?;
-    let (centrelines, radius) = rest.split_at_checked(3 * robots * points).ok_or("there are too few points")?;
+    let (centrelines, radius) =
+        rest.split_at_checked(3 * robots * points).ok_or("there are too few points")?;
     let to_vectors = |numbers: &[f64]| -> Vec<_> {
         numbers.as_chunks::<3>().0.iter().map(|&point| Vector::from_array(point)).collect()
     };
-    let faces: Vec<_> = corners.as_chunks::<3>().0.iter().map(|face| face.map(|corner| corner as u32)).collect();
+    let faces: Vec<_> =
+        corners.as_chunks::<3>().0.iter().map(|face| face.map(|corner| corner as u32)).collect();
     let mut search = BvhSearch::from_triangles(&to_vectors(coordinates), &faces)?;
     search.prepare();
     let centrelines: Vec<_> = centrelines.chunks(3 * points).map(to_vectors).collect();

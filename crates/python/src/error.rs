@@ -1,6 +1,6 @@
 //! What Python raises: one exception for all that can be wrong with what was handed over.
 
-use parry_continuum::proximity::{MeshError, ProximityError};
+use parry_continuum::proximity::{MeshError, ProximityError, SceneError};
 use parry_continuum::{MatrixError, RobotError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -53,6 +53,7 @@ impl Refused {
             Self::Mesh(error) | Self::Query(ProximityError::Mesh(error)) => index_in_mesh(error),
             Self::Query(ProximityError::OutOfRange { link, .. }) => Some(*link),
             Self::Query(ProximityError::TooFast { section, .. }) => Some(*section),
+            Self::Query(ProximityError::JointTooSharp { joint, .. }) => Some(*joint),
             Self::Query(_) | Self::Matrix(_) => None,
             Self::Other { index, .. } => *index,
         }
@@ -157,5 +158,12 @@ impl From<MeshError> for Refused {
 impl From<MatrixError> for Refused {
     fn from(error: MatrixError) -> Self {
         Self::Matrix(error)
+    }
+}
+
+/// Its text names the structure or the robot.
+impl From<SceneError> for Refused {
+    fn from(error: SceneError) -> Self {
+        Self::other(error.kind(), error.to_string())
     }
 }

@@ -9,6 +9,7 @@ mod mesh;
 mod output;
 mod queries;
 mod robots;
+mod scene;
 mod threads;
 
 use pyo3::prelude::*;
@@ -19,7 +20,11 @@ mod _native {
     #[pymodule_export]
     use super::mesh::{Mesh, load};
     #[pymodule_export]
+    use super::queries::two_robots::{between, clears_between, self_clears, self_minimum};
+    #[pymodule_export]
     use super::robots::{simplify, stations};
+    #[pymodule_export]
+    use super::scene::Scene;
     use super::*;
 
     #[pymodule_init]

@@ -28,10 +28,23 @@ from ._answers import (
     Minimum,
     MotionAnswer,
     PerLink,
+    RobotProximity,
     Side,
+    Tightest,
 )
 from ._errors import ContinuumError
-from ._native import Mesh, __version__, load, simplify, stations
+from ._native import (
+    Mesh,
+    Scene,
+    __version__,
+    between,
+    clears_between,
+    load,
+    self_clears,
+    self_minimum,
+    simplify,
+    stations,
+)
 
 __all__ = [
     "Certificate",
@@ -45,9 +58,16 @@ __all__ = [
     "Minimum",
     "MotionAnswer",
     "PerLink",
+    "RobotProximity",
+    "Scene",
     "Side",
+    "Tightest",
     "__version__",
+    "between",
+    "clears_between",
     "load",
+    "self_clears",
+    "self_minimum",
     "simplify",
     "stations",
 ]

@@ -181,3 +181,39 @@ class Gradient(NamedTuple):
     """(4, 4): the derivative with respect to the entries of the pose."""
     kink: BoolOrBools
     """Whether other points are as close, for which the derivative is another."""
+
+
+class RobotProximity(NamedTuple):
+    """Where two robots, or two parts of one, are closest to each other."""
+
+    distance: FloatOrFloats
+    """The distance, 0 where they touch or overlap, and infinite where no parts of one robot could meet."""
+    on_first: Floats
+    """(3,): the closest point of the first."""
+    on_second: Floats
+    """(3,): the closest point of the second."""
+    segments: Ints
+    """(2,): the segment of the input of either."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either from its base."""
+
+
+class Tightest(NamedTuple):
+    """Where the room in a scene is least."""
+
+    slack: FloatOrFloats
+    """The distance less the margin; negative where a margin is not kept, and infinite where nothing has a margin."""
+    distance: FloatOrFloats
+    """The distance there, 0 where they touch or overlap."""
+    structure: IntOrInts
+    """The structure, or -1 where it is between two robots."""
+    robots: Ints
+    """(2,): the robot and -1, or the two robots."""
+    segments: Ints
+    """(2,): the segments of those robots."""
+    triangle: IntOrInts
+    """The triangle of the structure, or -1."""
+    on_first: Floats
+    """(3,): the closest point of the first robot."""
+    on_second: Floats
+    """(3,): the closest point of the structure or the second robot."""

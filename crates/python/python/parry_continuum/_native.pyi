@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Literal, final
 
@@ -17,10 +18,23 @@ from ._answers import (
     Minimum,
     MotionAnswer,
     PerLink,
+    RobotProximity,
     SideOrSides,
+    Tightest,
 )
 
-__all__ = ["Mesh", "__version__", "load", "simplify", "stations"]
+__all__ = [
+    "Mesh",
+    "Scene",
+    "__version__",
+    "between",
+    "clears_between",
+    "load",
+    "self_clears",
+    "self_minimum",
+    "simplify",
+    "stations",
+]
 
 __version__: str
 
@@ -81,6 +95,7 @@ class Mesh:
         tolerance: float,
         *,
         tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
         pose: ArrayLike | None = None,
     ) -> Clearance: ...
     def tube_clears(
@@ -91,6 +106,7 @@ class Mesh:
         resolution: float,
         *,
         tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
         pose: ArrayLike | None = None,
     ) -> DecisionOrDecisions: ...
     def clears_motion(
@@ -129,6 +145,40 @@ class Mesh:
     def __deepcopy__(self, _memo: Any, /) -> Mesh: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
+# (points, radii) or (points, radii, pose)
+_Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, ArrayLike | None]
+
+@final
+class Scene:
+    def __new__(cls, *, robot_margin: float | None = None) -> Scene: ...
+    def add(self, name: str, mesh: Mesh, margin: float | None = None, pose: ArrayLike | None = None) -> int: ...
+    def __len__(self) -> int: ...
+    def clears(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> BoolOrBools: ...
+    def tightest(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> Tightest: ...
+
 def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
+def between(
+    points_a: ArrayLike,
+    radii_a: ArrayLike,
+    points_b: ArrayLike,
+    radii_b: ArrayLike,
+    *,
+    pose_a: ArrayLike | None = None,
+    pose_b: ArrayLike | None = None,
+    caps: _Caps = "fitted",
+) -> RobotProximity: ...
+def clears_between(
+    points_a: ArrayLike,
+    radii_a: ArrayLike,
+    points_b: ArrayLike,
+    radii_b: ArrayLike,
+    margin: float,
+    *,
+    pose_a: ArrayLike | None = None,
+    pose_b: ArrayLike | None = None,
+    caps: _Caps = "fitted",
+) -> BoolOrBools: ...
+def self_minimum(points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
+def self_clears(points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted") -> BoolOrBools: ...

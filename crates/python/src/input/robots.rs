@@ -18,6 +18,10 @@ pub(crate) struct Robots<'py> {
     more: Option<Numbers<'py>>,
     radii: Radii<'py>,
     poses: Poses<'py>,
+    /// Whether one robot stands for all of a batch.
+    is_one: bool,
+    /// The other robots, of questions about several.
+    others: Option<Box<Robots<'py>>>,
 }
 
 enum Radii<'py> {
@@ -35,6 +39,7 @@ enum Poses<'py> {
 /// Which robots of a batch share what.
 #[derive(Clone, Copy, Default)]
 struct Shared {
+    points: bool,
     radii: bool,
     pose: bool,
 }
@@ -51,6 +56,7 @@ pub(crate) struct Block {
     radii: Vec<f64>,
     matrices: Vec<[f64; 16]>,
     shared: Shared,
+    others: Option<Box<Block>>,
 }
 
 /// One robot of a block.
@@ -61,6 +67,7 @@ pub(crate) struct Given<'a> {
     pub more: &'a [Vector],
     pub radii: &'a [f64],
     matrix: Option<&'a [f64; 16]>,
+    others: Option<(&'a Block, usize)>,
 }
 
 fn refuse(py: Python<'_>, text: String) -> PyErr {
@@ -97,7 +104,7 @@ impl<'py> Robots<'py> {
         let (points, count, points_each) = points(given, name)?;
         let radii = Radii::new(radii, count, points_each)?;
         let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
-        Ok(Self { count, points_each, points, more: None, radii, poses })
+        Ok(Self { count, points_each, points, more: None, radii, poses, is_one: false, others: None })
     }
 
     /// The same with as many points more, such as those at which a motion ends.
@@ -137,6 +144,31 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
+    /// These robots, each beside one of the others. Where there is one of either, it stands for as many as there are of the
+    /// others.
+    pub(crate) fn with_others(mut self, py: Python<'_>, mut others: Self) -> PyResult<Self> {
+        match (self.count, others.count) {
+            (None, Some(count)) => self.stand_for(count),
+            (Some(count), None) => others.stand_for(count),
+            (one, other) if one == other => {}
+            (one, other) => {
+                let [one, other] = [one, other].map(Option::unwrap_or_default);
+                let text =
+                    format!("there are {one} robots beside {other}; give as many of both, or one of either");
+                return Err(refuse(py, text));
+            }
+        }
+        self.others = Some(Box::new(others));
+        Ok(self)
+    }
+
+    fn stand_for(&mut self, count: usize) {
+        (self.count, self.is_one) = (Some(count), true);
+        if let Some(others) = &mut self.others {
+            others.stand_for(count);
+        }
+    }
+
     /// How many robots there are.
     pub(crate) fn len(&self) -> usize {
         self.count.unwrap_or(1)
@@ -156,9 +188,9 @@ impl<'py> Robots<'py> {
     pub(crate) fn copy(&self, robots: Range<usize>, block: &mut Block) {
         block.first = robots.start;
         let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
-            let each = from.points().len() / self.len().max(1);
+            let each = from.points().len() / if self.is_one { 1 } else { self.len().max(1) };
             to.clear();
-            let range = each * robots.start..each * robots.end;
+            let range = if self.is_one { 0..each } else { each * robots.start..each * robots.end };
             to.extend(from.points()[range].iter().map(|&point| Vector::from_array(point)));
             each
         };
@@ -181,9 +213,13 @@ impl<'py> Robots<'py> {
         match &self.poses {
             Poses::Identity => {}
             Poses::Shared(pose) => block.matrices.extend(pose.values().as_chunks::<16>().0),
-            Poses::Each(poses) => block.matrices.extend(&poses.values().as_chunks::<16>().0[robots]),
+            Poses::Each(poses) => block.matrices.extend(&poses.values().as_chunks::<16>().0[robots.clone()]),
+        }
+        if let Some(others) = &self.others {
+            others.copy(robots, block.others.get_or_insert_default());
         }
         block.shared = Shared {
+            points: self.is_one,
             radii: !matches!(self.radii, Radii::Each(_)),
             pose: matches!(self.poses, Poses::Shared(_)),
         };
@@ -245,17 +281,24 @@ impl Block {
     pub(crate) fn robot(&self, place: usize) -> Given<'_> {
         let of = |each: usize| each * place..each * (place + 1);
         let segments = of(self.points_each.saturating_sub(1));
+        let of = |each: usize| if self.shared.points { 0..each } else { of(each) };
         Given {
             number: self.first + place,
             points: &self.points[of(self.points_each)],
             more: &self.more[of(self.more_each)],
             radii: if self.shared.radii { &self.radii } else { &self.radii[segments] },
             matrix: self.matrices.get(if self.shared.pose { 0 } else { place }),
+            others: self.others.as_deref().map(|block| (block, place)),
         }
     }
 }
 
-impl Given<'_> {
+impl<'a> Given<'a> {
+    /// The other robot, of a question about several.
+    pub(crate) fn other(&self) -> Option<Given<'a>> {
+        self.others.map(|(block, place)| block.robot(place))
+    }
+
     /// The robot's pose in the mesh's frame.
     pub(crate) fn pose(&self) -> Result<Pose, Refused> {
         let Some(matrix) = self.matrix else { return Ok(Pose::IDENTITY) };

@@ -11,17 +11,43 @@ use parry_continuum::proximity::Clearance;
 use pyo3::prelude::*;
 
 impl Session {
-    /// Makes the session's tube that of a robot, in the memory that it has.
-    fn set_tube(&mut self, robot: &Given<'_>) -> Result<Pose, Refused> {
-        let ends = match robot.more {
+    /// Makes the session's tube that of a robot, in the memory that it has where the robot is given by samples alone.
+    fn set_tube(&mut self, robot: &Given<'_>, deviation: f64) -> Result<Pose, Refused> {
+        let (points, tangents, radii) = (robot.points, robot.more, robot.radii);
+        let ends = match tangents {
             [first, .., last] => Some([*first, *last]),
             _ => None,
         };
+        let has_frames = tangents.len() == points.len() && points.len() > 2;
+        let has_samples = deviation == 0.0 && !has_frames;
         match &mut self.tube {
-            Some(tube) => tube.set_samples(robot.points, robot.radii, ends)?,
-            tube => *tube = Some(Tube::from_samples(robot.points, robot.radii, ends)?),
+            Some(tube) if has_samples && self.has_samples => tube.set_samples(points, radii, ends)?,
+            tube => {
+                *tube = None;
+                *tube = Some(match deviation {
+                    0.0 if has_frames => Tube::from_frames(points, tangents, radii)?,
+                    0.0 => Tube::from_samples(points, radii, ends)?,
+                    _ => Tube::fit(points, radii, deviation)?,
+                });
+            }
         }
+        self.has_samples = has_samples;
         robot.pose()
+    }
+}
+
+/// Points that are off need no directions.
+fn tubes<'py>(
+    robots: Robots<'py>,
+    tangents: Option<&Bound<'py, PyAny>>,
+    deviation: f64,
+) -> PyResult<Robots<'py>> {
+    match tangents {
+        Some(tangents) if deviation != 0.0 => {
+            let text = "`tangents` and `deviation` are given; points that may be off are fitted without directions, so give one";
+            Err(Refused::other("bad_type", text).raise(tangents.py(), None))
+        }
+        _ => robots.with_tangents(tangents),
     }
 }
 
@@ -46,9 +72,13 @@ impl Mesh {
     ///     As for `distance`.
     /// tolerance : float
     ///     How far apart the bounds may be, at least 0.
-    /// tangents : (2, 3) or (B, 2, 3) array, optional
-    ///     The directions of the curve at its two ends, towards the tip, of any length. Without them the points alone tell how a
-    ///     flat end is turned, which widens the bounds near it.
+    /// tangents : (2, 3), (N, 3), (B, 2, 3) or (B, N, 3) array, optional
+    ///     The directions of the curve at its two ends or at all points, towards the tip, of any length. Those of the ends tell
+    ///     how the flat ends are turned, and those of all points how the curve bends between them: without them the bounds are
+    ///     as wide as the points leave that open.
+    /// deviation : float
+    ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
+    ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.
     ///
     /// Returns
     /// -------
@@ -71,7 +101,8 @@ impl Mesh {
     /// >>> found = floor.clearance(arc, 0.5, tolerance=0.01)
     /// >>> bool(found.resolved), bool(found.lower <= found.upper <= found.lower + 0.01)
     /// (True, True)
-    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, pose = None))]
+    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, deviation = 0.0, pose = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clearance<'py>(
         &self,
         py: Python<'py>,
@@ -79,9 +110,10 @@ impl Mesh {
         radii: &Bound<'py, PyAny>,
         tolerance: f64,
         tangents: Option<&Bound<'py, PyAny>>,
+        deviation: f64,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?.with_tangents(tangents)?;
+        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, deviation)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -94,7 +126,7 @@ impl Mesh {
         let mut status = Vec::with_capacity(robots.len());
         let ask =
             |session: &mut Session, robot: &Given<'_>, row: &mut [(Option<Clearance>, &'static str)]| {
-                let pose = session.set_tube(robot);
+                let pose = session.set_tube(robot, deviation);
                 let found = pose.and_then(|pose| {
                     let tube = session.tube.as_ref().ok_or_else(no_tube)?;
                     Ok(session.search.clearance(tube, &pose, tolerance)?)
@@ -145,7 +177,7 @@ impl Mesh {
     ///
     /// Parameters
     /// ----------
-    /// points, radii, tangents, pose
+    /// points, radii, tangents, deviation, pose
     ///     As for `clearance`.
     /// margin : float
     ///     A length, at least 0.
@@ -162,7 +194,7 @@ impl Mesh {
     /// ContinuumError
     ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
     ///     what can be had. Of a batch, ``robot`` is the first that is refused.
-    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, pose = None))]
+    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn tube_clears<'py>(
         &self,
@@ -172,12 +204,13 @@ impl Mesh {
         margin: f64,
         resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
+        deviation: f64,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?.with_tangents(tangents)?;
+        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, deviation)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            let pose = session.set_tube(robot)?;
+            let pose = session.set_tube(robot, deviation)?;
             let tube = session.tube.as_ref().ok_or_else(no_tube)?;
             row[0] = decision_value(session.search.tube_clears(tube, &pose, margin, resolution)?);
             Ok(())

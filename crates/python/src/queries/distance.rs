@@ -11,15 +11,9 @@ use parry_continuum::proximity::{LinkProximity, Proximity};
 use pyo3::prelude::*;
 
 impl Session {
-    /// Makes the session's chain that of a robot, in the memory that it has.
+    /// Makes the session's chain that of a robot.
     pub(crate) fn set_chain(&mut self, robot: &Given<'_>, caps: Caps) -> Result<(), Refused> {
-        match (&mut self.chain, caps) {
-            (Some(chain), Caps::Fitted) => chain.set_centreline(robot.points, robot.radii)?,
-            (chain, Caps::Fitted) => *chain = Some(Chain::from_centreline(robot.points, robot.radii)?),
-            (chain, Caps::Capsules) => *chain = Some(Chain::capsules(robot.points, robot.radii)?),
-            (chain, Caps::Cylinders) => *chain = Some(Chain::cylinders(robot.points, robot.radii)?),
-        }
-        Ok(())
+        set_chain(&mut self.chain, robot, caps)
     }
 
     /// The closest link and triangle of a robot.
@@ -33,6 +27,17 @@ impl Session {
         let chain = self.chain.as_ref().ok_or_else(no_chain)?;
         Ok((self.search.minimum(chain, &pose)?, pose))
     }
+}
+
+/// Makes a chain that of a robot, in the memory that it has.
+pub(crate) fn set_chain(chain: &mut Option<Chain>, robot: &Given<'_>, caps: Caps) -> Result<(), Refused> {
+    match (chain, caps) {
+        (Some(chain), Caps::Fitted) => chain.set_centreline(robot.points, robot.radii)?,
+        (chain, Caps::Fitted) => *chain = Some(Chain::from_centreline(robot.points, robot.radii)?),
+        (chain, Caps::Capsules) => *chain = Some(Chain::capsules(robot.points, robot.radii)?),
+        (chain, Caps::Cylinders) => *chain = Some(Chain::cylinders(robot.points, robot.radii)?),
+    }
+    Ok(())
 }
 
 /// `set_chain` leaves one.

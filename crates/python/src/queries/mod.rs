@@ -3,9 +3,10 @@
 mod certify;
 mod clearance;
 mod clears;
-mod distance;
+pub(crate) mod distance;
 mod gradient;
 mod motion;
 mod per_link;
 mod side;
+pub(crate) mod two_robots;
 mod within;

@@ -1,12 +1,11 @@
 //! Asks about each robot: one on this thread, a batch in chunks on all cores.
 
 use super::compute::compute;
-use super::engine::{Engine, Session};
 use super::pool::pool;
 use crate::error::Refused;
 use crate::input::{Block, Given, Robots};
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Fewer robots are answered on the thread that asks: to wake others would take longer.
@@ -21,16 +20,39 @@ const CHUNK: Duration = Duration::from_millis(50);
 /// The robots of a chunk are copied, so that there are no more of them than this.
 const LARGEST_CHUNK: usize = 1 << 16;
 
+/// Who lends what one thread needs to ask.
+pub(crate) trait Lender {
+    type Session: Send;
+
+    /// A session, to be given back.
+    fn lend(&self, py: Python<'_>) -> PyResult<Self::Session>;
+
+    /// Takes sessions back: as many as were lent, or fewer where a defect cost some of them.
+    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Self::Session>);
+}
+
+impl<L: Lender> Lender for Arc<L> {
+    type Session = L::Session;
+
+    fn lend(&self, py: Python<'_>) -> PyResult<Self::Session> {
+        (**self).lend(py)
+    }
+
+    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Self::Session>) {
+        (**self).take_back(py, lent, sessions);
+    }
+}
+
 /// Answers about each robot, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with the place
 /// of the first of them.
 ///
 /// The first robot that is refused ends it. All robots are asked about the same mesh, whatever moves meanwhile.
-pub(crate) fn ask_each<T: Clone + Send>(
+pub(crate) fn ask_each<T: Clone + Send, L: Lender>(
     py: Python<'_>,
-    engine: &Engine,
+    lender: &L,
     robots: &Robots<'_>,
     (empty, width): (T, usize),
-    answer: impl Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    answer: impl Fn(&mut L::Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     mut take: impl FnMut(usize, &[T]),
 ) -> PyResult<()> {
     let of_batch = |robot: usize| robots.count.map(|_| robot);
@@ -44,9 +66,9 @@ pub(crate) fn ask_each<T: Clone + Send>(
         robots.copy(start..end, &mut block);
         let rows = Rows { block: &block, width, answer: &answer };
         let refused = if count < FEW {
-            alone(py, engine, |session| rows.ask(session, 0, &mut answers))?
+            alone(py, lender, |session| rows.ask(session, 0, &mut answers))?
         } else {
-            rows.ask_on_all_cores(py, engine, &mut answers)?
+            rows.ask_on_all_cores(py, lender, &mut answers)?
         };
         if let Some((place, refused)) = refused {
             return Err(refused.raise(py, of_batch(start + place)));
@@ -63,15 +85,15 @@ pub(crate) fn ask_each<T: Clone + Send>(
 }
 
 /// A session for one question, without the GIL.
-pub(crate) fn alone<T: Send>(
+pub(crate) fn alone<T: Send, L: Lender>(
     py: Python<'_>,
-    engine: &Engine,
-    ask: impl FnOnce(&mut Session) -> T + Send,
+    lender: &L,
+    ask: impl FnOnce(&mut L::Session) -> T + Send,
 ) -> PyResult<T> {
-    let mut session = engine.lend(py)?;
+    let mut session = lender.lend(py)?;
     let answer = compute(py, || ask(&mut session));
     // What a defect leaves is not used again.
-    engine.take_back(py, 1, answer.is_ok().then_some(session));
+    lender.take_back(py, 1, answer.is_ok().then_some(session));
     answer
 }
 
@@ -84,9 +106,9 @@ struct Rows<'a, A> {
 
 impl<A> Rows<'_, A> {
     /// Asks about the robots from the place `first` on, one for each row of answers. Returns the first that is refused.
-    fn ask<T>(&self, session: &mut Session, first: usize, answers: &mut [T]) -> Option<(usize, Refused)>
+    fn ask<S, T>(&self, session: &mut S, first: usize, answers: &mut [T]) -> Option<(usize, Refused)>
     where
-        A: Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused>,
+        A: Fn(&mut S, &Given<'_>, &mut [T]) -> Result<(), Refused>,
     {
         answers.chunks_mut(self.width).zip(first..).find_map(|(row, place)| {
             (self.answer)(session, &self.block.robot(place), row).err().map(|refused| (place, refused))
@@ -94,25 +116,25 @@ impl<A> Rows<'_, A> {
     }
 
     /// The same for all robots of the block, by a session on each core.
-    fn ask_on_all_cores<T: Send>(
+    fn ask_on_all_cores<T: Send, L: Lender>(
         &self,
         py: Python<'_>,
-        engine: &Engine,
+        lender: &L,
         answers: &mut [T],
     ) -> PyResult<Option<(usize, Refused)>>
     where
-        A: Fn(&mut Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+        A: Fn(&mut L::Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     {
         let pool = pool(py)?;
         let (threads, count) = (pool.current_num_threads(), answers.len() / self.width);
         // A few for each thread, because robots differ in the time they take.
         let share = (count / (4 * threads)).clamp(1, SHARE);
         let workers = threads.min(count.div_ceil(share));
-        let mut sessions = (0..workers).map(|_| engine.lend(py)).collect::<PyResult<Vec<_>>>()?;
+        let mut sessions = (0..workers).map(|_| lender.lend(py)).collect::<PyResult<Vec<_>>>()?;
         let refused = Mutex::new(None::<(usize, Refused)>);
         let shares = Mutex::new(answers.chunks_mut(share * self.width).enumerate());
         // Its locks are this call's own, so a fork leaves them to nobody.
-        let work = |session: &mut Session| {
+        let work = |session: &mut L::Session| {
             loop {
                 let next = shares.lock().unwrap_or_else(PoisonError::into_inner).next();
                 let Some((number, answers)) = next else { return };
@@ -132,7 +154,7 @@ impl<A> Rows<'_, A> {
                 sessions.iter_mut().for_each(|session| scope.spawn(move |_| work(session)));
             });
         });
-        engine.take_back(py, workers, done.is_ok().then_some(sessions).into_iter().flatten());
+        lender.take_back(py, workers, done.is_ok().then_some(sessions).into_iter().flatten());
         done?;
         Ok(refused.into_inner().unwrap_or_else(PoisonError::into_inner))
     }

@@ -1,6 +1,7 @@
 //! A mesh's engine, and the clones of it that questions are asked of.
 
 use super::compute::compute;
+use super::each::Lender;
 use super::fork::forks;
 use super::held::Held;
 use super::pool::pool;
@@ -15,14 +16,23 @@ use pyo3::prelude::*;
 pub(crate) struct Session {
     pub search: BvhSearch,
     pub chain: Option<Chain>,
+    /// The tube of the last question, and whether it was made of samples alone.
     pub tube: Option<Tube>,
+    pub has_samples: bool,
     pub links: Vec<LinkProximity>,
     pub contacts: Vec<Contact>,
 }
 
 impl Session {
     fn new(search: &BvhSearch) -> Self {
-        Self { search: search.clone(), chain: None, tube: None, links: Vec::new(), contacts: Vec::new() }
+        Self {
+            search: search.clone(),
+            chain: None,
+            tube: None,
+            has_samples: false,
+            links: Vec::new(),
+            contacts: Vec::new(),
+        }
     }
 }
 
@@ -67,23 +77,6 @@ impl Engine {
         Ok(Self::of(search))
     }
 
-    /// A session, to be given back.
-    pub(crate) fn lend(&self, py: Python<'_>) -> PyResult<Session> {
-        self.notice_fork(py)?;
-        Ok(self.0.with(py, |state| {
-            state.lent += 1;
-            state.free.pop().unwrap_or_else(|| Session::new(&state.base))
-        }))
-    }
-
-    /// Takes sessions back: as many as were lent, or fewer where a defect cost some of them.
-    pub(crate) fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Session>) {
-        self.0.with(py, |state| {
-            state.lent = state.lent.saturating_sub(lent);
-            state.free.extend(sessions);
-        });
-    }
-
     /// In a child: where another thread of the parent was asking at the fork, it may have been building what the library
     /// builds at a first question, behind a lock that nobody opens here. The vertices and triangles are whole, so the engine
     /// is built of them again. Where nobody was asking, the parent's is as good as ever.
@@ -105,5 +98,24 @@ impl Engine {
             state.free.clear();
         });
         Ok(())
+    }
+}
+
+impl Lender for Engine {
+    type Session = Session;
+
+    fn lend(&self, py: Python<'_>) -> PyResult<Session> {
+        self.notice_fork(py)?;
+        Ok(self.0.with(py, |state| {
+            state.lent += 1;
+            state.free.pop().unwrap_or_else(|| Session::new(&state.base))
+        }))
+    }
+
+    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Session>) {
+        self.0.with(py, |state| {
+            state.lent = state.lent.saturating_sub(lent);
+            state.free.extend(sessions);
+        });
     }
 }

@@ -1,7 +1,7 @@
 //! Asks about points, on all cores where they are many.
 
 use super::compute::compute;
-use super::each::alone;
+use super::each::{Lender, alone};
 use super::engine::Engine;
 use super::pool::pool;
 use parry_continuum::parry::math::Vector;

@@ -1,0 +1,106 @@
+"""Scenes beside the answers about each mesh and each pair of robots."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from parry_continuum import ContinuumError, Mesh, Scene, between
+from shapes import poses, robots, sphere
+
+RANDOM = np.random.default_rng(61)
+WALL = Mesh(*sphere(12.0))
+VESSEL = Mesh(*sphere(1.0))
+AWAY = poses(RANDOM, 1)[0]
+AWAY[:3, 3] = [2, 1, -3]
+A, B = robots(RANDOM, 60), robots(RANDOM, 60)
+POSES = poses(RANDOM, 60)
+
+
+def made(robot_margin: float | None = None) -> Scene:
+    scene = Scene(robot_margin=robot_margin)
+    assert scene.add("wall", WALL, 0.5) == 0
+    assert scene.add("seen", VESSEL) == 1
+    assert scene.add("vessel", VESSEL, 2.0, AWAY) == 2
+    assert len(scene) == 3
+    return scene
+
+
+def slacks(robot_margin: float | None) -> np.ndarray:
+    """What each pair has, (60, pairs)."""
+    back = np.linalg.inv(AWAY)
+    columns = []
+    for points, pose in ((A, POSES), (B, np.tile(np.eye(4), (60, 1, 1)))):
+        columns += [WALL.distance(points, 0.1, pose=pose) - 0.5, VESSEL.distance(points, 0.1, pose=back @ pose) - 2.0]
+    if robot_margin is not None:
+        columns.append(between(A, 0.1, B, 0.1, pose_a=POSES).distance - robot_margin)
+    return np.stack(columns, axis=1)
+
+
+@pytest.mark.parametrize("robot_margin", [None, 0.2])
+def test_scenes(robot_margin: float | None) -> None:
+    scene, expected = made(robot_margin), slacks(robot_margin)
+    given = [(A, 0.1, POSES), (B, 0.1)]
+    found = scene.tightest(given)
+    np.testing.assert_allclose(found.slack, expected.min(axis=1), atol=1e-12)
+    assert_array_equal(scene.clears(given), found.slack > 0)
+    which = expected.argmin(axis=1)
+    assert_array_equal(found.structure, np.array([0, 2, 0, 2, -1])[which])
+    assert_array_equal(found.robots, np.array([[0, -1], [0, -1], [1, -1], [1, -1], [0, 1]])[which])
+    assert len(set(which)) >= (4 if robot_margin is None else 5)
+    ends = np.linalg.norm(found.on_first - found.on_second, axis=1)
+    np.testing.assert_allclose(ends, found.distance, atol=1e-12)
+    assert ((found.segments >= 0) == (found.robots >= 0)).all()
+    for k in (0, 17):
+        one = scene.tightest([(A[k], 0.1, POSES[k]), (B[k], 0.1)])
+        for field, fields in zip(one, found):
+            assert_array_equal(field, fields[k])
+        assert scene.clears([(A[k], 0.1, POSES[k]), (B[k], 0.1)]) is bool(found.slack[k] > 0)
+
+
+def test_meshes_move() -> None:
+    vertices, faces = sphere(12.0)
+    mesh, scene = Mesh(vertices, faces), Scene()
+    scene.add("wall", mesh, 0.5)
+    before = scene.tightest([(A, 0.1)]).slack
+    mesh.move(vertices * 2)
+    assert_array_equal(scene.tightest([(A, 0.1)]).slack, mesh.distance(A, 0.1) - 0.5)
+    assert (scene.tightest([(A, 0.1)]).slack > before).all()
+
+
+def test_threads_share_a_scene() -> None:
+    scene = made(0.2)
+    expected = scene.tightest([(A, 0.1), (B[0], 0.1)]).slack
+    with ThreadPoolExecutor(6) as threads:
+        for found in threads.map(lambda _: scene.tightest([(A, 0.1), (B[0], 0.1)]).slack, range(12)):
+            assert_array_equal(found, expected)
+
+
+def test_without_margins() -> None:
+    scene = Scene()
+    scene.add("seen", WALL)
+    assert scene.tightest([(A[0], 0.1)]).slack == np.inf and scene.tightest([(A[0], 0.1)]).structure == -1
+    assert scene.clears([(A[0], 0.1)]) is True
+
+
+@pytest.mark.parametrize(
+    ("ask", "kind"),
+    [
+        (lambda: Scene(robot_margin=-1.0), "negative"),
+        (lambda: Scene().add("wall", WALL, np.nan), "negative"),
+        (lambda: Scene().add("wall", WALL, 1.0, np.eye(3)), "bad_shape"),
+        (lambda: Scene().add("wall", WALL, 1.0, np.diag([2, 2, 2, 1])), "scales"),
+        (lambda: made().clears([]), "bad_type"),
+        (lambda: made().clears([A]), "bad_type"),
+        (lambda: made().clears([(A, 0.1), (B[:5], 0.1)]), "bad_shape"),
+        (lambda: made().tightest([(A[0].T, 0.1)]), "bad_shape"),
+        (lambda: made().tightest([(A[0], -0.1)]), "bad_radius"),
+    ],
+)
+def test_refused(ask: object, kind: str) -> None:
+    with pytest.raises(ContinuumError) as raised:
+        ask()  # type: ignore[operator]
+    assert raised.value.kind == kind

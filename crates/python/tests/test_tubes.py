@@ -1,0 +1,75 @@
+"""Curved tubes, given by points alone, with directions, and measured: the bounds hold for the true curve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from parry_continuum import ContinuumError, Decision, Mesh
+from shapes import Array
+
+FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
+RADIUS = 0.5
+
+
+def arc(count: int) -> tuple[Array, Array, float]:
+    """Points and directions of an arc that bends down towards the floor, and its true clearance: that of its end's rim."""
+    angle = np.linspace(0, 1, count)
+    points = np.stack([20 * np.sin(angle), 0 * angle, 20 * np.cos(angle)], axis=1)
+    tangents = np.stack([np.cos(angle), 0 * angle, -np.sin(angle)], axis=1)
+    # The end's disc is across the tangent: its lowest point is below the centre by the radius times cos.
+    return points, tangents, float(20 * np.cos(1) - RADIUS * np.cos(1))
+
+
+@pytest.mark.parametrize("count", [20, 60])
+def test_bounds_hold(count: int) -> None:
+    points, tangents, true = arc(count)
+    widths = []
+    for given in ({}, {"tangents": tangents[[0, -1]]}, {"tangents": tangents}):
+        found = FLOOR.clearance(points, RADIUS, 1e-4, **given)
+        assert found.lower <= true <= found.upper
+        widths.append(found.upper - found.lower)
+    # Directions at the ends tell how the faces are turned, and those at all points how the curve bends between them.
+    assert widths[0] > widths[1] > 3 * widths[2] and widths[2] <= 1e-4
+    assert found.resolved
+
+
+def test_measured_points() -> None:
+    points, _, true = arc(80)
+    random = np.random.default_rng(51)
+    for deviation in (0.01, 0.05):
+        noise = random.normal(size=points.shape)
+        noise *= (deviation * random.random(80) / np.linalg.norm(noise, axis=1))[:, None]
+        found = FLOOR.clearance(points + noise, RADIUS, 1e-3, deviation=deviation)
+        assert found.lower <= true <= found.upper
+        assert 0 < found.uncertainty
+    batch = FLOOR.clearance(np.stack([points] * 20), RADIUS, 1e-3, deviation=0.01)
+    one = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01)
+    assert (batch.lower == one.lower).all() and (batch.upper == one.upper).all()
+
+
+def test_what_was_asked_before_does_not_count() -> None:
+    """One engine, asked in all ways in turn."""
+    points, tangents, _ = arc(40)
+    ways: list[dict[str, object]] = [{}, {"tangents": tangents}, {"deviation": 0.01}, {"tangents": tangents[[0, -1]]}]
+    fresh = [Mesh(FLOOR).clearance(points, RADIUS, 1e-3, **way) for way in ways]
+    for turn in range(12):
+        found = FLOOR.clearance(points, RADIUS, 1e-3, **ways[turn % 4])
+        assert (found.lower, found.upper) == (fresh[turn % 4].lower, fresh[turn % 4].upper)
+
+
+def test_decisions() -> None:
+    points, tangents, true = arc(40)
+    for margin, decision in [(true - 0.8, Decision.CLEAR), (true + 0.8, Decision.CONTACT)]:
+        assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, tangents=tangents) is decision
+        assert FLOOR.tube_clears(np.stack([points] * 3), RADIUS, margin, 0.01, deviation=0.01).tolist() == [decision] * 3
+
+
+def test_refused() -> None:
+    points, tangents, _ = arc(40)
+    with pytest.raises(ContinuumError, match="give one"):
+        FLOOR.clearance(points, RADIUS, 0.1, tangents=tangents, deviation=0.1)
+    for deviation in (-1.0, np.nan, np.inf):
+        with pytest.raises(ContinuumError, match="`deviation`") as raised:
+            FLOOR.clearance(points, RADIUS, 0.1, deviation=deviation)
+        assert raised.value.kind == "negative"
