@@ -1,4 +1,4 @@
-//! Steers a concentric tube robot into a brain ventricle and tells how far each of its links is from the wall.
+//! Steers a concentric tube robot into a brain ventricle and prints how far each of its links is from the wall.
 //!
 //! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
 //! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end

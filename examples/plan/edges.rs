@@ -100,7 +100,7 @@ impl Edges<'_> {
             .ok_or_else(|| "a tube of the robot would be straight where it should be curved".into())
     }
 
-    /// Whether the robot keeps the margin on the way, as far as the check tells.
+    /// Whether the robot keeps the margin on the way, by this check.
     pub fn is_clear(&mut self, from: &Place, to: &Place) -> Result<bool, String> {
         let motion =
             Watched { motion: self.motion(from, to)?, shapes: Cell::default(), time: Cell::default() };

@@ -1,5 +1,6 @@
 //! A proof of an answer.
 
+use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 
 /// Bounds on a distance that hold whatever was rounded on the way: `lower <= true <= upper`.
@@ -8,7 +9,7 @@ use parry3d_f64::math::Real;
 /// both computed in `f64`, and whose radius is as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Bounds", into = "serialised::Bounds"))]
+#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
 #[non_exhaustive]
 pub struct Certificate {
     /// The distance is at least this, in the mesh's unit.
@@ -17,35 +18,9 @@ pub struct Certificate {
     pub upper: Real,
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::Certificate;
-    use parry3d_f64::math::Real;
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`Certificate`].
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "Certificate")]
-    pub(crate) struct Bounds {
-        lower: Real,
-        upper: Real,
+checked_fields!("Certificate", Certificate { lower: Real, upper: Real }, |&Fields { lower, upper }| {
+    if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+        return Err(format!("{lower} to {upper} bounds no distance"));
     }
-
-    impl From<Certificate> for Bounds {
-        fn from(Certificate { lower, upper }: Certificate) -> Self {
-            Self { lower, upper }
-        }
-    }
-
-    /// No proof gives bounds on a distance that are negative, not finite or the wrong way round.
-    impl TryFrom<Bounds> for Certificate {
-        type Error = String;
-
-        fn try_from(Bounds { lower, upper }: Bounds) -> Result<Self, String> {
-            if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
-                return Err(format!("{lower} to {upper} bounds no distance"));
-            }
-            Ok(Self { lower, upper })
-        }
-    }
-}
+    Ok(())
+});

@@ -1,6 +1,7 @@
 //! An answer about a tube.
 
 use super::Witness;
+use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
@@ -52,16 +53,9 @@ impl DerefMut for Clearance {
     }
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::{Clearance, Witness};
-    use parry3d_f64::math::Real;
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`Clearance`].
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "Clearance")]
-    pub(crate) struct Fields {
+checked_fields!(
+    "Clearance",
+    Clearance {
         lower: Real,
         upper: Real,
         resolved: bool,
@@ -69,30 +63,16 @@ mod serialised {
         section: u32,
         #[serde(flatten)]
         witness: Witness,
-    }
-
-    impl From<Clearance> for Fields {
-        fn from(found: Clearance) -> Self {
-            let Clearance { lower, upper, resolved, uncertainty, section, witness } = found;
-            Self { lower, upper, resolved, uncertainty, section, witness }
+    },
+    |&Fields { lower, upper, uncertainty, .. }| {
+        if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+            return Err(format!(
+                "the bounds are {lower} and {upper}; they must be finite, at least 0, and in order"
+            ));
         }
-    }
-
-    /// No engine gives bounds that are negative, in the wrong order or not finite.
-    impl TryFrom<Fields> for Clearance {
-        type Error = String;
-
-        fn try_from(fields: Fields) -> Result<Self, String> {
-            let Fields { lower, upper, resolved, uncertainty, section, witness } = fields;
-            if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
-                return Err(format!(
-                    "the bounds are {lower} and {upper}; they must be finite, at least 0, and in order"
-                ));
-            }
-            if !(uncertainty.is_finite() && uncertainty >= 0.0) {
-                return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
-            }
-            Ok(Self { lower, upper, resolved, uncertainty, section, witness })
+        if !(uncertainty.is_finite() && uncertainty >= 0.0) {
+            return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
         }
+        Ok(())
     }
-}
+);

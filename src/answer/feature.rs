@@ -23,6 +23,15 @@ pub enum TriangleFeature {
 }
 
 /// The features at the closest points of a link and a triangle.
+///
+/// ```
+/// use parry_continuum::proximity::{ContactFeature, LinkFeature, TriangleFeature};
+///
+/// /// Whether the tip of an instrument could cut into an edge of the wall.
+/// fn is_sharp(feature: ContactFeature) -> bool {
+///     feature.link == LinkFeature::EndCap && !matches!(feature.triangle, TriangleFeature::Face)
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ContactFeature {

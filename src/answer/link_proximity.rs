@@ -1,6 +1,7 @@
 //! An answer about one link.
 
 use super::Witness;
+use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
@@ -39,37 +40,18 @@ impl DerefMut for LinkProximity {
     }
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::{LinkProximity, Witness};
-    use parry3d_f64::math::Real;
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`LinkProximity`].
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "LinkProximity")]
-    pub(crate) struct Fields {
+checked_fields!(
+    "LinkProximity",
+    LinkProximity {
         link: u32,
         distance: Real,
         #[serde(flatten)]
         witness: Witness,
-    }
-
-    impl From<LinkProximity> for Fields {
-        fn from(LinkProximity { link, distance, witness }: LinkProximity) -> Self {
-            Self { link, distance, witness }
+    },
+    |&Fields { distance, .. }| {
+        if !(distance.is_finite() && distance >= 0.0) {
+            return Err(format!("the distance is {distance}; it must be finite and at least 0"));
         }
+        Ok(())
     }
-
-    /// No engine gives a distance that is negative or not finite.
-    impl TryFrom<Fields> for LinkProximity {
-        type Error = String;
-
-        fn try_from(Fields { link, distance, witness }: Fields) -> Result<Self, String> {
-            if !(distance.is_finite() && distance >= 0.0) {
-                return Err(format!("the distance is {distance}; it must be finite and at least 0"));
-            }
-            Ok(Self { link, distance, witness })
-        }
-    }
-}
+);

@@ -1,6 +1,7 @@
 //! What comes back: plain data and errors, in the mesh's frame and unit. Nothing here computes.
 
 mod certificate;
+mod checked_fields;
 mod clearance;
 mod contact;
 mod decision;

@@ -1,5 +1,6 @@
 //! An answer about a motion.
 
+use super::checked_fields::checked_fields;
 use super::{Decision, ShapeInContact};
 use parry3d_f64::math::Real;
 
@@ -38,41 +39,20 @@ impl MotionAnswer {
     }
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::MotionAnswer;
-    use crate::answer::{Decision, ShapeInContact};
-    use parry3d_f64::math::Real;
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`MotionAnswer`].
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "MotionAnswer")]
-    pub(crate) struct Fields {
+checked_fields!(
+    "MotionAnswer",
+    MotionAnswer {
         decision: Decision,
         interval: [Real; 2],
         contact: Option<ShapeInContact>,
-    }
-
-    impl From<MotionAnswer> for Fields {
-        fn from(MotionAnswer { decision, interval, contact }: MotionAnswer) -> Self {
-            Self { decision, interval, contact }
+    },
+    |&Fields { decision, interval: [from, to], contact }| {
+        if !(0.0 <= from && from <= to && to <= 1.0) {
+            return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
         }
-    }
-
-    /// Times of a motion are from 0 to 1, the earlier one first, and a contact is named where there is one.
-    impl TryFrom<Fields> for MotionAnswer {
-        type Error = String;
-
-        fn try_from(Fields { decision, interval, contact }: Fields) -> Result<Self, String> {
-            let [from, to] = interval;
-            if !(0.0 <= from && from <= to && to <= 1.0) {
-                return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
-            }
-            if (decision == Decision::Contact) != contact.is_some() {
-                return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
-            }
-            Ok(Self { decision, interval, contact })
+        if (decision == Decision::Contact) != contact.is_some() {
+            return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
         }
+        Ok(())
     }
-}
+);

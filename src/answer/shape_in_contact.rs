@@ -1,6 +1,7 @@
 //! A shape of a motion that does not keep a margin.
 
 use super::Witness;
+use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
@@ -34,41 +35,22 @@ impl DerefMut for ShapeInContact {
     }
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::{ShapeInContact, Witness};
-    use parry3d_f64::math::Real;
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`ShapeInContact`].
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "ShapeInContact")]
-    pub(crate) struct Fields {
+checked_fields!(
+    "ShapeInContact",
+    ShapeInContact {
         t: Real,
         upper: Real,
         section: u32,
         #[serde(flatten)]
         witness: Witness,
-    }
-
-    impl From<ShapeInContact> for Fields {
-        fn from(ShapeInContact { t, upper, section, witness }: ShapeInContact) -> Self {
-            Self { t, upper, section, witness }
+    },
+    |&Fields { t, upper, .. }| {
+        if !(0.0..=1.0).contains(&t) {
+            return Err(format!("times of a motion are from 0 to 1, not {t}"));
         }
-    }
-
-    /// No query names a time outside of the motion, or a distance that is negative or not finite.
-    impl TryFrom<Fields> for ShapeInContact {
-        type Error = String;
-
-        fn try_from(Fields { t, upper, section, witness }: Fields) -> Result<Self, String> {
-            if !(0.0..=1.0).contains(&t) {
-                return Err(format!("times of a motion are from 0 to 1, not {t}"));
-            }
-            if !(upper.is_finite() && upper >= 0.0) {
-                return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
-            }
-            Ok(Self { t, upper, section, witness })
+        if !(upper.is_finite() && upper >= 0.0) {
+            return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
         }
+        Ok(())
     }
-}
+);

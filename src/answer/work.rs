@@ -1,6 +1,22 @@
 //! What an answer has cost.
 
 /// How much an engine has computed since it was built, batches left out.
+///
+/// ```
+/// use parry_continuum::Chain;
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+/// use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, Work};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+/// let mut all = Exhaustive::<f32>::from_triangles(&vertices, &triangles)?;
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, 0.0, 5.0)], &[0.5])?;
+/// assert_eq!(search.work(), Work::default());
+/// search.minimum(&robot, &Pose::IDENTITY)?;
+/// all.minimum(&robot, &Pose::IDENTITY)?;
+/// assert!(search.work().axis_distances < triangles.len() as u64 && triangles.len() as u64 <= all.work().visited);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -23,6 +23,18 @@ pub trait Mask<T>: Sealed + Copy + BitAnd<Output = Self> + BitOr<Output = Self> 
 ///
 /// Implemented for `f32` and `f64`. Only IEEE operations are used (and fused multiply-add where an
 /// implementation says so in [`Scalar::mul_add`]), so scalar answers are the same on every machine.
+///
+/// ```
+/// use parry_continuum::distance::{Scalar, Vec3, segment_segment};
+///
+/// /// How far two rods are apart, in the precision that is given.
+/// fn apart<T: Scalar>(one: [Vec3<T>; 2], other: [Vec3<T>; 2]) -> T {
+///     segment_segment(one, other).distance
+/// }
+///
+/// let (one, other) = ([[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0]], [[0.0, 0.0, 2.0], [0.0, 1.0, 2.0]]);
+/// assert_eq!(apart(one.map(Vec3::from), other.map(Vec3::from)), 2.0);
+/// ```
 pub trait Scalar:
     Sealed
     + Copy
@@ -33,6 +45,7 @@ pub trait Scalar:
     + Neg<Output = Self>
 {
     /// The result of a comparison: a truth value for each lane, `bool` for `f32` and `f64`.
+    #[doc(hidden)]
     type Mask: Mask<Self>;
 
     /// The largest relative error of one rounding: 2^-24 or 2^-53.

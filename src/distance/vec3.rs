@@ -4,6 +4,16 @@ use super::scalar::{Mask, Scalar};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A point or a direction.
+///
+/// ```
+/// use parry_continuum::distance::Vec3;
+///
+/// let (a, b) = (Vec3::new(3.0, 4.0, 0.0), Vec3::from([0.0, 0.0, 2.0]));
+/// assert_eq!((a.norm(), a.norm_squared(), a.dot(b)), (5.0, 25.0, 0.0));
+/// assert_eq!(a.cross(b), Vec3::new(8.0, -6.0, 0.0));
+/// // The square of such a length is infinite.
+/// assert_eq!((b * 2.0_f64.powi(600)).normalised(), Vec3::new(0.0, 0.0, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<T> {
     /// First coordinate.

@@ -24,6 +24,19 @@ use std::sync::Arc;
 /// Every triangle is visited, but most need no more than a look at the sphere around them.
 ///
 /// A clone shares the mesh, until one of them moves it.
+///
+/// ```
+/// use parry_continuum::{Chain, proximity::{BvhSearch, Exhaustive, Proximity}};
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut all = Exhaustive::<f32>::from_triangles(&vertices, &triangles)?;
+/// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, 0.0, 5.0)], &[0.5])?;
+/// let closest = all.minimum(&robot, &Pose::IDENTITY)?;
+/// assert_eq!(closest, search.minimum(&robot, &Pose::IDENTITY)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Exhaustive<T: SearchPrecision> {
     level: Level,
     triangles: Arc<Triangles<T>>,
@@ -121,13 +134,13 @@ impl<T: SearchPrecision> Exhaustive<T> {
     }
 
     /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in the cache. `answer` gets
-    /// each with its place among those of the last pass.
+    /// the place of each among those of the last pass, but for those that are refused.
     fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
         aim: Sought,
         out: &mut [Result<A, ProximityError>],
-        mut answer: impl FnMut(&Self, PlacedRobot, usize, &mut Result<A, ProximityError>),
+        mut answer: impl FnMut(&Self, usize, &mut Result<A, ProximityError>),
     ) {
         let (mut robots, mut out) = (robots, out);
         while !robots.is_empty() {
@@ -135,9 +148,9 @@ impl<T: SearchPrecision> Exhaustive<T> {
             let (together, others) = robots.split_at(count);
             let (answers, later) = out.split_at_mut(count);
             self.run(placed(together), aim);
-            for (number, (robot, out)) in placed(together).zip(answers).enumerate() {
-                match robot {
-                    Ok(robot) => answer(self, robot, number, out),
+            for (number, out) in answers.iter_mut().enumerate() {
+                match self.pass.links_of(number) {
+                    Ok(_) => answer(self, number, out),
                     Err(error) => *out = Err(error),
                 }
             }
@@ -228,7 +241,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(Vec::new()));
-        self.run_batch(robots, Sought::EachLink, out, |engine, _, number, out| {
+        self.run_batch(robots, Sought::EachLink, out, |engine, number, out| {
             let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
             links.clear();
             links.extend(engine.pass.answers(number));
@@ -243,9 +256,9 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(LinkProximity::unanswered()));
-        self.run_batch(robots, Sought::Least(Real::INFINITY), out, |engine, robot, number, out| {
+        self.run_batch(robots, Sought::Least(Real::INFINITY), out, |engine, number, out| {
             let least = engine.least(number);
-            *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), robot)));
+            *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), engine.pass.first_link(number))));
         });
         Ok(())
     }
@@ -257,7 +270,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(false));
-        self.run_batch(robots, Sought::Within(margin), out, |engine, _, number, out| {
+        self.run_batch(robots, Sought::Within(margin), out, |engine, number, out| {
             *out = Ok(engine.pass.is_clear(number));
         });
         Ok(())

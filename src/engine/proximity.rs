@@ -1,6 +1,6 @@
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
-use crate::pair::{PlacedRobot, contact, contacts, derivative};
+use crate::pair::{PlacedLink, PlacedRobot, contact, contacts, derivative};
 use crate::query::{check_bound, check_margin, check_prominence};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -43,7 +43,7 @@ pub trait Proximity: Engine {
     fn minimum(&mut self, robot: &Chain, pose: &Pose) -> Result<LinkProximity, ProximityError> {
         let robot = PlacedRobot::new(robot, pose)?;
         let found = self.ask_nearest(robot, Real::INFINITY)?;
-        Ok(found.unwrap_or_else(|| any_triangle(self.mesh(), robot)))
+        Ok(found.unwrap_or_else(|| any_triangle(self.mesh(), &robot.link(0))))
     }
 
     /// The closest link and triangle, if they are at most `bound` apart: [`minimum`](Proximity::minimum) for less work
@@ -401,9 +401,8 @@ pub(crate) trait Engine {
     fn move_vertices(&mut self, vertices: &[Vector]);
 }
 
-/// Some triangle, for a robot whose nearest no search finds.
-pub(crate) fn any_triangle(mesh: &Mesh, robot: PlacedRobot) -> LinkProximity {
-    let link = robot.link(0);
+/// Some triangle for the first link of a robot whose nearest no search finds.
+pub(crate) fn any_triangle(mesh: &Mesh, link: &PlacedLink) -> LinkProximity {
     link.answer(0, &link.measure(0, mesh.corners(0)))
 }
 

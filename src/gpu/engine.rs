@@ -42,6 +42,24 @@ use std::time::Duration;
 /// println!("{}", engine.minimum(&robot, &Pose::IDENTITY)?.distance);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Opening a GPU takes a moment. Engines for several meshes share one:
+///
+/// ```no_run
+/// use parry_continuum::gpu::{Gpu, GpuExhaustive, Precision};
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+/// use parry_continuum::{Chain, proximity::Proximity};
+///
+/// let gpu = Gpu::open(Precision::F32)?;
+/// println!("{:?}", gpu.precision());
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut lumen = GpuExhaustive::from_triangles(&gpu, &vertices, &triangles)?;
+/// let mut vessel = GpuExhaustive::on(&gpu, &TriMesh::new(vertices, triangles)?)?;
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, 0.0, 5.0)], &[0.5])?;
+/// println!("{}", lumen.clears(&robot, &Pose::IDENTITY, 1.0)? && vessel.clears(&robot, &Pose::IDENTITY, 2.0)?);
+/// println!("{} links were measured on the CPU", lumen.answered_on_cpu() + vessel.answered_on_cpu());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct GpuExhaustive {
     pub(super) gpu: Gpu,
     pub(super) mesh: Mesh,

@@ -126,6 +126,17 @@ impl Chain {
     /// to a tube: here the first joint after a thick tube shorter than its radius is left open, and so are both
     /// sides of a single thick point.
     ///
+    /// ```
+    /// use parry_continuum::{Cap, Chain, parry::math::Vector};
+    ///
+    /// // A thick tube that ends at the second point, and a thin one.
+    /// let points = [0.0, 5.0, 9.0, 13.0].map(|x| Vector::X * x);
+    /// let robot = Chain::from_vertex_radii(&points, &[1.0, 1.0, 0.4, 0.4])?;
+    /// assert_eq!(robot, Chain::from_centreline(&points, &[1.0, 0.4, 0.4])?);
+    /// assert_eq!(robot.links()[0].caps(), [Cap::Flat; 2]);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline), with as many radii as points.
     pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
@@ -169,6 +180,15 @@ impl Chain {
     ///
     /// Segment k joins points k and k + 1. The ranges of all links, in order, cover every segment once; exactly
     /// one segment in each has a length.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, parry::math::Vector};
+    ///
+    /// // The second segment has no length.
+    /// let robot = Chain::from_centreline(&[0.0, 1.0, 1.0, 2.0].map(|z| Vector::Z * z), &[0.5; 3])?;
+    /// assert_eq!((robot.segments_of(0), robot.segments_of(1)), (0..2, 2..3));
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
     pub fn segments_of(&self, link: usize) -> Range<usize> {
         self.segments.get(link).cloned().unwrap_or_default()
     }

@@ -24,7 +24,7 @@
 //! # Kernels of more than one step
 //! Whoever has several kernels, buffers that stay, or more than numbers to send takes the parts: a [`Device`] compiles a
 //! [`Shader`], makes buffers and groups of them, and reads back what a submission wrote, or says why there is nothing to
-//! read. A [`Watch`] hears of what fails on the device, a [`Clock`] tells how long a pass took, and [`record!`] declares
+//! read. A [`Watch`] reports what fails on the device, a [`Clock`] measures how long a pass took, and [`record!`] declares
 //! what Rust writes and WGSL reads.
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, missing_docs)]

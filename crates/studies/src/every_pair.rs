@@ -23,7 +23,7 @@ pub struct EveryPair<T: Scalar, S> {
 pub struct Nearest {
     /// Measured in `f64`, by the same route.
     pub distance: f64,
-    /// The first of the nearest, as far as `T` tells.
+    /// The first of the nearest, as far as `T` resolves them.
     pub triangle: usize,
 }
 

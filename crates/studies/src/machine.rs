@@ -18,7 +18,7 @@ pub fn description() -> String {
     format!("{model}, {cores} cores, {widest}")
 }
 
-/// Bytes of memory held now, where the system tells.
+/// Bytes of memory held now, where the system says so.
 pub fn memory() -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;

@@ -1,12 +1,11 @@
 //! Queries about tubes, as [`BvhSearch`] answers them.
 
-use super::search::{BvhSearch, Context, Memory};
+use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::pieces::{PlacedTube, TubeInMesh};
 use crate::query::clearance::{TubeMemory, clearance, tube_clears};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::Tube;
-use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
@@ -107,6 +106,21 @@ impl BvhSearch {
 
     /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets the answer of each, or why there is none.
     ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::Ball}};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let tube = Tube::from_samples(&[Vector::ZERO, Vector::Z * 10.0], &[1.0], None)?;
+    /// let poses = [Vector::ZERO, Vector::Z * 30.0, Vector::NAN].map(Pose::from_translation);
+    /// let mut answers = Vec::new();
+    /// search.clearance_batch(&poses.map(|pose| (&tube, pose)), 0.01, &mut answers)?;
+    /// assert!(answers[0].is_ok_and(|found| found.lower > 38.0) && answers[1].is_ok_and(|found| found.upper < 11.0));
+    /// assert_eq!(answers[2].map_err(|error| error.kind()), Err("pose_not_finite"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// The tolerance is negative or NaN; `out` is then empty.
     pub fn clearance_batch(
@@ -194,10 +208,8 @@ impl<'a> Context<'a> {
         tube: &'a Tube,
         pose: &Pose,
     ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
-        let Self { level, mesh, memory } = self;
-        let hierarchy = &mesh.hierarchy;
-        let Memory { scratch, tube: memory, .. } = memory;
-        let tube = PlacedTube::new(tube, pose, hierarchy.reach)?;
-        Ok((TubeInMesh { search: MeshSearch { level, hierarchy, scratch }, tube }, memory))
+        let (search, last) = self.search();
+        let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
+        Ok((TubeInMesh { search, tube }, &mut last.tube))
     }
 }

@@ -1,11 +1,10 @@
 //! Queries about motions, as [`BvhSearch`] answers them.
 
-use super::search::{BvhSearch, Context, Memory};
+use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, ProximityError};
 use crate::query::check_decision;
 use crate::query::motion::MotionSearch;
 use crate::robot::Motion;
-use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::Real;
 
 impl BvhSearch {
@@ -122,9 +121,7 @@ impl BvhSearch {
 impl<'a> Context<'a> {
     /// A search along a motion. Margin and resolution were checked.
     fn motion<M: Motion>(self, motion: &'a M, margin: Real, resolution: Real) -> MotionSearch<'a, M> {
-        let Self { level, mesh, memory } = self;
-        let Memory { scratch, motion: memory, .. } = memory;
-        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
+        let (search, Remembered { motion: memory, .. }) = self.search();
         MotionSearch { search, memory, motion, margin, resolution, shapes: 0, last: None }
     }
 }

@@ -59,10 +59,16 @@ pub struct BvhSearch {
     batch: Vec<Memory>,
 }
 
-/// What one query leaves for the next, a field for each question.
+/// What one query leaves for the next.
 #[derive(Clone, Default)]
 pub(super) struct Memory {
-    pub scratch: Scratch,
+    scratch: Scratch,
+    answers: Remembered,
+}
+
+/// What the last answers say of the next, a field for each question.
+#[derive(Clone, Default)]
+pub(super) struct Remembered {
     pub per_link: PerLinkMemory,
     pub minimum: MinimumMemory,
     pub clears: ClearsMemory,
@@ -71,7 +77,7 @@ pub(super) struct Memory {
     pub motion: MotionMemory,
 }
 
-impl Memory {
+impl Remembered {
     fn forget(&mut self) {
         self.per_link.forget();
         self.minimum.forget();
@@ -167,7 +173,7 @@ impl BvhSearch {
 
     /// Forgets the last answers, so that the next query starts without bounds.
     pub fn forget(&mut self) {
-        self.memory.forget();
+        self.memory.answers.forget();
     }
 
     /// How much was computed since the engine was built, batches left out.
@@ -186,7 +192,7 @@ impl BvhSearch {
         out.resize_with(robots.len(), || Ok(unanswered()));
         let (level, mesh) = (self.level, &*self.mesh);
         in_shares(robots, out, &mut self.batch, |memory, robots, out| {
-            memory.forget();
+            memory.answers.forget();
             for (robot, out) in robots.iter().zip(out) {
                 answer(Context { level, mesh, memory }, robot, out);
             }
@@ -204,38 +210,39 @@ impl BvhSearch {
 
 /// What a query asks through: the mesh, and what the last one left.
 pub(super) struct Context<'a> {
-    pub level: Level,
+    level: Level,
     pub mesh: &'a PreparedMesh,
-    pub memory: &'a mut Memory,
+    memory: &'a mut Memory,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// The search in the hierarchy, and what the last answers say.
+    pub fn search(self) -> (MeshSearch<'a>, &'a mut Remembered) {
+        let Memory { scratch, answers } = self.memory;
+        (MeshSearch { level: self.level, hierarchy: &self.mesh.hierarchy, scratch }, answers)
+    }
+
     fn per_link(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {
-        let Self { level, mesh, memory } = self;
-        let Memory { scratch, per_link: memory, .. } = memory;
-        per_link(MeshSearch { level, hierarchy: &mesh.hierarchy, scratch }, robot, memory, out);
+        let (search, last) = self.search();
+        per_link(search, robot, &mut last.per_link, out);
     }
 
     fn nearest(self, robot: PlacedRobot, bound: Real) -> Option<LinkProximity> {
-        let Self { level, mesh, memory } = self;
-        let Memory { scratch, minimum: memory, .. } = memory;
-        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
-        let (link, nearest) = minimum_within(search, robot, memory, bound)?;
+        let (search, last) = self.search();
+        let (link, nearest) = minimum_within(search, robot, &mut last.minimum, bound)?;
         Some(robot.link(link).answer(link, &nearest))
     }
 
     fn clears(self, robot: PlacedRobot, margin: Real) -> bool {
-        let Self { level, mesh, memory } = self;
-        let Memory { scratch, clears: memory, .. } = memory;
-        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
-        ClearsSearch { search, sides: mesh.sides(), robot, memory }.clears(margin)
+        let sides = self.mesh.sides();
+        let (search, last) = self.search();
+        ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)
     }
 
     fn within(self, robot: PlacedRobot, margin: Real, out: &mut Vec<Contact>) {
-        let Self { level, mesh, memory } = self;
-        let Memory { scratch, contacts: minima, .. } = memory;
-        let search = MeshSearch { level, hierarchy: &mesh.hierarchy, scratch };
-        ContactSearch { search, across: mesh.across() }.within(robot, margin, minima, out);
+        let across = self.mesh.across();
+        let (search, last) = self.search();
+        ContactSearch { search, across }.within(robot, margin, &mut last.contacts, out);
     }
 }
 
@@ -299,7 +306,7 @@ impl Engine for BvhSearch {
             let mesh = &context.mesh.hierarchy.mesh;
             *out = PlacedRobot::new(robot, pose).map(|robot| {
                 let found = context.nearest(robot, Real::INFINITY);
-                found.unwrap_or_else(|| any_triangle(mesh, robot))
+                found.unwrap_or_else(|| any_triangle(mesh, &robot.link(0)))
             });
         });
         Ok(())
@@ -325,7 +332,7 @@ impl Engine for BvhSearch {
     fn move_vertices(&mut self, vertices: &[Vector]) {
         Arc::make_mut(&mut self.mesh).set_vertices(self.level, vertices);
         // It spoke of the mesh as it was.
-        self.memory.forget_distances();
+        self.memory.answers.forget_distances();
     }
 }
 

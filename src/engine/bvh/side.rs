@@ -15,8 +15,8 @@ impl BvhSearch {
     /// the answer is [`Side::Undecided`] only for points that rounding cannot tell from points of a triangle, and for
     /// those that are not finite. [`Side`] says what an open mesh means.
     ///
-    /// The first question takes a moment, in which the hierarchy is prepared; so does the first after
-    /// [`set_vertices`](Proximity::set_vertices). Clones share what was prepared.
+    /// The first question builds what each part of the mesh is from far away, and so does the first one after
+    /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has done so. Clones share it.
     ///
     /// ```
     /// use parry_continuum::parry::{math::Vector, shape::{Ball, TriMesh}};

@@ -20,11 +20,11 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// The motion of a chain each of whose vertices moves straight and evenly from one place to another.
 ///
 /// It is what a planner means by "interpolate the two centrelines". In between, links become shorter or longer. Points
-/// are in the mesh's frame. A segment that has no length at both ends has none in between, and is no link; a radius of its
-/// own is no step. Nor is one shorter than a link may be beside its radius. One that loses its length for a moment is a ball
-/// then.
+/// are in the mesh's frame.
 ///
-/// The links are its sections, numbered without those segments.
+/// The motion's sections are its links. A segment without length at the start and at the end of the motion is no link, as in a
+/// [`Chain`](crate::Chain), and is not counted among the sections; its radius is no step. The same holds for a segment that is
+/// too short for its radius. A link that loses its length for a moment is a ball at that moment.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, verify_motion};
@@ -46,6 +46,18 @@ pub struct LinearMotion {
 
 impl LinearMotion {
     /// All links with two round caps, as [`Chain::capsules`](crate::Chain::capsules), one radius for each segment.
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let (from, to) = ([Vector::ZERO, Vector::Z * 8.0], [Vector::X, Vector::new(1.0, 0.0, 8.0)]);
+    /// // The flat tip keeps 1 mm, the round one does not.
+    /// assert!(search.clears_motion(&LinearMotion::chain(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
+    /// assert!(!search.clears_motion(&LinearMotion::capsules(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Chain::capsules`](crate::Chain::capsules) for either end, or not as many points at the one as at the other.

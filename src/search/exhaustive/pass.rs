@@ -186,9 +186,14 @@ impl<T: Kernels> Pass<T> {
         self.findings[0].nearest[place]
     }
 
-    /// The links of a robot, or why it is refused.
-    fn links_of(&self, robot: usize) -> Result<Range<usize>, ProximityError> {
+    /// The places of a robot's links, or why it is refused.
+    pub(crate) fn links_of(&self, robot: usize) -> Result<Range<usize>, ProximityError> {
         self.robots[robot].clone()
+    }
+
+    /// The first link of a robot that is not refused.
+    pub(crate) fn first_link(&self, robot: usize) -> &PlacedLink {
+        &self.placed[self.links_of(robot).map_or(0, |places| places.start)]
     }
 
     /// The nearest triangle of each link of a robot.

@@ -37,7 +37,7 @@ impl<L: Pack> NodeBounds<L> {
     ///
     /// The plane before the link's axis whose normal v leads to the centre keeps from the centre as far as v is long;
     /// against v the box reaches at most (|v_1| h_1 + |v_2| h_2 + |v_3| h_3) / |v|. Where the link is longer than the box,
-    /// that tells what the gaps do not: the link may pass beside the box slantwise.
+    /// that shows what the gaps do not: the link may pass beside the box slantwise.
     ///
     /// Rounding, in units of u reach, where reach is at least 1 and bounds all coordinates. The axes are of length one
     /// within 10 u and perpendicular within 7 u, so a length is that of its parts within 17 u. The gaps: 60 for that, as

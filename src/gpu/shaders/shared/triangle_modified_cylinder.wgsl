@@ -1,6 +1,6 @@
 // Triangle against modified cylinder: the twin of distance/triangle_modified_cylinder.rs, which has the cases.
 
-// What the axis alone tells of a link and a triangle, in coordinates from the link's start.
+// What is known of a link and a triangle by the axis alone, in coordinates from the link's start.
 struct Axial {
     // The squared distance between axis and triangle.
     axis_squared: real,

@@ -130,7 +130,7 @@ mod tests {
         link.ends[end] + out * link.radius
     }
 
-    /// No point of a link that has moved is farther from where the link was than it tells, in any unit, and some are nearly as
+    /// No point of a link that has moved is farther from where the link was than this says, in any unit, and some are nearly as
     /// far.
     #[test]
     fn no_point_has_moved_farther_than_told() {
