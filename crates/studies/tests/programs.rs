@@ -133,6 +133,14 @@ fn speed_is_measured_drawn_and_quoted() {
             assert!(times[0] >= 20.0 && times[1..].is_sorted() && times[1] > 0.0, "{row:?}");
         }
     }
+    let rare = table(&page, "| query | triangles | touching |");
+    assert_eq!(rare.iter().map(|row| &*row[0]).collect::<Vec<_>>(), ["`clears`", "`minimum`", "`within`"]);
+    for row in &rare {
+        // How many touch; median, one in a thousand, worst, worst over median; and the same of those that are free.
+        let numbers: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+        assert!(numbers[0] > 20.0 && numbers[5] > 20.0 && numbers[0] + numbers[5] == 1000.0, "{row:?}");
+        assert!(numbers[1..4].is_sorted() && numbers[6..9].is_sorted() && numbers[1] > 0.0, "{row:?}");
+    }
     assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
     let shares = table(&page, "| order | precision | capsules |");
     assert_eq!(shares.len(), 4);

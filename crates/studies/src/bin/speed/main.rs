@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
-//! `--out` of its own, is a rehearsal.
+//! `--out` of its own, is a rehearsal. `--only rare` measures that chapter again and leaves the others as they are.
 
 mod exhaustive;
 mod goals;
@@ -40,6 +40,17 @@ struct Options {
     /// Seconds for each group of jobs that are compared; small groups take less
     #[arg(long, value_name = "SECONDS", default_value_t = 4.0, value_parser = seconds)]
     enough: f64,
+
+    /// Measure this chapter alone, and leave the rest of the page and the goals as they are
+    #[arg(long, value_enum)]
+    only: Option<Chapter>,
+}
+
+/// A chapter that can be written alone.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Chapter {
+    /// The worst of many new shapes.
+    Rare,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -69,6 +80,17 @@ fn measure(options: &Options) -> Result<(), String> {
         command::line("-p continuum-studies --bin speed"),
         machine::description()
     );
+    let file = options.out.join("SPEED.md");
+    if options.only == Some(Chapter::Rare) {
+        let is_there =
+            fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, rare::MARK).is_some());
+        if !is_there {
+            return Err(format!("{} has no such chapter; write it whole, without --only", file.display()));
+        }
+        quote::in_page(&rare::chapter(effort, &written, &mut Goals::default())?, rare::MARK, &file)?;
+        println!("{}", file.display());
+        return Ok(());
+    }
     let mut page = format!(
         "# Speed\n\n\
          {written}. \
@@ -81,15 +103,16 @@ fn measure(options: &Options) -> Result<(), String> {
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
     let growth = growth::chapter(effort, &options.out)?;
     let (latency, after_other_work) = latency::chapter(effort)?;
-    let rare = rare::chapter(effort, &mut goals)?;
+    let rare = rare::chapter(effort, &written, &mut goals)?;
+    let rare = format!("<!-- {0} -->\n{rare}<!-- /{0} -->\n", rare::MARK);
     for chapter in [search, planner, latency, rare, exhaustive, growth, moving::chapter(effort)?, memory] {
         page.push('\n');
         page.push_str(&chapter);
     }
-    write(&options.out.join("SPEED.md"), &page)?;
+    write(&file, &page)?;
     let internals = options.out.join("internals");
     write(&internals.join("speed_goals.md"), &goals.page(&written))?;
-    println!("{}", options.out.join("SPEED.md").display());
+    println!("{}", file.display());
     let table: String = rows.iter().filter(|row| !row.contains("| 327680 |")).map(String::as_str).collect();
     let quote = format!(
         "{written}: a robot of 30 links in a cavity of about 100 mm, near the wall (2 mm away) and far from it (19 mm). \
