@@ -123,14 +123,6 @@ pub enum ProximityError {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
     },
-    /// What is asked for cannot be answered yet.
-    #[error("`{parameter}` is {value}; only 0 is answered for now")]
-    NotYet {
-        /// The parameter, as the function that was called names it.
-        parameter: &'static str,
-        /// The number that was given.
-        value: Real,
-    },
     /// The bounds of a tube cannot come as close as was asked for.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \

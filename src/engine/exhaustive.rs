@@ -4,7 +4,7 @@ use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
-use crate::query::contacts::{LocalMinima, RobotContacts, Wall};
+use crate::query::contacts::{Asked, LocalMinima, RobotContacts, Wall};
 use crate::robot::Chain;
 use crate::search::exhaustive::{Kernels, Pass, Sought, Triangles};
 use fearless_simd::Level;
@@ -212,15 +212,16 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        margin: Real,
+        asked: Asked,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
         let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
-        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, margin, minima, out);
+        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, asked, minima, out);
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
             let end = first + count;
-            *work += pass.run(level, culling, triangles, once(Ok(robot)), first..end, Sought::Every(margin));
+            *work +=
+                pass.run(level, culling, triangles, once(Ok(robot)), first..end, Sought::Every(asked.margin));
             let Some(within) = pass.within() else {
                 count = count.div_ceil(2);
                 continue;

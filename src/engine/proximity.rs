@@ -1,7 +1,8 @@
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
 use crate::pair::{PlacedLink, PlacedRobot, contact, contacts, derivative};
-use crate::query::{check_bound, check_margin, check_prominence};
+use crate::query::contacts::Asked;
+use crate::query::{check_bound, check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -135,11 +136,26 @@ pub trait Proximity: Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// `prominence` is 0 for now, which reports every local minimum. It will leave out those that are shallow: by how much
-    /// farther every way on the mesh from a contact to a nearer place must first lead.
+    /// # Prominence
+    /// A rough wall has a contact at each of its bumps. The prominence of a contact is how much farther every way on the mesh
+    /// to a nearer place first leads; it is infinite where no such way stays within the margin. `prominence` is the least that
+    /// a contact must have, in the mesh's unit. With 0 each local minimum is a contact. For a surface made of voxels, the size
+    /// of a voxel leaves a few contacts for each link.
+    ///
+    /// No wall is lost, whatever the prominence:
+    ///
+    /// - Each connected piece of wall within the margin keeps its nearest contact.
+    /// - Contacts whose normals differ by more than 60 degrees are never merged, so that both sides of a groove stay. The way
+    ///   that counts is the one to a nearer contact that is kept and whose normal is within 60 degrees.
+    /// - So each contact that is left out has a nearer one that stands for it. The direction in which that one pushes the link
+    ///   is within 60 degrees of its own.
+    /// - A contact without a [`normal`](Contact::normal) stays.
+    ///
+    /// A contact that is kept is the same as without a prominence. With a smaller margin there may be more of them within it: a
+    /// way beyond the margin joins nothing.
     ///
     /// # Errors
-    /// The margin is negative or NaN, the prominence is not 0, the pose is not finite, or it moves a link out of range.
+    /// The margin or the prominence is negative or NaN, the pose is not finite, or it moves a link out of range.
     fn within(
         &mut self,
         robot: &Chain,
@@ -150,8 +166,8 @@ pub trait Proximity: Engine {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        check_prominence(prominence)?;
-        self.ask_contacts(PlacedRobot::new(robot, pose)?, margin, out)
+        check_not_negative("prominence", prominence)?;
+        self.ask_contacts(PlacedRobot::new(robot, pose)?, Asked { margin, prominence }, out)
     }
 
     /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is none; inner vectors are used
@@ -370,11 +386,11 @@ pub(crate) trait Engine {
     /// Whether every link keeps more than `margin` away.
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError>;
 
-    /// Every contact at most `margin` away, in `out`, which is empty.
+    /// The contacts that are asked for, in `out`, which is empty.
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        margin: Real,
+        asked: Asked,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError>;
 

@@ -12,7 +12,7 @@ use crate::answer::{Contact, LinkProximity, ProximityError};
 use crate::engine::{Engine, Proximity, placed};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{PlacedLink, PlacedRobot};
-use crate::query::contacts::contacts_by_all_triangles;
+use crate::query::contacts::{Asked, Wall, contacts_by_all_triangles};
 use crate::robot::Chain;
 use gpu_batch::DeviceFailure;
 use gpu_batch::wgpu::ComputePipeline;
@@ -233,10 +233,10 @@ impl Engine for GpuExhaustive {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        margin: Real,
+        asked: Asked,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        contacts_by_all_triangles(&self.mesh, robot, margin, out);
+        contacts_by_all_triangles(Wall::of(&self.mesh), robot, asked, out);
         Ok(())
     }
 

@@ -1,12 +1,14 @@
 //! The triangles as every engine keeps them.
 
 mod checks;
+mod joined;
 mod kept_mesh;
 mod search_frame;
 mod shared_parts;
 mod triangle_block;
 
 pub(crate) use checks::{check_triangle, check_vertex, in_range};
+pub(crate) use joined::{first_of, join};
 pub(crate) use kept_mesh::Mesh;
 pub(crate) use search_frame::{SearchFrame, round};
 pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};

@@ -8,7 +8,7 @@ use super::pair_lanes::{PairLanes, Rows, TOGETHER, put_corners};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Unfused, dispatch};
-use crate::mesh::{Mesh, splat};
+use crate::mesh::Mesh;
 use crate::pair::pair_lanes;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -101,17 +101,7 @@ fn closest<L: Pack<Element = f64>>(
     bound: Real,
     answers: &mut NearestRows,
 ) -> u64 {
-    let (zero, bound) = (L::splat(token, 0.0), L::splat(token, bound));
-    let (yes, no) = (zero.le(zero), zero.lt(zero));
-    let flat = [if link.flat()[0] { yes } else { no }, if link.flat()[1] { yes } else { no }];
-    let link = Placed {
-        start: splat::<L>(token, link.start().into()),
-        along: splat::<L>(token, link.along().into()),
-        axis: splat::<L>(token, link.axis()),
-        radius: L::splat(token, link.radius()),
-        flat,
-        extent: L::splat(token, link.extent()),
-    };
+    let (bound, link) = (L::splat(token, bound), Placed::<L>::splat(token, link));
     let mut near = 0;
     for lane in (0..count).step_by(L::LANES) {
         let corners = pair_lanes::corners::<L, 9>(token, corners, lane);

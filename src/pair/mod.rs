@@ -19,6 +19,7 @@ mod placed_link;
 mod placed_robot;
 mod ranked;
 mod search_link;
+mod segments_together;
 mod two_links;
 
 pub(crate) use best::Best;
@@ -33,4 +34,5 @@ pub(crate) use placed_link::PlacedLink;
 pub(crate) use placed_robot::PlacedRobot;
 pub(crate) use ranked::{Ranked, rank_each, rounding};
 pub(crate) use search_link::SearchLink;
+pub(crate) use segments_together::{Height, measure_points, measure_segments};
 pub(crate) use two_links::NearestOfLinks;

@@ -2,8 +2,10 @@
 //! [`coordinates`](super::coordinates), with the same bits on every instruction set.
 
 use super::coordinates::{Pair, Placed};
+use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Closest, Face, Scalar, Vec3};
+use crate::mesh::splat;
 use parry3d_f64::math::{Real, Vector};
 
 /// How many pairs are computed together: the widest pack of `f64`.
@@ -83,6 +85,23 @@ pub(crate) fn store<L: Pack<Element = f64>, const N: usize>(
     point.x.store(&mut rows[row][lane..]);
     point.y.store(&mut rows[row + 1][lane..]);
     point.z.store(&mut rows[row + 2][lane..]);
+}
+
+impl<L: Pack<Element = f64>> Placed<L> {
+    /// One link in all lanes.
+    #[inline(always)]
+    pub(super) fn splat(token: L::Token, link: &PlacedLink) -> Self {
+        let zero = L::splat(token, 0.0);
+        let (yes, no) = (zero.le(zero), zero.lt(zero));
+        Self {
+            start: splat::<L>(token, link.start().into()),
+            along: splat::<L>(token, link.along().into()),
+            axis: splat::<L>(token, link.axis()),
+            radius: L::splat(token, link.radius()),
+            flat: [if link.flat()[0] { yes } else { no }, if link.flat()[1] { yes } else { no }],
+            extent: L::splat(token, link.extent()),
+        }
+    }
 }
 
 /// A pack of pairs with their closest points.

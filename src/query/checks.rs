@@ -8,7 +8,7 @@ pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
     check_not_negative("margin", margin)
 }
 
-/// A margin, a tolerance or a resolution, as the function that was called names it.
+/// A margin, a prominence, a tolerance or a resolution, as the function that was called names it.
 pub(crate) fn check_not_negative(parameter: &'static str, value: Real) -> Result<(), ProximityError> {
     // Written so that NaN is an error.
     if value >= 0.0 { Ok(()) } else { Err(ProximityError::Negative { parameter, value }) }
@@ -23,14 +23,4 @@ pub(crate) fn check_decision(margin: Real, resolution: Real) -> Result<(), Proxi
 /// A bound, which asks for nothing where it is below zero.
 pub(crate) fn check_bound(bound: Real) -> Result<(), ProximityError> {
     if bound.is_nan() { Err(ProximityError::NotANumber { parameter: "bound" }) } else { Ok(()) }
-}
-
-/// The prominence of a contact: every local minimum is one.
-pub(crate) fn check_prominence(prominence: Real) -> Result<(), ProximityError> {
-    check_not_negative("prominence", prominence)?;
-    if prominence > 0.0 {
-        Err(ProximityError::NotYet { parameter: "prominence", value: prominence })
-    } else {
-        Ok(())
-    }
 }

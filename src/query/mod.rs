@@ -9,4 +9,4 @@ pub(crate) mod side;
 
 mod checks;
 
-pub(crate) use checks::{check_bound, check_decision, check_margin, check_not_negative, check_prominence};
+pub(crate) use checks::{check_bound, check_decision, check_margin, check_not_negative};

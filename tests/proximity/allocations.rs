@@ -43,6 +43,8 @@ fn a_control_loop_allocates_nothing() {
         search.per_link(&chain, &pose, &mut answers).unwrap();
         search.clears(&chain, &pose, 0.5).unwrap();
         search.clears_inside(&chain, &pose, 0.5).unwrap();
+        search.within(&chain, &pose, 3.0, 0.1, &mut contacts).unwrap();
+        assert!(!contacts.is_empty());
         search.within(&chain, &pose, 3.0, 0.0, &mut contacts).unwrap();
         assert!(contacts.len() > 1 && search.contact(&chain, &pose, &least).is_ok());
         if tick < 50 {

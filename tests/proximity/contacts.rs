@@ -16,7 +16,7 @@ const TIE: f64 = 64.0 * f64::EPSILON / 2.0;
 
 /// A small mesh: a wall with bumps, a lumen, or triangles between any of a few points. On a lattice, where ties and
 /// parallels are common, or not; with slivers, or not; with shared corners, or each triangle with its own.
-fn small_mesh(random: &mut Random) -> TriMesh {
+pub fn small_mesh(random: &mut Random) -> TriMesh {
     let is_lattice = random.below(3) == 0;
     let place = |point: Vector| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
@@ -58,7 +58,7 @@ fn small_mesh(random: &mut Random) -> TriMesh {
     if random.below(2) == 0 { mesh_of(&triangles) } else { TriMesh::new(vertices, indices).unwrap() }
 }
 
-fn small_robot(random: &mut Random) -> Chain {
+pub fn small_robot(random: &mut Random) -> Chain {
     let place = |point: Vector, is_lattice| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
     loop {
         let is_lattice = random.below(2) == 0;
@@ -81,13 +81,13 @@ fn small_robot(random: &mut Random) -> Chain {
 
 /// The distances between a link and triangles, and how far from the link one must go to come from one to another on the
 /// mesh: over all ways, by Floyd and Warshall.
-struct Passes {
-    distances: Vec<f64>,
-    heights: Vec<Vec<f64>>,
+pub struct Passes {
+    pub distances: Vec<f64>,
+    pub heights: Vec<Vec<f64>>,
 }
 
 impl Passes {
-    fn new(link: &ModifiedCylinder, triangles: &[[Vector; 3]]) -> Self {
+    pub fn new(link: &ModifiedCylinder, triangles: &[[Vector; 3]]) -> Self {
         let to = |corners: [Vector; 3]| {
             let flat = link.caps().map(|cap| cap == Cap::Flat);
             let [start, end] = [link.start(), link.end()].map(Vec3::from);

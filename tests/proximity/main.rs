@@ -20,6 +20,7 @@ mod parity;
 mod patches;
 mod pieces;
 mod planner;
+mod prominence;
 mod rings;
 mod robots;
 mod scenes;

@@ -6,7 +6,7 @@ use crate::engine::{Engine, Proximity, any_triangle};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use crate::query::clearance::TubeMemory;
-use crate::query::contacts::{ContactSearch, LocalMinima};
+use crate::query::contacts::{Asked, ContactSearch, LocalMinima};
 use crate::query::motion::MotionMemory;
 use crate::query::nearest::{
     ClearsMemory, ClearsSearch, MinimumMemory, PerLinkMemory, minimum_within, per_link,
@@ -239,10 +239,10 @@ impl<'a> Context<'a> {
         ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)
     }
 
-    fn within(self, robot: PlacedRobot, margin: Real, out: &mut Vec<Contact>) {
+    fn within(self, robot: PlacedRobot, asked: Asked, out: &mut Vec<Contact>) {
         let across = self.mesh.across();
         let (search, last) = self.search();
-        ContactSearch { search, across }.within(robot, margin, &mut last.contacts, out);
+        ContactSearch { search, across }.within(robot, asked, &mut last.contacts, out);
     }
 }
 
@@ -275,10 +275,10 @@ impl Engine for BvhSearch {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        margin: Real,
+        asked: Asked,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        self.context().within(robot, margin, out);
+        self.context().within(robot, asked, out);
         Ok(())
     }
 

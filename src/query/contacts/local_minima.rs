@@ -59,9 +59,11 @@
 
 use super::long_rings::{FEW, LongRings};
 use super::near_triangle::{End, Index, NearTriangles};
+use super::passes::Surroundings;
+use super::prominence::{Asked, Prominence};
+use super::wall::Wall;
 use super::wall_pieces::{Around, Pieces};
 use crate::answer::{Contact, LinkProximity};
-use crate::mesh::Mesh;
 use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -99,6 +101,9 @@ pub(crate) struct LocalMinima {
     piece: Vec<u32>,
     /// The minima that were found.
     found: Vec<LinkProximity>,
+    prominence: Prominence,
+    /// Whether each of them is prominent.
+    keep: Vec<bool>,
 }
 
 /// A link that something may be near to.
@@ -126,27 +131,12 @@ impl Default for Lowest {
     }
 }
 
-/// What the robot is near to.
-#[derive(Clone, Copy)]
-pub(crate) struct Wall<'a> {
-    pub mesh: &'a Mesh,
-    /// Where each triangle stands in the leaves of the search, if it knows slopes.
-    pub place_of: &'a [u32],
-}
-
-impl<'a> Wall<'a> {
-    /// Without a search that knows slopes.
-    pub(crate) fn of(mesh: &'a Mesh) -> Self {
-        Self { mesh, place_of: &[] }
-    }
-}
-
 /// The contacts of a robot, link by link, in `out`.
 pub(crate) struct RobotContacts<'a> {
     level: Level,
     wall: Wall<'a>,
     robot: PlacedRobot<'a>,
-    margin: Real,
+    asked: Asked,
     minima: &'a mut LocalMinima,
     out: &'a mut Vec<Contact>,
     /// How many triangles were measured.
@@ -159,12 +149,12 @@ impl<'a> RobotContacts<'a> {
         level: Level,
         wall: Wall<'a>,
         robot: PlacedRobot<'a>,
-        margin: Real,
+        asked: Asked,
         minima: &'a mut LocalMinima,
         out: &'a mut Vec<Contact>,
     ) -> Self {
         minima.clear();
-        Self { level, wall, robot, margin, minima, out, measured: 0 }
+        Self { level, wall, robot, asked, minima, out, measured: 0 }
     }
 
     /// Looks at a link, behind the last one. `near` adds the triangles that may be within the margin; some may be farther
@@ -190,8 +180,8 @@ impl<'a> RobotContacts<'a> {
 
     /// Finds the contacts of the links that were put off.
     fn catch_up(&mut self) {
-        let Self { level, wall, robot, margin, .. } = *self;
-        self.minima.find(level, wall, margin);
+        let Self { level, wall, robot, asked, .. } = *self;
+        self.minima.find(level, wall, asked.margin);
         let mut links = self.minima.links.iter().peekable();
         let place = |found: &LinkProximity| {
             // Both are in the order of links.
@@ -205,7 +195,11 @@ impl<'a> RobotContacts<'a> {
                 before: robot.length_before(found.link as usize),
             }
         };
+        let first = self.out.len();
         add_contacts(level, &self.minima.found, place, self.out);
+        if asked.prominence > 0.0 {
+            self.minima.keep_prominent(level, wall, asked, first, self.out);
+        }
         self.measured += self.minima.measured.len() as u64;
         self.minima.clear();
     }
@@ -238,7 +232,7 @@ impl LocalMinima {
                 let mut others = shared.others(known.triangle, foot);
                 let leaves_out = |other: u32| match near.index(&self.index, other) {
                     Some(index) => near.in_question[index].upper < known.lower || places[index] == LEFT_OUT,
-                    None => near.is_on_slope(&self.index, wall.place_of, other),
+                    None => near.is_on_slope(&self.index, wall.place_of(), other),
                 };
                 let mut is_left_out = others.by_ref().take(FEW).any(leaves_out);
                 if !is_left_out && others.next().is_some() {
@@ -247,7 +241,7 @@ impl LocalMinima {
                             lowest.upper = lowest.upper.min(near.in_question[index].upper);
                             lowest.is_left_out |= places[index] == LEFT_OUT;
                         }
-                        None => lowest.is_left_out |= near.is_on_slope(&self.index, wall.place_of, other),
+                        None => lowest.is_left_out |= near.is_on_slope(&self.index, wall.place_of(), other),
                     };
                     let lowest = self.lowest.around(shared, near, &self.index, [place, foot], add);
                     // It is not below itself.
@@ -289,6 +283,30 @@ impl LocalMinima {
             self.found.extend(pieces.first_triangles().map(|nearest| link.answer(*link_number, nearest)));
         }
     }
+
+    /// Leaves out the contacts, from `first` on, that are not prominent.
+    fn keep_prominent(
+        &mut self,
+        level: Level,
+        wall: Wall,
+        asked: Asked,
+        first: usize,
+        contacts: &mut Vec<Contact>,
+    ) {
+        self.keep.clear();
+        let mut of_links = contacts[first..].chunk_by(|one, other| one.link == other.link).peekable();
+        for LinkAtWall { number, link, triangles, .. } in &self.links {
+            let Some(of_link) = of_links.next_if(|of_link| of_link[0].link as usize == *number) else {
+                continue;
+            };
+            let near = self.triangles.between(*triangles);
+            self.index.number(near, wall.mesh.len());
+            let around = Surroundings { link, wall, near, index: &self.index };
+            self.prominence.choose(level, around, asked, of_link, &mut self.keep);
+        }
+        let mut keep = std::iter::repeat_n(true, first).chain(self.keep.iter().copied());
+        contacts.retain(|_| keep.next().unwrap_or(true));
+    }
 }
 
 /// Those within the margin, nearest first.
@@ -303,17 +321,17 @@ fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
 /// The contacts of a robot, for an engine without a search of its own for them.
 #[cfg(feature = "gpu")]
 pub(crate) fn contacts_by_all_triangles(
-    mesh: &Mesh,
+    wall: Wall,
     robot: PlacedRobot,
-    margin: Real,
+    asked: Asked,
     out: &mut Vec<Contact>,
 ) {
     let mut minima = LocalMinima::default();
-    let mut contacts = RobotContacts::new(Level::new(), Wall::of(mesh), robot, margin, &mut minima, out);
+    let mut contacts = RobotContacts::new(Level::new(), wall, robot, asked, &mut minima, out);
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
-            let may_meet = |triangle: &u32| link.at_least(mesh.corners(*triangle)) <= margin;
-            near.add_unknown((0..mesh.len() as u32).filter(may_meet));
+            let may_meet = |triangle: &u32| link.at_least(wall.mesh.corners(*triangle)) <= asked.margin;
+            near.add_unknown((0..wall.mesh.len() as u32).filter(may_meet));
         });
     }
     contacts.finish();

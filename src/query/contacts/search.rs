@@ -2,8 +2,10 @@
 
 use super::across::Across;
 use super::gathering::gather;
-use super::local_minima::{LocalMinima, RobotContacts, Wall};
+use super::local_minima::{LocalMinima, RobotContacts};
 use super::near_triangle::NearTriangles;
+use super::prominence::Asked;
+use super::wall::Wall;
 use crate::answer::Contact;
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::LinkNode;
@@ -19,27 +21,27 @@ pub(crate) struct ContactSearch<'a> {
 }
 
 impl ContactSearch<'_> {
-    /// Every contact of the robot at most `margin` away, link by link.
+    /// The contacts of the robot, link by link.
     pub(crate) fn within(
         &mut self,
         robot: PlacedRobot,
-        margin: Real,
+        asked: Asked,
         minima: &mut LocalMinima,
         out: &mut Vec<Contact>,
     ) {
         let (level, hierarchy) = (self.search.level, self.search.hierarchy);
-        let wall = Wall { mesh: &hierarchy.mesh, place_of: &hierarchy.single().place_of };
-        let mut contacts = RobotContacts::new(level, wall, robot, margin, minima, out);
+        let wall = Wall { mesh: &hierarchy.mesh, tree: Some(hierarchy.single()) };
+        let mut contacts = RobotContacts::new(level, wall, robot, asked, minima, out);
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
                 LinkNode::Inner { bound, below } => {
-                    if !self.search.may_meet(&robot.bound(bound), margin) {
+                    if !self.search.may_meet(&robot.bound(bound), asked.margin) {
                         place += below;
                     }
                 }
                 LinkNode::Leaf(link) => {
-                    contacts.add(*link, |link, near| self.near(link, margin, near));
+                    contacts.add(*link, |link, near| self.near(link, asked.margin, near));
                 }
             }
             place += 1;

@@ -1,9 +1,10 @@
 //! The pieces of wall near one link, as they grow and join; `local_minima` derives what they are.
 
-use super::local_minima::{LEFT_OUT, NONE, Wall};
+use super::local_minima::{LEFT_OUT, NONE};
 use super::long_rings::{FEW, LongRings};
 use super::near_triangle::{Index, NearLink};
-use crate::mesh::{PARTS, ends_of};
+use super::wall::Wall;
+use crate::mesh::{PARTS, ends_of, first_of};
 use crate::pair::{Nearest, PlacedLink, Ranked, rounding};
 use parry3d_f64::math::{Real, Vector};
 
@@ -45,7 +46,7 @@ impl Pieces<'_> {
         for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
             let add = |around: &mut Around, other: u32, index: Option<usize>| match index {
                 Some(index) => around.add(self.places[index], self.near.in_question[index].lower),
-                None => around.slopes |= self.near.is_on_slope(self.index, self.wall.place_of, other),
+                None => around.slopes |= self.near.is_on_slope(self.index, self.wall.place_of(), other),
             };
             let (mut around, mut others) = (Around::default(), shared.others(nearest.triangle, part));
             for other in others.by_ref().take(FEW) {
@@ -73,7 +74,7 @@ impl Pieces<'_> {
                 if holds_least_point != met_there {
                     continue;
                 }
-                let (mine, other) = (self.first_of(place), self.first_of(with));
+                let [mine, other] = [place, with].map(|place| first_of(self.piece, place));
                 if mine == other {
                     continue;
                 }
@@ -92,16 +93,6 @@ impl Pieces<'_> {
     fn grown(&self, place: u32) -> Real {
         let ranked = (place as usize).checked_sub(1).map(|place| &self.ranked[place]);
         ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
-    }
-
-    /// The triangle at which a piece appeared.
-    fn first_of(&mut self, mut place: u32) -> u32 {
-        while self.piece[place as usize] != place {
-            let next = self.piece[place as usize];
-            self.piece[place as usize] = self.piece[next as usize];
-            place = next;
-        }
-        place
     }
 }
 

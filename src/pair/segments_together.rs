@@ -1,0 +1,99 @@
+//! Points and segments of the mesh against one link, a pack at a time: the bits are the same on every instruction set.
+
+use super::coordinates::Placed;
+use super::pair_lanes::{PairLanes, Rows, TOGETHER, corners, put_corners};
+use super::placed_link::PlacedLink;
+use super::ranked::rounding;
+use crate::distance::lanes::Pack;
+use crate::distance::{Unfused, dispatch};
+use fearless_simd::Level;
+use parry3d_f64::math::{Real, Vector};
+
+/// The distance of a point or a segment from a link, and what rounding can do to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Height {
+    pub distance: Real,
+    pub rounding: Real,
+}
+
+/// Measures points. `take` gets the height of each, in order.
+pub(crate) fn measure_points(
+    level: Level,
+    link: &PlacedLink,
+    points: impl Iterator<Item = Vector>,
+    take: impl FnMut(Height),
+) {
+    measure(level, link, points.map(|point| [point; 2]), true, take);
+}
+
+/// Measures segments, each given by its two ends. `take` gets the height of each, in order.
+pub(crate) fn measure_segments(
+    level: Level,
+    link: &PlacedLink,
+    segments: impl Iterator<Item = [Vector; 2]>,
+    take: impl FnMut(Height),
+) {
+    measure(level, link, segments, false, take);
+}
+
+fn measure(
+    level: Level,
+    link: &PlacedLink,
+    mut segments: impl Iterator<Item = [Vector; 2]>,
+    are_points: bool,
+    mut take: impl FnMut(Height),
+) {
+    let (mut rows, mut found) = ([[0.0; TOGETHER]; 9], [[0.0; TOGETHER]; 2]);
+    loop {
+        let mut count = 0;
+        for [from, to] in segments.by_ref().take(TOGETHER) {
+            put_corners(&mut rows, count, [from, to, to]);
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        measure_pack(level, link, &rows, count, are_points, &mut found);
+        let [distances, extents] = &found;
+        for (&distance, &extent) in distances.iter().zip(extents).take(count) {
+            take(Height { distance, rounding: rounding(extent) });
+        }
+    }
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn measure_pack(
+    level: Level,
+    link: &PlacedLink,
+    segments: &Rows<9>,
+    count: usize,
+    are_points: bool,
+    found: &mut Rows<2>,
+) {
+    dispatch!(level, simd => fill::<Unfused<_>>(simd, link, segments, count, are_points, found));
+}
+
+#[inline(always)]
+fn fill<L: Pack<Element = f64>>(
+    token: L::Token,
+    link: &PlacedLink,
+    segments: &Rows<9>,
+    count: usize,
+    are_points: bool,
+    [distances, extents]: &mut Rows<2>,
+) {
+    let link = Placed::<L>::splat(token, link);
+    for lane in (0..count).step_by(L::LANES) {
+        let corners = corners::<L, 9>(token, segments, lane);
+        let (distance, unit, extent) = if are_points {
+            let pair = link.with(corners);
+            let (distance, _) = pair.link.closest_to(pair.triangle[0]);
+            (distance, pair.unit, pair.extent)
+        } else {
+            let found = PairLanes::between(&link, corners);
+            (found.closest.distance, found.pair.unit, found.pair.extent)
+        };
+        (distance * unit).store(&mut distances[lane..]);
+        extent.store(&mut extents[lane..]);
+    }
+}
