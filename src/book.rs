@@ -30,6 +30,9 @@ pub mod trade {}
 #[doc = include_str!("../docs/book/certificates.md")]
 pub mod certificates {}
 
+#[doc = include_str!("../docs/book/proofs.md")]
+pub mod proofs {}
+
 #[doc = include_str!("../docs/book/errors.md")]
 pub mod errors {}
 

@@ -32,6 +32,12 @@
 //! | does a [`Motion`](crate::Motion) keep a margin all the way? | [`clears_motion`](BvhSearch::clears_motion) |
 //! | when does it first lose it? | [`time_of_contact`](BvhSearch::time_of_contact) |
 //!
+//! **A proof for others**
+//!
+//! | question | call |
+//! |---|---|
+//! | a proof that a margin is kept, which a short program checks without this library | [`prove`](BvhSearch::prove), [`prove_tube`](BvhSearch::prove_tube), [`prove_motion`](BvhSearch::prove_motion) |
+//!
 //! **Inside or outside**
 //!
 //! | question | call |
@@ -95,9 +101,9 @@
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, PlacementFault, ProximityError, RobotProximity,
-    SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece,
-    Witness, Work,
+    LinkFeature, LinkProximity, MeshError, MotionAnswer, PlacementFault, Proof, ProximityError,
+    RobotProximity, SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest,
+    TriangleFeature, TubePiece, Witness, Work,
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,

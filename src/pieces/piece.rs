@@ -84,7 +84,7 @@ impl PlacedTube<'_> {
     }
 
     /// The ticks between which a section is free of its faces. The first is the second where it is not.
-    fn between_faces(&self, number: u32) -> [u32; 2] {
+    pub(crate) fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let [first, last] = self.faces(section).map(|face| face.is_some());
         let room = [0, 1].map(|end| ROOM * section.room(end));

@@ -4,6 +4,7 @@ pub(crate) mod clearance;
 pub(crate) mod contacts;
 pub(crate) mod motion;
 pub(crate) mod nearest;
+pub(crate) mod proof;
 pub(crate) mod robots;
 pub(crate) mod side;
 

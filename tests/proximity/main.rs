@@ -21,6 +21,7 @@ mod patches;
 mod pieces;
 mod planner;
 mod prominence;
+mod proofs;
 mod rings;
 mod robots;
 mod scenes;

@@ -3,6 +3,7 @@
 mod clearance;
 mod motion;
 mod prepared_mesh;
+mod proof;
 mod search;
 mod side;
 

@@ -1,0 +1,128 @@
+//! Proofs that others can check, as [`BvhSearch`] writes them.
+
+use super::search::BvhSearch;
+use crate::answer::{Decision, Proof, ProximityError};
+use crate::engine::Proximity;
+use crate::pair::PlacedRobot;
+use crate::pieces::PlacedTube;
+use crate::query::check_decision;
+use crate::query::proof::{Kind, Parting, Shape, motion_proof, tube_shape, write_proof};
+use crate::robot::{Chain, Motion, Tube};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real};
+
+impl BvhSearch {
+    /// A proof that the robot keeps more than `margin` away from the mesh, for those who do not trust this library: a text
+    /// that a short program in plain Python checks. The [page on proofs](crate::book::proofs) has both.
+    ///
+    /// `None` if the robot does not keep the margin, or by no more than rounding. The work is that of many queries: a proof
+    /// is for a plan that somebody signs, and not for a loop.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+    /// let proof = search.prove(&robot, &Pose::IDENTITY, 1.0)?.ok_or("not clear")?;
+    /// assert!(proof.planes() < 100 && proof.to_string().starts_with("proof of clearance 1\n"));
+    /// // std::fs::write("proof.txt", proof.to_string())?;
+    /// assert_eq!(search.prove(&robot, &Pose::IDENTITY, 6.0)?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
+    pub fn prove(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        margin: Real,
+    ) -> Result<Option<Proof>, ProximityError> {
+        if !self.clears(robot, pose, margin)? {
+            return Ok(None);
+        }
+        let shape = Shape::of_chain(PlacedRobot::new(robot, pose)?);
+        let mut parting = self.parting();
+        Ok(shape.and_then(|shape| {
+            let steps = parting.steps(&shape.bodies(margin))?;
+            Some(write_proof(parting.mesh(), margin, Kind::Chain, &[(shape, steps)]))
+        }))
+    }
+
+    /// [`prove`](Self::prove) for a tube. What the proof takes for granted of the curve is printed by the program that checks
+    /// it: points, and how long and how bent it is between them at most.
+    ///
+    /// `None` if the tube does not keep the margin, or by no more than `resolution`.
+    ///
+    /// # Errors
+    /// As [`tube_clears`](Self::tube_clears).
+    pub fn prove_tube(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Option<Proof>, ProximityError> {
+        if self.tube_clears(tube, pose, margin, resolution)? != Decision::Clear {
+            return Ok(None);
+        }
+        let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.reach)?;
+        let mut parting = self.parting();
+        // Coarse pieces, and finer ones as long as they do not suffice.
+        let finest = (0.25 * resolution).max(placed.slack());
+        let mut over = tube.length() / 16.0;
+        loop {
+            let (shape, _) = tube_shape(&placed, over, false);
+            if let Some(steps) = parting.steps(&shape.bodies(margin)) {
+                return Ok(Some(write_proof(parting.mesh(), margin, Kind::Tube, &[(shape, steps)])));
+            }
+            if over <= finest {
+                return Ok(None);
+            }
+            over = (0.25 * over).max(finest);
+        }
+    }
+
+    /// [`prove`](Self::prove) for a motion: the proof that the robot keeps more than `margin` away at every time from 0 to 1.
+    /// The speeds that the motion states are taken for granted, and printed.
+    ///
+    /// `None` if some shape does not keep the margin, or by no more than about `resolution`.
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let (from, to) = ([Vector::ZERO, Vector::Z * 4.0], [Vector::ZERO, Vector::X * 4.0]);
+    /// let motion = LinearMotion::chain(&from, &to, &[1.0])?;
+    /// let proof = search.prove_motion(&motion, 1.0, 0.01)?.ok_or("not clear")?;
+    /// assert!(proof.shapes() >= 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`clears_motion`](Self::clears_motion).
+    pub fn prove_motion(
+        &mut self,
+        motion: &impl Motion,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Option<Proof>, ProximityError> {
+        check_decision(margin, resolution)?;
+        if !self.clears_motion(motion, margin, resolution)?.is_clear() {
+            return Ok(None);
+        }
+        let reach = self.prepared().hierarchy.reach;
+        let mut parting = self.parting();
+        let shapes = motion_proof(&mut parting, reach, motion, margin, resolution)?;
+        Ok(shapes.map(|shapes| write_proof(parting.mesh(), margin, Kind::Motion, &shapes)))
+    }
+
+    fn parting(&self) -> Parting<'_> {
+        Parting::new(Level::new(), &self.prepared().hierarchy.mesh)
+    }
+}

@@ -1,0 +1,60 @@
+//! Directions along which a plane may part a group of triangles from a run of bodies. They need not be right: a plane counts
+//! only once it is seen to part the two.
+
+use super::body::Body;
+use super::groups::Group;
+use crate::answer::LinkProximity;
+use crate::mesh::Mesh;
+use crate::pair::{PlacedLink, PlacedPair, add_contacts};
+use fearless_simd::Level;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
+use parry3d_f64::shape::SupportMap;
+
+/// Points, moved and scaled to near one.
+struct Points<'a> {
+    points: Vec<&'a Vector>,
+    centre: Vector,
+    scale: Real,
+}
+
+impl SupportMap for Points<'_> {
+    fn local_support_point(&self, direction: Vector) -> Vector {
+        let farther = |a: (Real, Vector), point: &&Vector| {
+            let height = direction.dot(**point);
+            if height > a.0 { (height, **point) } else { a }
+        };
+        let (_, point) = self.points.iter().fold((Real::NEG_INFINITY, self.centre), farther);
+        (point - self.centre) * self.scale
+    }
+}
+
+/// The way from the nearest point of the bodies' axes to that of the group's hull, if the two are apart (parry's GJK).
+pub(super) fn between_hulls(group: &Group, bodies: &[Body]) -> Option<Vector> {
+    let ends = bodies.iter().flat_map(|body| &body.ends);
+    let [low, high] = ends.clone().fold(group.bounds, |[low, high], &end| [low.min(end), high.max(end)]);
+    let size = (high - low).max_element();
+    let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+    let centre = 0.5 * low + 0.5 * high;
+    let wall = Points { points: group.vertices.iter().collect(), centre, scale };
+    let robot = Points { points: ends.collect(), centre, scale };
+    let mut simplex = VoronoiSimplex::new();
+    simplex.reset(CsoPoint::from_shapes(&Pose::IDENTITY, &robot, &wall, Vector::X));
+    match closest_points(&Pose::IDENTITY, &robot, &wall, Real::MAX, true, &mut simplex) {
+        GJKResult::ClosestPoints(on_robot, on_wall, _) => Some(on_wall - on_robot),
+        _ => None,
+    }
+}
+
+/// The ways from a body to one triangle along which the two may be parted.
+pub(super) fn between_pair(level: Level, mesh: &Mesh, triangle: u32, body: &Body) -> [Option<Vector>; 4] {
+    let (corners, [start, end]) = (mesh.corners(triangle), body.ends);
+    let link = PlacedLink::between(start, end, body.radius, body.flat);
+    let answer: LinkProximity = link.answer(0, &link.measure(triangle, corners));
+    let place = PlacedPair { ends: body.ends, radius: body.radius, flat: body.flat, corners, before: 0.0 };
+    let mut contacts = Vec::new();
+    add_contacts(level, &[answer], |_| place, &mut contacts);
+    let from_features = contacts.first().and_then(|contact| contact.normal).map(|normal| -normal);
+    let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    [from_features, Some(answer.on_mesh - answer.on_robot), Some(face), Some(-face)]
+}

@@ -1,0 +1,17 @@
+//! Proofs that travel: planes that part a robot from a mesh, found here and checked elsewhere, by `docs/book/check_proof.py`.
+//! The book's page on proofs has the reasoning.
+
+mod body;
+mod direction;
+mod groups;
+mod motion_proof;
+mod parting;
+mod shape;
+mod text;
+mod tube_shape;
+
+pub(crate) use motion_proof::motion_proof;
+pub(crate) use parting::Parting;
+pub(crate) use shape::Shape;
+pub(crate) use text::{Kind, write_proof};
+pub(crate) use tube_shape::tube_shape;

@@ -1,0 +1,86 @@
+//! A proof as a text, in the format of the book's page on proofs.
+
+use super::parting::Step;
+use super::shape::{Piece, Shape};
+use crate::answer::Proof;
+use crate::mesh::Mesh;
+use parry3d_f64::math::{Real, Vector};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+/// A shape, and the steps that part it from the mesh.
+pub(crate) type Parted = (Shape, Vec<Step>);
+
+/// What a proof is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Chain,
+    Tube,
+    Motion,
+}
+
+/// Steps on one line of the text.
+const ON_A_LINE: usize = 16;
+
+/// The proof that shapes, each with its steps, keep a margin.
+pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Parted]) -> Proof {
+    let (mut text, mut planes) = (String::new(), 0);
+    let name = match kind {
+        Kind::Chain => "chain",
+        Kind::Tube => "tube",
+        Kind::Motion => "motion",
+    };
+    let (vertices, triangles) = (mesh.vertices().len(), mesh.len());
+    let mut write = |line: std::fmt::Arguments| text.write_fmt(line).unwrap_or_default();
+    write(format_args!("proof of clearance 1\nmesh {vertices} {triangles} {}\n", digest(mesh)));
+    write(format_args!("margin {margin:?}\n{name} {}\n", shapes.len()));
+    for (shape, steps) in shapes {
+        write(format_args!("shape"));
+        if kind == Kind::Motion {
+            let [from, to] = shape.times;
+            write(format_args!(" {from:?} {to:?}"));
+        }
+        write(format_args!(" {}\n", shape.pieces.len()));
+        for Vector { x, y, z } in &shape.points {
+            write(format_args!("{x:?} {y:?} {z:?}\n"));
+        }
+        for piece in &shape.pieces {
+            let Piece { radius, flat, curvature, length, off, speed, turn } = piece;
+            let [start, end] = flat.map(|flat| if flat { 'f' } else { 'r' });
+            write(format_args!("{radius:?} {start}{end}"));
+            if kind != Kind::Chain {
+                write(format_args!(" {curvature:?} {length:?} {off:?}"));
+            }
+            if kind == Kind::Motion {
+                write(format_args!(" {speed:?} {turn:?}"));
+            }
+            write(format_args!("\n"));
+        }
+        write(format_args!("steps {}\n", steps.len()));
+        for (number, step) in (1..).zip(steps) {
+            match step {
+                Step::Triangles => write(format_args!("t")),
+                Step::Pieces => write(format_args!("p")),
+                Step::Plane([x, y, z]) => {
+                    planes += 1;
+                    write(format_args!("{x},{y},{z}"));
+                }
+            }
+            let is_last = number % ON_A_LINE == 0 || number == steps.len();
+            write(format_args!("{}", if is_last { '\n' } else { ' ' }));
+        }
+    }
+    write(format_args!("end\n"));
+    Proof::new(text, planes, shapes.len())
+}
+
+/// SHA-256 over all coordinates, then the corners of all triangles, little-endian.
+fn digest(mesh: &Mesh) -> String {
+    let mut sha = Sha256::new();
+    for vertex in mesh.vertices() {
+        // 0 and -0 are one place.
+        (*vertex + Vector::ZERO).to_array().iter().for_each(|x| sha.update(x.to_le_bytes()));
+    }
+    mesh.indices().as_flattened().iter().for_each(|corner| sha.update(corner.to_le_bytes()));
+    sha.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
+}

@@ -1,0 +1,447 @@
+//! Proofs that travel: `docs/book/check_proof.py` says yes to those of clear chains, tubes and motions, and no to those that were
+//! tampered with.
+
+use super::contacts::{small_mesh, small_robot};
+use continuum_demo::{ctr, ventricle};
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::Ball;
+use parry_continuum::proximity::{BvhSearch, Proof, Proximity};
+use parry_continuum::{Chain, LinearMotion, RigidMotion, Tube, TubeSection};
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Says yes or no to each proof that is named on the command line behind its mesh, and how long it took.
+const ALL: &str = "
+import contextlib, io, sys, time
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import check_proof
+names = sys.argv[2:]
+for mesh, proof in zip(names[::2], names[1::2]):
+    said, begin = io.StringIO(), time.perf_counter()
+    try:
+        with contextlib.redirect_stdout(said):
+            check_proof.main(mesh, proof)
+        answer = 'yes'
+    except (check_proof.No, OSError, ValueError) as reason:
+        answer = f'no: {reason}'
+    lines = said.getvalue().replace(chr(10), '|')
+    print(f'{time.perf_counter() - begin:.3f};{answer};{lines}')
+";
+
+/// What the program says.
+#[derive(Debug)]
+struct Said {
+    is_yes: bool,
+    text: String,
+    time: Duration,
+}
+
+/// Meshes and proofs for the program, each in a file.
+struct Checks {
+    folder: PathBuf,
+    files: Vec<PathBuf>,
+}
+
+impl Checks {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("proofs-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        Self { folder, files: Vec::new() }
+    }
+
+    fn add(&mut self, mesh: &str, proof: &str) {
+        for (text, kind) in [(mesh, "obj"), (proof, "txt")] {
+            let path = self.folder.join(format!("{}.{kind}", self.files.len()));
+            fs::write(&path, text).unwrap();
+            self.files.push(path);
+        }
+    }
+
+    /// What is said of each; none where there is no Python and no need to have one.
+    fn run(self) -> Option<Vec<Said>> {
+        let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/book");
+        let output = Command::new("python3").args(["-c", ALL, docs]).args(&self.files).output();
+        fs::remove_dir_all(&self.folder).unwrap();
+        let output = match output {
+            Ok(output) => output,
+            Err(error) if std::env::var_os("CI").is_none() => {
+                eprintln!("skipped, without python3: {error}");
+                return None;
+            }
+            Err(error) => panic!("python3: {error}"),
+        };
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8(output.stdout).unwrap();
+        let said: Vec<_> = said
+            .lines()
+            .map(|line| {
+                let (time, text) = line.split_once(';').unwrap();
+                let time = Duration::from_secs_f64(time.parse().unwrap());
+                Said { is_yes: text.starts_with("yes;"), text: text.to_owned(), time }
+            })
+            .collect();
+        assert_eq!(said.len(), self.files.len() / 2);
+        Some(said)
+    }
+}
+
+fn obj(search: &BvhSearch) -> String {
+    let vertices = search.vertices().iter().map(|v| format!("v {:?} {:?} {:?}\n", v.x, v.y, v.z));
+    let faces = search.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    vertices.chain(faces).collect()
+}
+
+fn ball(radius: f64, parts: u32) -> BvhSearch {
+    let (vertices, triangles) = Ball::new(radius).to_trimesh(2 * parts, parts);
+    BvhSearch::from_triangles(&vertices, &triangles).unwrap()
+}
+
+/// Points on a bend.
+fn bend(count: u32, length: f64, curvature: f64) -> Vec<Vector> {
+    let point = |k: u32| {
+        let s = length * f64::from(k) / f64::from(count);
+        Vector::new((1.0 - (curvature * s).cos()) / curvature, 0.0, (curvature * s).sin() / curvature)
+    };
+    (0..=count).map(point).collect()
+}
+
+/// What keeps a margin has a proof, however near it comes, and what does not has none.
+#[test]
+fn chains_that_keep_a_margin_are_proven() {
+    let (mut checks, mut planes, mut refused, mut flat) = (Checks::new("chains"), Vec::new(), 0, 0);
+    for seed in 0..150 {
+        let random = &mut Random::new(seed);
+        let (mesh, robot) = (small_mesh(random), small_robot(random));
+        let pose = if random.below(2) == 0 { Pose::IDENTITY } else { random.pose(1.5) };
+        let mut search = BvhSearch::new(&mesh).unwrap();
+        let distance = search.minimum(&robot, &pose).unwrap().distance;
+        for margin in [distance, distance * (1.0 + 1e-9), 2.0 * distance + 0.1] {
+            assert_eq!(search.prove(&robot, &pose, margin).unwrap(), None, "{seed}: {margin}");
+            refused += 1;
+        }
+        if distance < 1e-3 {
+            continue;
+        }
+        let margin = distance * [0.0, 0.5, 0.999, 1.0 - 1e-9][random.below(4) as usize];
+        let proof = search.prove(&robot, &pose, margin).unwrap();
+        let proof = proof.unwrap_or_else(|| panic!("{seed}: no proof of {margin} < {distance}"));
+        flat += usize::from(proof.to_string().contains(" ff") || proof.to_string().contains("fr"));
+        planes.push(proof.planes());
+        checks.add(&obj(&search), &proof.to_string());
+    }
+    let Some(said) = checks.run() else { return };
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+    let most = planes.iter().max();
+    assert!(said.len() > 60 && flat > 20 && refused > 400, "{} {flat} {refused} {most:?}", said.len());
+}
+
+/// A text with the words between two numbers of a line changed.
+fn with_line(text: &str, starts: &str, change: impl Fn(&str) -> String) -> String {
+    let mut is_changed = false;
+    let lines = text.lines().map(|line| {
+        if line.starts_with(starts) && !is_changed {
+            is_changed = true;
+            return change(line);
+        }
+        line.to_owned()
+    });
+    let text = lines.map(|line| line + "\n").collect();
+    assert!(is_changed, "{starts}");
+    text
+}
+
+/// The lines of the proof of a chain.
+struct Lines {
+    head: Vec<String>,
+    points: Vec<String>,
+    pieces: Vec<String>,
+    steps: Vec<String>,
+}
+
+impl Lines {
+    fn of(proof: &Proof) -> Self {
+        let text = proof.to_string();
+        let lines: Vec<_> = text.lines().map(str::to_owned).collect();
+        let shape = lines.iter().position(|line| line.starts_with("shape ")).unwrap();
+        let count: usize = lines[shape].split(' ').next_back().unwrap().parse().unwrap();
+        let steps = lines[shape + 2 * count + 3..lines.len() - 1].iter();
+        Self {
+            head: lines[..shape].to_vec(),
+            points: lines[shape + 1..shape + 2 + count].to_vec(),
+            pieces: lines[shape + 2 + count..shape + 2 + 2 * count].to_vec(),
+            steps: steps.flat_map(|line| line.split(' ')).map(str::to_owned).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let Self { head, points, pieces, steps } = self;
+        let (count, done) = (pieces.len(), steps.len());
+        let parts = [head.join("\n"), format!("shape {count}"), points.join("\n"), pieces.join("\n")];
+        format!("{}\nsteps {done}\n{}\nend\n", parts.join("\n"), steps.join(" "))
+    }
+}
+
+/// 200 texts of which each has one step or one number that makes it false.
+#[test]
+fn what_was_tampered_with_is_refused() {
+    let mut search = ball(10.0, 8);
+    let robot = Chain::from_centreline(&bend(12, 8.0, 0.1), &[0.9; 12]).unwrap();
+    let distance = search.minimum(&robot, &Pose::IDENTITY).unwrap().distance;
+    let proof = search.prove(&robot, &Pose::IDENTITY, 0.5 * distance).unwrap().unwrap();
+    let (mesh, good) = (obj(&search), || Lines::of(&proof));
+    let random = &mut Random::new(5);
+    let mut checks = Checks::new("tampered");
+    checks.add(&mesh, &proof.to_string());
+    checks.add(&mesh, &good().text());
+    let untouched = 2;
+    let mut what = Vec::new();
+    let mut tamper = |name: &str, mesh: &str, text: String| {
+        assert!(text != good().text() || mesh != obj(&search), "{name}: not touched");
+        checks.add(mesh, &text);
+        what.push(name.to_owned());
+    };
+    let planes: Vec<_> = (0..good().steps.len()).filter(|&k| good().steps[k].contains(',')).collect();
+    for round in 0..25 {
+        // A plane with the robot on its wrong side, or none.
+        let mut lines = good();
+        let at = planes[random.below(planes.len() as u32) as usize];
+        let opposite = |number: &str| number.strip_prefix('-').map_or(format!("-{number}"), str::to_owned);
+        lines.steps[at] = lines.steps[at].split(',').map(opposite).collect::<Vec<_>>().join(",");
+        tamper("a plane points to the robot", &mesh, lines.text());
+        // A step less, or one more.
+        let mut lines = good();
+        lines.steps.remove(random.below(lines.steps.len() as u32) as usize);
+        tamper("a step is missing", &mesh, lines.text());
+        let mut lines = good();
+        let at = random.below(lines.steps.len() as u32) as usize;
+        lines.steps.insert(at, ["t", "p", "1,0,0", "q"][round % 4].to_owned());
+        tamper("a step is added", &mesh, lines.text());
+        // What is claimed is not so.
+        let mut lines = good();
+        lines.head[2] = format!("margin {:?}", distance * random.between(1.0 + 1e-12, 9.0));
+        tamper("the margin is not kept", &mesh, lines.text());
+        let mut lines = good();
+        let at = random.below(lines.points.len() as u32) as usize;
+        let vertex = search.vertices()[random.below(search.vertices().len() as u32) as usize];
+        lines.points[at] = format!("{:?} {:?} {:?}", vertex.x, vertex.y, vertex.z);
+        tamper("the robot meets the wall", &mesh, lines.text());
+        let mut lines = good();
+        let at = random.below(lines.pieces.len() as u32) as usize;
+        lines.pieces[at] = lines.pieces[at].replace("0.9 ", "11.0 ");
+        tamper("the robot is as wide as the wall", &mesh, lines.text());
+        // Another mesh.
+        let at = random.below(search.vertices().len() as u32) as usize;
+        let moved: String = mesh
+            .lines()
+            .enumerate()
+            .map(|(number, line)| {
+                if number != at {
+                    return format!("{line}\n");
+                }
+                let v = search.vertices()[at];
+                format!("v {:?} {:?} {:?}\n", v.x, v.y, f64::from_bits((v.z + 0.0).to_bits() ^ 1))
+            })
+            .collect();
+        tamper("a vertex is off by its last bit", &moved, good().text());
+        let text = good().text();
+        let end = random.below(text.len() as u32 - 1) as usize;
+        tamper("the end is missing", &mesh, text[..end].to_owned());
+    }
+    for (starts, from, to) in [
+        ("mesh", " ", " 1"),
+        ("mesh", "mesh", "mush"),
+        ("proof", "1", "2"),
+        ("margin", "margin ", "margin -"),
+        ("margin", "margin 0", "margin nan"),
+        ("margin", "margin ", "margin 1e999"),
+        ("chain", "chain", "motion"),
+        ("chain", "chain", "tube"),
+        ("chain", "1", "2"),
+        ("chain", "1", "0"),
+        ("shape", "12", "11"),
+        ("shape", "12", "13"),
+        ("0.9", "0.9", "-0.9"),
+        ("0.9", "0.9 ", "0.9 x"),
+        ("0.9", "0.9", "inf"),
+        ("steps", "steps ", "steps 1"),
+        ("end", "end", "end end"),
+        ("end", "end", "0,0,0"),
+    ] {
+        let text = with_line(&good().text(), starts, |line| line.replacen(from, to, 1));
+        tamper(&format!("{starts}: {to} for {from}"), &mesh, text);
+    }
+    let reordered = mesh.lines().rev().map(|line| format!("{line}\n")).collect::<String>();
+    tamper("the mesh is in another order", &reordered, good().text());
+    let fewer = mesh.trim_end().rsplit_once('\n').unwrap().0.to_owned();
+    tamper("a triangle is missing", &fewer, good().text());
+    let mut lines = good();
+    lines.steps[planes[0]] = "0,0,0".to_owned();
+    tamper("a plane without a normal", &mesh, lines.text());
+
+    // What harms nothing: the answer is yes, and what was changed is printed.
+    let mut harmless = Vec::new();
+    let mut leave = |said: &str, text: String| {
+        checks.add(&mesh, &text);
+        harmless.push(said.to_owned());
+    };
+    let mut lines = good();
+    lines.head[2] = "margin 0.0 # less".to_owned();
+    leave("more than 0.0 from", lines.text());
+    let mut lines = good();
+    lines.pieces[3] = lines.pieces[3].replace("0.9 ", "0.25 ");
+    leave("radius 0.25,", lines.text());
+    let mut lines = good();
+    // The first link is half as long.
+    let [x, y, z] = [0, 1, 2].map(|k| {
+        let number: f64 = lines.points[1].split(' ').nth(k).unwrap().parse().unwrap();
+        0.5 * number
+    });
+    lines.points[0] = format!("{x:?} {y:?} {z:?}");
+    leave(&format!("{z:?}) to"), lines.text());
+    let mut lines = good();
+    for &at in &planes {
+        let threefold = |number: &str| (3 * number.parse::<i64>().unwrap()).to_string();
+        lines.steps[at] = lines.steps[at].split(',').map(threefold).collect::<Vec<_>>().join(",");
+    }
+    leave("planes", lines.text());
+    leave("planes", good().text().replace(' ', "\n# again\n  "));
+
+    let Some(said) = checks.run() else { return };
+    assert!(said[..untouched].iter().all(|said| said.is_yes), "{:?}", &said[..untouched]);
+    let (tampered, left) = said[untouched..].split_at(what.len());
+    for (said, what) in tampered.iter().zip(&what) {
+        assert!(!said.is_yes, "{what}: {said:?}");
+    }
+    assert!(tampered.len() >= 200, "{}", tampered.len());
+    for (said, expected) in left.iter().zip(&harmless) {
+        assert!(said.is_yes && said.text.contains(expected), "{expected}: {said:?}");
+    }
+}
+
+/// Tubes and motions, beside and through what the library itself decides.
+#[test]
+fn tubes_and_motions_that_keep_a_margin_are_proven() {
+    let mut checks = Checks::new("tubes");
+    let mut search = ball(10.0, 12);
+    let mut texts = Vec::new();
+    let mut prove = |search: &BvhSearch, proof: Option<Proof>, what: &str| {
+        let proof = proof.unwrap_or_else(|| panic!("{what}: no proof"));
+        checks.add(&obj(search), &proof.to_string());
+        texts.push((what.to_owned(), proof));
+    };
+    let sampled = Tube::from_samples(&bend(40, 8.0, 0.11), &[0.6; 40], None).unwrap();
+    let section = TubeSection { length: 8.0, radius: 0.5, curvature: 0.2 };
+    let function = Tube::from_function(&[section], |s| {
+        let (sin, cos) = (0.2 * s).sin_cos();
+        (Vector::new(0.0, 4.0 - 5.0 * cos, 5.0 * sin), Vector::new(0.0, sin, cos))
+    });
+    let chain = Tube::from(&Chain::from_centreline(&bend(8, 7.0, 0.1), &[0.7; 8]).unwrap());
+    let tubes = [("samples", sampled), ("chain", chain), ("function", function.unwrap())];
+    for (name, tube) in &tubes {
+        let found = search.clearance(tube, &Pose::IDENTITY, 1e-3).unwrap();
+        for share in [0.0, 0.5, 0.95] {
+            let proof = search.prove_tube(tube, &Pose::IDENTITY, share * found.lower, 1e-3).unwrap();
+            prove(&search, proof, name);
+        }
+        assert_eq!(search.prove_tube(tube, &Pose::IDENTITY, found.upper, 1e-3).unwrap(), None, "{name}");
+    }
+    let (from, to) = (bend(8, 7.0, 0.01), bend(8, 7.0, 0.12));
+    let bending = LinearMotion::chain(&from, &to, &[0.5; 8]).unwrap();
+    for margin in [0.0, 0.2] {
+        let proof = search.prove_motion(&bending, margin, 1e-2).unwrap();
+        prove(&search, proof, "bending");
+    }
+    let away = Pose::from_translation(Vector::new(1.0, 1.0, -2.0));
+    let pushed = RigidMotion::new(tubes[0].1.clone(), [Pose::IDENTITY, away]).unwrap();
+    let proof = search.prove_motion(&pushed, 0.1, 1e-2).unwrap();
+    prove(&search, proof, "pushed");
+    let through = Pose::from_translation(Vector::X * 30.0);
+    let through = RigidMotion::new(tubes[0].1.clone(), [Pose::IDENTITY, through]).unwrap();
+    assert_eq!(search.prove_motion(&through, 0.0, 1e-2).unwrap(), None);
+
+    // A motion that was tampered with.
+    let good = texts.iter().find(|(name, _)| name == "bending").unwrap().1.to_string();
+    let times: Vec<_> = good.lines().filter(|line| line.starts_with("shape ")).collect();
+    let faster = with_line(&good, "0.5 ", |line| {
+        let words: Vec<_> = line.split(' ').collect();
+        format!("{} {} {} {} {} 1000.0 {}", words[0], words[1], words[2], words[3], words[4], words[6])
+    });
+    let late = good.replacen(times[0], &times[0].replacen(" 0.0 ", " 0.0625 ", 1), 1);
+    let short =
+        good.replacen(times[times.len() - 1], &times[times.len() - 1].replacen(" 1.0 ", " 0.9375 ", 1), 1);
+    for text in [&faster, &late, &short] {
+        assert_ne!(**text, good);
+        checks.add(&obj(&search), text);
+    }
+    let Some(said) = checks.run() else { return };
+    let (said, tampered) = said.split_at(texts.len());
+    for (said, (what, proof)) in said.iter().zip(&texts) {
+        assert!(said.is_yes, "{what}: {said:?}");
+        assert!(said.text.contains("curvature"), "{what}: its premises are not printed");
+        println!(
+            "{what}: {} shapes, {} planes, {} bytes, {:?}",
+            proof.shapes(),
+            proof.planes(),
+            proof.to_string().len(),
+            said.time
+        );
+    }
+    assert!(tampered.iter().all(|said| !said.is_yes), "{tampered:?}");
+}
+
+/// The robot of the demo at its goal, and where it stands in the ventricle.
+fn robot_in_ventricle() -> (Chain, Pose) {
+    let robot = ctr::three_tubes().centreline(&ventricle::goal(), 60);
+    (Chain::from_centreline(&robot.points, &robot.radii).unwrap(), ventricle::entry())
+}
+
+/// What the proofs of a shape and of a motion take in the ventricle, with so many triangles.
+fn in_the_ventricle(triangles: usize) -> Option<[(usize, Duration); 2]> {
+    let (vertices, triangles) = ventricle::mesh(triangles);
+    let (robot, pose) = robot_in_ventricle();
+    let mut search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+    let distance = search.minimum(&robot, &pose).unwrap().distance;
+    let begin = Instant::now();
+    let shape = search.prove(&robot, &pose, 0.5 * distance).unwrap().unwrap();
+    let shape_proven = begin.elapsed();
+    let pushed = Pose::from_translation(pose.rotation * (0.4 * Vector::Z)) * pose;
+    let motion = RigidMotion::new(Tube::from(&robot), [pose, pushed]).unwrap();
+    let begin = Instant::now();
+    let edge = search.prove_motion(&motion, 0.25 * distance, 1e-2).unwrap().unwrap();
+    let edge_proven = begin.elapsed();
+    let mut checks = Checks::new(&format!("ventricle-{}", triangles.len()));
+    checks.add(&obj(&search), &shape.to_string());
+    checks.add(&obj(&search), &edge.to_string());
+    let said = checks.run()?;
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+    let of = |proof: &Proof, said: &Said, proven: Duration| {
+        let (planes, shapes, bytes) = (proof.planes(), proof.shapes(), proof.to_string().len());
+        println!(
+            "{} triangles, {} links {distance} away: {shapes} shapes, {planes} planes, {bytes} bytes, proven in {proven:?}, \
+             checked in {:?}",
+            triangles.len(),
+            robot.links().len(),
+            said.time
+        );
+        (bytes, said.time)
+    };
+    Some([of(&shape, &said[0], shape_proven), of(&edge, &said[1], edge_proven)])
+}
+
+#[test]
+fn a_robot_in_the_ventricle_is_proven_in_little_space() {
+    let Some([(shape, _), (motion, _)]) = in_the_ventricle(ventricle::DEFAULT_TRIANGLES) else { return };
+    assert!(shape < 50_000 && motion < 1_000_000, "{shape} {motion}");
+}
+
+#[test]
+#[ignore = "a minute: run it by name"]
+fn a_robot_in_a_fine_ventricle_is_checked_in_time() {
+    let Some([shape, motion]) = in_the_ventricle(82_000) else { return };
+    assert!(shape.0 < 50_000 && shape.1 < Duration::from_secs(10), "{shape:?}");
+    assert!(motion.0 < 1_000_000 && motion.1 < Duration::from_secs(60), "{motion:?}");
+}
