@@ -17,7 +17,8 @@ pub struct Clearance {
     pub upper: Real,
     /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and `uncertainty`.
     pub resolved: bool,
-    /// What the error that the tube states for itself costs, and no finer tolerance can mend.
+    /// What the errors cost that the tube states for itself, and no finer tolerance can mend; and near a flat face whose
+    /// direction is not known ([`Tube::fit`](crate::Tube::fit)), what that costs.
     pub uncertainty: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,

@@ -46,8 +46,12 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outer {
     pub body: PlacedLink,
-    /// By how much, about, it is wider than the piece. Only for the choice of what to do next.
+    /// By how much, about, it is larger than the piece. Only for the choice of what to do next, as all below.
     pub over: Real,
+    /// By how much it is wider, apart from how far it reaches ahead of its flat ends.
+    pub aside: Real,
+    /// How much smaller, about, the bodies of its halves are.
+    pub narrows: Real,
 }
 
 impl Outer {
@@ -114,6 +118,9 @@ impl PlacedTube<'_> {
                 return Outer {
                     body: PlacedLink::between(ends[0], ends[1], section.radius + wider, flat),
                     over,
+                    aside: sideways + face.tilt * length,
+                    // What the face's direction leaves open stays.
+                    narrows: over - face.tilt * section.radius,
                 };
             }
         }
@@ -153,13 +160,16 @@ impl PlacedTube<'_> {
         }
         start += shift;
         end += shift;
-        let mut wider = over;
+        let (mut wider, mut narrows) = (over, 0.75 * over);
         let chord = along.length();
         // A chord that is mere rounding has no direction.
         let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
         if flat != [false; 2] {
             let unit = along / chord;
-            let tilt = 0.5 * curvature * length + 2.0 * (error + self.slack) / chord + self.tube.turn();
+            let bend = 0.5 * curvature * length;
+            let tilt = bend + 2.0 * (error + self.slack) / chord + self.tube.turn();
+            // The halves bend half as much, and rounding turns their chords twice as far.
+            narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
             let beyond = section.radius * tilt + error + self.slack;
             wider += section.radius * tilt;
             if flat[0] {
@@ -172,6 +182,6 @@ impl PlacedTube<'_> {
         // The ends of a chord may be off to either side; what turns a flat body about them puts its wall off once more.
         let errors = if flat == [false; 2] { error } else { 2.0 * error };
         let radius = section.radius + over + errors + self.slack;
-        Outer { body: PlacedLink::between(start, end, radius, flat), over: wider }
+        Outer { body: PlacedLink::between(start, end, radius, flat), over: wider, aside: over, narrows }
     }
 }

@@ -23,9 +23,20 @@ pub(crate) struct PlacedTube<'a> {
     /// distance errs by 16 u for each unit of extent, which is at most 2 reach; a placed point by less than 16 u reach;
     /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them. Beside it stands what
     /// lengths lose whose squares vanish.
+    ///
+    /// In the place of the mesh's reach, that of a triangle will do that is at most some distance away from the tube:
+    /// the tube's, the distance, and the triangle's longest edge. For one that is farther away in truth can seem nearer
+    /// by no more than the error that it would have at that distance.
     pub(crate) slack: Real,
+    /// The largest coordinate of the tube after the pose, or more.
+    reach: Real,
     /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
     is_moving: bool,
+}
+
+/// What rounding can do where no coordinate is larger than `reach`.
+fn slack_for(reach: Real) -> Real {
+    128.0 * Real::UNIT_ROUNDOFF * reach + LEAST_LENGTH
 }
 
 impl<'a> PlacedTube<'a> {
@@ -42,8 +53,16 @@ impl<'a> PlacedTube<'a> {
         if tube.sections().is_empty() {
             return Err(ProximityError::EmptyTube);
         }
-        let slack = 128.0 * Real::UNIT_ROUNDOFF * (reach + mesh_reach) + LEAST_LENGTH;
-        Ok(Self { tube, pose, slack, is_moving: false })
+        Ok(Self { tube, pose, slack: slack_for(reach + mesh_reach), reach, is_moving: false })
+    }
+
+    /// Takes less for rounding where no triangle matters that is farther than `away`, if that is less.
+    pub(super) fn sharpen(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
+        let least = slack_for(2.0 * self.reach + away);
+        // What is less by a little is not worth looking at all edges for.
+        if least < 0.5 * self.slack {
+            self.slack = self.slack.min(slack_for(2.0 * self.reach + away + longest_edge()));
+        }
     }
 
     /// The same shape as a moment of a motion, to which bodies at flat ends have to be prepared.

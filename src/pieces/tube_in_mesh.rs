@@ -37,7 +37,7 @@ impl TubeInMesh<'_> {
 
     /// The halves of a piece whose body can become narrower.
     pub(super) fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
-        if outer.over > self.tube.slack() { self.tube.halves(piece, aim) } else { None }
+        if outer.narrows > 0.5 * self.tube.slack() { self.tube.halves(piece, aim) } else { None }
     }
 
     /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
@@ -46,6 +46,13 @@ impl TubeInMesh<'_> {
         let radius =
             self.tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
         self.tube.begin(scale.max(0.25 * radius), pieces);
+    }
+
+    /// Takes less for rounding if only triangles matter that are at most so far away. Whether it is less by far.
+    pub(crate) fn sharpen(&mut self, away: Real) -> bool {
+        let before = self.tube.slack();
+        self.tube.sharpen(away, || self.search.hierarchy.longest());
+        self.tube.slack() < 0.5 * before
     }
 
     /// A first upper bound: from the triangle nearest to the longest section's chord.

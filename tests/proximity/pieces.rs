@@ -167,3 +167,68 @@ fn pieces_are_long_where_the_wall_is_far() {
     }
     assert!(counts.is_sorted() && counts[3] < 4 * counts[0], "{counts:?}");
 }
+
+/// An arc of radius 1 from the origin along z, and what is near it.
+fn short_arc(length: f64, curvature: f64) -> Tube {
+    let mut arcs = Arcs::from_frame(Pose::IDENTITY);
+    arcs.push(1.0, &[(length, Vector::X * curvature)]);
+    from_function(&Arc::new(arcs))
+}
+
+/// A wall that is parallel to a face meets all of it at once, and the discs behind it a little later.
+#[test]
+fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
+    let mut random = Random::new(8);
+    let mut many = 0;
+    for round in 0..60 {
+        let (length, bend) =
+            ([0.15, 0.7, 2.0, 8.0][round % 4] * random.between(0.7, 1.3), random.between(0.1, 0.9));
+        let tube = short_arc(length, bend);
+        let gap = [0.3, 1e-3, 2.0][round % 3];
+        let corners = [[-1.0, -2.0], [2.0, -2.0], [0.0, 3.0]];
+        let corners = corners.map(|[x, y]| Vector::new(x, y, -gap)).to_vec();
+        let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).unwrap();
+        let counts = [1e-4, 1e-6, 1e-8].map(|tolerance| {
+            let (found, pieces) = ask(&mesh, &tube, &Pose::IDENTITY, tolerance).unwrap();
+            assert!(found.resolved && found.lower <= gap && gap <= found.upper, "{found:?}");
+            pieces.len()
+        });
+        // The root is 10 from one to the next.
+        assert!(
+            counts[1] <= 10 * counts[0].max(4) && counts[2] <= 10 * counts[1],
+            "{length} {bend}: {counts:?}"
+        );
+        many += usize::from(counts[2] > 30);
+        assert!(counts[2] < 600, "{length} {bend}: {counts:?}");
+    }
+    assert!(many > 10, "{many}");
+}
+
+/// What is far away is as large as one likes, and costs no digits of what is near.
+#[test]
+fn a_triangle_far_away_does_not_blur_a_near_one() {
+    let tube = short_arc(4.0, 0.2);
+    let near = [Vector::new(3.0, -1.0, 2.0), Vector::new(3.0, 1.0, 2.0), Vector::new(3.0, 0.0, 3.0)];
+    let width = |far: f64| {
+        let all = near.into_iter().chain(near.map(|corner| corner + Vector::Y * far)).collect();
+        let mesh = TriMesh::new(all, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let (found, _) = ask(&mesh, &tube, &Pose::IDENTITY, 1e-9).unwrap();
+        assert!(found.resolved, "{far}: {found:?}");
+        found.upper - found.lower
+    };
+    assert!([1e3, 1e6, 1e12].iter().all(|&far| width(far) <= 1e-9));
+}
+
+/// Beside a mesh that rounding makes a point, nothing is gained by dividing.
+#[test]
+fn a_tube_of_another_size_is_not_divided_in_vain() {
+    let mesh = wall(0.0);
+    let (length, bend) = (1e75, 1e-75);
+    let mut arcs = Arcs::from_frame(Pose::IDENTITY);
+    arcs.push(1e-200, &[(length, Vector::X * bend)]);
+    let tube = from_function(&Arc::new(arcs));
+    for pose in [Pose::IDENTITY, Pose::from_translation(Vector::Z * -0.3e75)] {
+        let (found, pieces) = ask(&mesh, &tube, &pose, 1e-3).unwrap();
+        assert!(!found.resolved && pieces.len() < 3_000, "{} {found:?}", pieces.len());
+    }
+}

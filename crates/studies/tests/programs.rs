@@ -4,6 +4,7 @@
 use continuum_testing::programs::*;
 
 const ACCURACY: &str = env!("CARGO_BIN_EXE_accuracy");
+const CURVES: &str = env!("CARGO_BIN_EXE_curves");
 const SPEED: &str = env!("CARGO_BIN_EXE_speed");
 const STUDIES: &str = env!("CARGO_BIN_EXE_studies");
 const TRADEOFF: &str = env!("CARGO_BIN_EXE_tradeoff");
@@ -189,6 +190,20 @@ fn speed_is_measured_drawn_and_quoted() {
     ] {
         refuse(SPEED, &arguments, expected);
     }
+}
+
+#[test]
+fn curves_are_measured_drawn_and_quoted() {
+    file("curves/docs/book/tube.md", "before\n<!-- curves -->\nstale\n<!-- /curves -->\nafter\n");
+    let out = succeed(CURVES, &["--robots", "3", "--out", "curves/docs"]);
+    let page = read("curves/docs/book/tube.md");
+    assert_eq!(page, format!("before\n<!-- curves -->\n{out}<!-- /curves -->\nafter\n"));
+    assert_finite(&page);
+    let rows = table(&page, "| 100 samples unless said otherwise | tube |");
+    let fits: Vec<_> = rows.iter().filter(|row| row[1].starts_with("`fit`")).collect();
+    assert!(rows.len() > 60 && fits.len() > 30, "{page}");
+    assert!(fits.iter().all(|row| row[3] == "3" && row[4] == "3"), "{page}");
+    assert!(read("curves/docs/curves.svg").contains("noise 0.5, fit"));
 }
 
 #[test]

@@ -23,13 +23,18 @@ pub(crate) fn clearance(
     settled: impl FnMut(&Piece, &Outer, Real),
 ) -> Result<Clearance, ProximityError> {
     let uncertainty = tube.tube.uncertainty();
-    // So that the bounds of the answer are no farther apart than asked for after they are rounded.
-    let aim = (tolerance + uncertainty - 4.0 * tube.tube.slack()).max(0.0);
     let last = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len());
-    let best = match last {
+    let mut best = match last {
         Some(last) => tube.bound_at(last.section, last.arc, last.triangle),
         None => tube.first_bound(),
     };
+    // Rounding is the less the nearer the mesh is known to be.
+    if tube.sharpen(best.upper) {
+        let again = tube.bound_at(best.section, best.witness.arc_length, best.witness.triangle);
+        best = if again.upper < best.upper { again } else { best };
+    }
+    // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+    let aim = (tolerance + uncertainty - 4.0 * tube.tube.slack()).max(0.0);
     tube.begin(best.upper.max(tolerance), &mut memory.pieces);
     let doubtful = Doubtful { lower: Real::INFINITY, doubt: 0.0 };
     let mut bounds = Bounds { aim, best, lower: Real::INFINITY, doubtful, left: MOST_PIECES, settled };
@@ -82,8 +87,8 @@ impl<S: FnMut(&Piece, &Outer, Real)> Question<Piece> for Bounds<S> {
     fn look(&mut self, _: &PlacedTube, _: &Piece, _: &Piece, outer: &Outer) -> Result<Look, ProximityError> {
         let Self { aim, best, left, .. } = self;
         *left = left.saturating_sub(1);
-        let is_wide =
-            *left > 0 && outer.over > 2.0 * *aim && (outer.is_flat() || outer.over > 0.25 * best.upper);
+        // How far it reaches ahead of its flat ends tells little: behind a face that is mostly into what is before it.
+        let is_wide = *left > 0 && outer.aside > 2.0 * *aim && outer.aside > 0.25 * best.upper;
         Ok(Look { bound: best.upper - *aim, is_wide, aim: *aim, start: Some(best.witness.triangle) })
     }
 

@@ -15,6 +15,8 @@ pub(crate) fn tube_clears(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
+    // Nothing matters that is farther away than the margin.
+    tube.sharpen(margin);
     tube.begin(margin.max(resolution), &mut memory.pieces);
     let mut question = Keeps { margin, resolution, decision: Decision::Clear, last: &mut memory.last };
     refine(tube, &mut memory.pieces, &mut question)?;

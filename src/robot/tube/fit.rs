@@ -1,7 +1,7 @@
 //! A tube fitted to measured points.
 //!
 //! The points are off by the noise of a sensor. A smoothing spline goes near them, as smooth as cross-validation finds
-//! best, or as rough as it takes to come within the stated deviation of each. Its parameter is its own arc length: the
+//! best; where that is farther from a point than the stated deviation, forces draw it near (`within`). Its parameter is its own arc length: the
 //! first one is the length of the polyline, which noise makes far too long where points are dense, and two more splines
 //! are fitted by the lengths of the last one. A number of splines that does not depend on the points is tried, each in
 //! time proportional to their number.
@@ -21,7 +21,7 @@ use super::Tube;
 use super::curve::CurveBound;
 use super::laid::{Laid, NextPoint};
 use super::section::stretch;
-use super::smoothing_spline::SmoothingSpline;
+use super::smoothing_spline::{Smoother, SmoothingSpline};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
@@ -33,6 +33,10 @@ const CLOSEST: Real = 1.0 / (1 << 20) as Real;
 
 /// How often the parameter is set anew.
 const PASSES: u32 = 3;
+
+/// In how many steps forces are looked for that bring the spline within the deviation, and for how many weights.
+const MOST_STEPS: u32 = 200;
+const MOST_SOFTENED: u32 = 16;
 
 /// A segment is laid in no more parts.
 const MOST_PARTS: u32 = 64;
@@ -92,90 +96,130 @@ impl Tube {
 }
 
 /// The spline near points at the size 1.
-fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
-    let lengths: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).length()).collect();
-    let mut knots = knots_apart(&lengths);
-    let mut spline = best(&knots, points, deviation);
+pub(super) fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
+    let mut knots = knots_apart(points.windows(2).map(|pair| (pair[1] - pair[0]).length()));
     for _ in 1..PASSES {
+        let (spline, _) = best(&knots, points);
         // The lengths of the spline between its knots, by their chords and a point between.
-        let lengths: Vec<_> = (0..points.len() - 1)
-            .map(|k| {
-                let middle = spline.at(k, 0.5)[0];
-                (middle - spline.values[k]).length() + (spline.values[k + 1] - middle).length()
-            })
-            .collect();
-        knots = knots_apart(&lengths);
-        spline = best(&knots, points, deviation);
+        knots = knots_apart((0..points.len() - 1).map(|k| {
+            let middle = spline.at(k, 0.5)[0];
+            (middle - spline.values[k]).length() + (spline.values[k + 1] - middle).length()
+        }));
     }
-    spline
+    let (spline, weight) = best(&knots, points);
+    within(deviation, spline, &knots, points, weight)
 }
 
 /// Ascending numbers with these distances, none of them nearly 0.
-fn knots_apart(lengths: &[Real]) -> Vec<Real> {
-    let least = CLOSEST * lengths.iter().sum::<Real>() / lengths.len() as Real;
+fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
+    let (sum, count) = lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
+    let least = CLOSEST * sum / Real::from(count);
     let mut knots = vec![0.0];
-    let mut sum = 0.0;
-    for length in lengths {
-        sum += length.max(least);
-        knots.push(sum);
-    }
+    let mut last = 0.0;
+    knots.extend(lengths.map(|length| {
+        last += length.max(least);
+        last
+    }));
     knots
 }
 
-/// The spline with the best score of those within the deviation.
-fn best(knots: &[Real], points: &[Vector], deviation: Real) -> SmoothingSpline {
-    const STEPS: u32 = 20;
-    let length = knots[knots.len() - 1];
-    let spacing = length / (knots.len() - 1) as Real;
-    // A spline levels what is shorter than (weight * spacing)^(1/4).
-    let [shortest, longest] = [0.3 * spacing, 2.0 * length];
-    let weight = |step: Real| {
-        let over = shortest * libm::exp2(libm::log2(longest / shortest) * step / Real::from(STEPS));
-        over * over * (over * over / spacing)
-    };
-    let try_step = |step: Real| SmoothingSpline::new(knots, points, weight(step));
-    let fits = |spline: &SmoothingSpline| spline.largest_residual(points) <= deviation;
-    let mut least = (Real::INFINITY, 0.0);
-    for step in 0..=STEPS {
-        let score = try_step(Real::from(step)).1;
-        if score < least.0 {
-            least = (score, Real::from(step));
-        }
-    }
-    let (mut apart, mut at) = (0.5, least);
-    for _ in 0..4 {
-        for step in [least.1 - apart, least.1 + apart] {
-            let score = try_step(step).1;
-            if score < at.0 {
-                at = (score, step);
-            }
-        }
-        least = at;
-        apart *= 0.5;
-    }
-    let spline = try_step(least.1).0;
-    if fits(&spline) {
+/// The spline with the best score, and its weight.
+fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
+    let weights = Weights::of(knots);
+    let weight = weights.at(weights.best(|step| Smoother::new(knots, weights.at(step)).score(points)));
+    (Smoother::new(knots, weight).spline(points), weight)
+}
+
+/// The spline itself if it is within the deviation of each point; or else the smoothest one that is, about.
+///
+/// That is the least of the same sum under the condition that each residual is short enough. The condition acts like a
+/// force on each point that is too far away: the spline of points that are moved by the forces. Of what is least as it
+/// depends on the forces, a residual is the slope, which changes by no more than they do. So the forces are found by
+/// accelerated steps along it (A. Beck, M. Teboulle, SIAM Journal on Imaging Sciences 2, 2009), each shortened by what a
+/// residual may be.
+fn within(
+    deviation: Real,
+    spline: SmoothingSpline,
+    knots: &[Real],
+    points: &[Vector],
+    mut weight: Real,
+) -> SmoothingSpline {
+    if spline.largest_residual(points) <= deviation {
         return spline;
     }
-    // The smoothest that fits.
-    let (mut low, mut high) = (None, least.1);
-    for back in 0..40 {
-        let step = least.1 - Real::from(1 << back.min(6));
-        if fits(&try_step(step).0) {
-            low = Some(step);
-            break;
+    let wanted = deviation * (1.0 - 1.0 / 64.0);
+    for _ in 0..MOST_SOFTENED {
+        let smoother = Smoother::new(knots, weight);
+        let mut forces = vec![Vector::ZERO; points.len()];
+        let mut ahead = forces.clone();
+        let mut pace: Real = 1.0;
+        for _ in 0..MOST_STEPS {
+            let moved: Vec<_> = points.iter().zip(&ahead).map(|(point, force)| *point + *force).collect();
+            let spline = smoother.spline(&moved);
+            if spline.largest_residual(points) <= deviation {
+                return spline;
+            }
+            let next_pace = 0.5 * (1.0 + (1.0 + 4.0 * pace * pace).sqrt());
+            let onward = (pace - 1.0) / next_pace;
+            pace = next_pace;
+            for (k, (force, ahead)) in forces.iter_mut().zip(&mut ahead).enumerate() {
+                let pulled = *ahead + points[k] - spline.values[k];
+                let size = pulled.length();
+                let next = if size > wanted { pulled * (1.0 - wanted / size) } else { Vector::ZERO };
+                *ahead = next + (next - *force) * onward;
+                *force = next;
+            }
         }
-        high = step;
-        if step < -200.0 {
-            break;
+        // A softer spline gives way to smaller forces.
+        weight /= 16.0;
+    }
+    Smoother::new(knots, 0.0).spline(points)
+}
+
+/// The weights that are tried, from a spline that follows each point to a straight line, in even steps of their logarithm.
+struct Weights {
+    spacing: Real,
+    shortest: Real,
+    longest: Real,
+}
+
+impl Weights {
+    const STEPS: u32 = 20;
+
+    fn of(knots: &[Real]) -> Self {
+        let length = knots[knots.len() - 1];
+        let spacing = length / (knots.len() - 1) as Real;
+        Self { spacing, shortest: 0.3 * spacing, longest: 2.0 * length }
+    }
+
+    /// A spline levels what is shorter than (weight * spacing)^(1/4).
+    fn at(&self, step: Real) -> Real {
+        let Self { spacing, shortest, longest } = self;
+        let over = shortest * libm::exp2(libm::log2(longest / shortest) * step / Real::from(Self::STEPS));
+        over * over * (over * over / spacing)
+    }
+
+    /// The step with the least score, to a 16th.
+    fn best(&self, score: impl Fn(Real) -> Real) -> Real {
+        let mut best = (Real::INFINITY, 0.0);
+        let mut take = |step: Real| {
+            let score = score(step);
+            if score < best.0 {
+                best = (score, step);
+            }
+            best.1
+        };
+        let mut at = 0.0;
+        for step in 0..=Self::STEPS {
+            at = take(Real::from(step));
         }
+        for apart in [0.5, 0.25, 0.125, 0.0625] {
+            let middle = at;
+            take(middle - apart);
+            at = take(middle + apart);
+        }
+        at
     }
-    let Some(mut low) = low else { return SmoothingSpline::new(knots, points, 0.0).0 };
-    for _ in 0..20 {
-        let middle = 0.5 * (low + high);
-        if fits(&try_step(middle).0) { low = middle } else { high = middle }
-    }
-    try_step(low).0
 }
 
 /// Lays the tube along the spline.

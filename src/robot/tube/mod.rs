@@ -15,6 +15,8 @@ mod samples;
 mod section;
 mod smoothing_spline;
 mod stated;
+#[cfg(test)]
+mod tests;
 mod verify;
 
 pub use function::TubeSection;

@@ -45,7 +45,8 @@ fn squared_differences(knots: &[Real], k: usize, count: usize) -> [Real; 3] {
     let own = differences(knots, k);
     let next = if k + 1 < count { differences(knots, k + 1) } else { [0.0; 3] };
     let beyond = if k + 2 < count { differences(knots, k + 2) } else { [0.0; 3] };
-    [own.iter().map(|value| value * value).sum(), own[1] * next[0] + own[2] * next[1], own[2] * beyond[0]]
+    let [a, b, c] = own;
+    [a * a + b * b + c * c, b * next[0] + c * next[1], c * beyond[0]]
 }
 
 impl Factors {
@@ -111,17 +112,26 @@ impl Factors {
     }
 }
 
-impl SmoothingSpline {
-    /// The spline through all points but one straight line's worth of smoothing, and how little it may be trusted
-    /// (the score of cross-validation).
-    pub(super) fn new(knots: &[Real], points: &[Vector], weight: Real) -> (Self, Real) {
-        let count = points.len();
-        let mut spline =
-            Self { knots: knots.to_vec(), values: points.to_vec(), seconds: vec![Vector::ZERO; count] };
-        if count < 3 {
-            return (spline, 0.0);
-        }
-        let factors = Factors::new(knots, weight);
+/// What makes splines of points at some knots.
+pub(super) struct Smoother<'a> {
+    knots: &'a [Real],
+    weight: Real,
+    factors: Option<Factors>,
+}
+
+impl<'a> Smoother<'a> {
+    pub(super) fn new(knots: &'a [Real], weight: Real) -> Self {
+        // Two points are on a line.
+        let factors = (knots.len() > 2).then(|| Factors::new(knots, weight));
+        Self { knots, weight, factors }
+    }
+
+    /// The spline near points.
+    pub(super) fn spline(&self, points: &[Vector]) -> SmoothingSpline {
+        let (knots, count) = (self.knots, points.len());
+        let (values, seconds) = (points.to_vec(), vec![Vector::ZERO; count]);
+        let mut spline = SmoothingSpline { knots: knots.to_vec(), values, seconds };
+        let Some(factors) = &self.factors else { return spline };
         let mut bends: Vec<_> = (0..count - 2)
             .map(|k| {
                 let [a, b, c] = differences(knots, k);
@@ -130,20 +140,27 @@ impl SmoothingSpline {
             .collect();
         factors.solve(&mut bends);
         for (k, &bend) in bends.iter().enumerate() {
-            let [a, b, c] = differences(knots, k);
-            for (value, factor) in spline.values[k..].iter_mut().zip([a, b, c]) {
-                *value -= bend * (weight * factor);
+            for (value, factor) in spline.values[k..].iter_mut().zip(differences(knots, k)) {
+                *value -= bend * (self.weight * factor);
             }
             spline.seconds[k + 1] = bend;
         }
-        let squares: Real = points.iter().zip(&spline.values).map(|(a, b)| (*a - *b).length_squared()).sum();
-        let free = weight * factors.trace(knots);
-        let counted = count as Real - CAUTION * (count as Real - free);
-        // Where more parameters are counted than there are points, nothing can be said for it.
-        let score = if counted > 0.0 { squares / (counted * counted) } else { Real::INFINITY };
-        (spline, score)
+        spline
     }
 
+    /// How little its spline may be trusted: the score of cross-validation.
+    pub(super) fn score(&self, points: &[Vector]) -> Real {
+        let Some(factors) = &self.factors else { return 0.0 };
+        let values = self.spline(points).values;
+        let squares: Real = points.iter().zip(&values).map(|(a, b)| (*a - *b).length_squared()).sum();
+        let (count, free) = (points.len() as Real, self.weight * factors.trace(self.knots));
+        let counted = count - CAUTION * (count - free);
+        // Where more parameters are counted than there are points, nothing can be said for it.
+        if counted > 0.0 { squares / (counted * counted) } else { Real::INFINITY }
+    }
+}
+
+impl SmoothingSpline {
     /// The value and the first derivative between knot k and the next, at a share of the way.
     pub(super) fn at(&self, k: usize, share: Real) -> [Vector; 2] {
         let h = self.knots[k + 1] - self.knots[k];

@@ -3,7 +3,7 @@
 use super::build::WideBvh;
 use crate::mesh::Mesh;
 use crate::pair::{PlacedLink, SearchLink};
-use crate::threads::Lazy;
+use crate::threads::{Lazy, each};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
@@ -13,6 +13,10 @@ pub(crate) struct Hierarchy {
     pub mesh: Mesh,
     /// The largest coordinate of a triangle.
     pub reach: Real,
+    /// The longest side of the box around all triangles.
+    pub size: Real,
+    /// The longest edge of a triangle.
+    longest: Lazy<Real>,
     single: WideBvh<f32>,
     /// For links that single precision does not resolve, built when the first of them comes.
     double: Lazy<WideBvh<f64>>,
@@ -20,11 +24,17 @@ pub(crate) struct Hierarchy {
 
 impl Hierarchy {
     pub(crate) fn new(level: Level, mesh: Mesh) -> Self {
-        Self { single: WideBvh::new(level, &mesh), double: Lazy::new(), reach: reach(mesh.bounds()), mesh }
+        let (single, [reach, size]) = (WideBvh::new(level, &mesh), extent(mesh.bounds()));
+        Self { single, double: Lazy::new(), longest: Lazy::new(), reach, size, mesh }
     }
 
     pub(crate) fn double(&self, level: Level) -> &WideBvh<f64> {
         self.double.get_or_build(|| WideBvh::new(level, &self.mesh))
+    }
+
+    /// The longest edge of a triangle, or more.
+    pub(crate) fn longest(&self) -> Real {
+        *self.longest.get_or_build(|| longest(&self.mesh))
     }
 
     /// The hierarchy that is always there.
@@ -35,6 +45,7 @@ impl Hierarchy {
     /// Builds what a query far out would build.
     pub(crate) fn prepare(&self, level: Level) {
         self.double(level);
+        self.longest();
     }
 
     /// The link in the precision that resolves it.
@@ -52,17 +63,32 @@ impl Hierarchy {
     /// Moves the vertices of the mesh, which were checked.
     pub(crate) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.mesh.set_vertices(vertices);
-        self.reach = reach(self.mesh.bounds());
+        [self.reach, self.size] = extent(self.mesh.bounds());
         self.single.refit(level, &self.mesh);
         if let Some(double) = self.double.get_mut() {
             double.refit(level, &self.mesh);
         }
+        if let Some(edge) = self.longest.get_mut() {
+            *edge = longest(&self.mesh);
+        }
     }
 }
 
-/// The largest coordinate of what lies in a box.
-fn reach([low, high]: [Vector; 2]) -> Real {
-    low.abs().max(high.abs()).max_element()
+/// The largest coordinate of what lies in a box, and the box's longest side.
+fn extent([low, high]: [Vector; 2]) -> [Real; 2] {
+    [low.abs().max(high.abs()).max_element(), (high - low).max_element()]
+}
+
+/// The longest edge of a triangle, or up to twice as much.
+fn longest(mesh: &Mesh) -> Real {
+    let edge = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
+        (a.max(b).max(c) - a.min(b).min(c)).max_element()
+    };
+    let mut shares: Vec<_> = mesh.indices().chunks(Mesh::SHARE).map(|share| (share, 0.0)).collect();
+    each(&mut shares, |_, (share, most)| *most = share.iter().map(edge).fold(0.0, Real::max));
+    // Squares would overflow. The diagonal of a cube is less than twice its edge.
+    2.0 * shares.into_iter().fold(0.0, |most: Real, (_, edge)| most.max(edge))
 }
 
 /// A link in the frame of a search.

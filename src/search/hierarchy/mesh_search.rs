@@ -3,6 +3,7 @@
 use super::hierarchies::{Hierarchy, Searched};
 use super::traverse::{Stack, Traversal};
 use crate::answer::Work;
+use crate::distance::Scalar;
 use crate::pair::{Best, Nearest, PlacedLink};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -44,6 +45,9 @@ impl MeshSearch<'_> {
     pub(crate) fn nearest(&mut self, link: &PlacedLink, mut best: Best, start: [Option<u32>; 2]) -> Best {
         resolved!(self, link, |traversal, searched| traversal.nearest(link, &searched, best, start), {
             let mesh = &self.hierarchy.mesh;
+            if !self.is_near(link, best.bound()) {
+                return best;
+            }
             for triangle in 0..mesh.len() as u32 {
                 best.measure(link, triangle, mesh.corners(triangle));
             }
@@ -98,7 +102,17 @@ impl MeshSearch<'_> {
 
     /// The same of the triangles with a lower number than `below`.
     pub(crate) fn may_meet_below(&mut self, capsule: &PlacedLink, bound: Real, below: u32) -> bool {
-        resolved!(self, capsule, |traversal, searched| traversal.may_meet(&searched, bound, below), true)
+        resolved!(self, capsule, |traversal, searched| traversal.may_meet(&searched, bound, below), {
+            self.is_near(capsule, bound)
+        })
+    }
+
+    /// Whether a mesh that is tiny beside a link may be at most `bound` from it: all its triangles are about where the
+    /// first one is.
+    fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {
+        let (first, size) = (self.any(link).distance, self.hierarchy.size);
+        let extent = link.along().abs().max_element() + link.radius();
+        first - 2.0 * size - 64.0 * Real::UNIT_ROUNDOFF * (first + size + extent) <= bound
     }
 
     /// Some triangle, for a link whose nearest no search finds.

@@ -1,0 +1,376 @@
+//! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are accepted, how close their
+//! bounds are, and how far from the truth. Writes the table of `docs/book/tube.md` and the plot `docs/curves.svg`.
+//!
+//! ```text
+//! cargo run --release -p continuum-studies --bin curves
+//! ```
+
+use clap::Parser;
+use continuum_studies::quote;
+use continuum_testing::{Arcs, Random};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::TriMesh;
+use parry_continuum::proximity::{BvhSearch, Clearance};
+use parry_continuum::{RobotError, Tube, TubeSection};
+use plotters::prelude::*;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Measure what becomes of curves as they come: clean, joined, uneven and noisy.
+#[derive(Parser)]
+struct Options {
+    /// How many robots
+    #[arg(long, value_name = "COUNT", default_value_t = 200)]
+    robots: u64,
+    /// Where book/tube.md is, and the plot goes
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    out: PathBuf,
+}
+
+const LENGTH: f64 = 80.0;
+const RADIUS: f64 = 0.5;
+
+/// A robot and what is near it.
+struct Scene {
+    arcs: Arc<Arcs>,
+    /// Where its sections end.
+    ends: [f64; 3],
+    mesh: TriMesh,
+    truth: f64,
+}
+
+/// Three sections of constant curvature, 80 mm long together, and three specks of a wall 0.5 to 5 mm beside them.
+fn scene(seed: u64) -> Scene {
+    let mut random = Random::new(seed + 1);
+    let mut arcs = Arcs::from_frame(random.pose(20.0));
+    let shares = [random.between(0.2, 0.4), random.between(0.2, 0.4)];
+    let lengths = [shares[0], shares[1], 1.0 - shares[0] - shares[1]].map(|share| share * LENGTH);
+    let parts = lengths.map(|length| {
+        let angle = random.between(0.0, 6.3);
+        (length, Vector::new(angle.cos(), angle.sin(), 0.0) * random.between(0.0, 0.05))
+    });
+    arcs.push(RADIUS, &parts);
+    let mut vertices = Vec::new();
+    for _ in 0..3 {
+        let (centre, tangent) = arcs.at(random.between(-3.0, LENGTH + 3.0).clamp(0.0, LENGTH));
+        let across =
+            (tangent.cross(random.direction()).normalize() + tangent * random.between(-1.0, 1.0)).normalize();
+        let at = centre + across * (RADIUS + random.between(0.5, 5.0));
+        vertices.extend([at, at + random.direction() * 0.3, at + random.direction() * 0.3]);
+    }
+    let mesh = TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).expect("three triangles");
+    let arcs = Arc::new(arcs);
+    let stretch = arcs.stretches[0];
+    let section = TubeSection { length: stretch.length, radius: RADIUS, curvature: stretch.curvature };
+    let curve = Arc::clone(&arcs);
+    let exact = Tube::from_function(&[section], move |s| curve.at(s)).expect("a tube");
+    let found =
+        BvhSearch::new(&mesh).expect("a mesh").clearance(&exact, &Pose::IDENTITY, 1e-6).expect("a clearance");
+    let ends = [lengths[0], lengths[0] + lengths[1], LENGTH];
+    Scene { arcs, ends, mesh, truth: found.upper }
+}
+
+/// What a robot is measured like.
+#[derive(Clone, Copy)]
+struct Input {
+    samples: usize,
+    spacing: Spacing,
+    /// The standard deviation of the noise of each coordinate.
+    noise: f64,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Spacing {
+    Even,
+    Random,
+    /// Evenly in each section, with a sample at each end.
+    Sections,
+    /// Each section has end points of its own, off by rounding.
+    Joined,
+    /// One sample is there twice, so far apart.
+    Repeated(f64),
+}
+
+/// A normally distributed number.
+fn normal(random: &mut Random) -> f64 {
+    (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (std::f64::consts::TAU * random.unit()).cos()
+}
+
+/// Arc lengths of the samples, and their points.
+fn measure(scene: &Scene, input: Input, random: &mut Random) -> (Vec<f64>, Vec<Vector>) {
+    let count = input.samples - 1;
+    let mut places: Vec<f64> = (0..=count).map(|k| LENGTH * k as f64 / count as f64).collect();
+    if input.spacing == Spacing::Random {
+        places[1..count].fill_with(|| LENGTH * random.unit());
+        places.sort_by(f64::total_cmp);
+    }
+    if input.spacing == Spacing::Sections {
+        places.truncate(1);
+        let mut from = 0.0;
+        for end in scene.ends {
+            let own = ((end - from) / LENGTH * count as f64).round().max(1.0);
+            places.extend((1..=own as usize).map(|k| from + (end - from) * k as f64 / own));
+            from = end;
+        }
+    }
+    let mut points: Vec<_> = places
+        .iter()
+        .map(|&s| {
+            scene.arcs.at(s).0 + Vector::new(normal(random), normal(random), normal(random)) * input.noise
+        })
+        .collect();
+    match input.spacing {
+        Spacing::Joined => {
+            for part in 1..3 {
+                let at = part * points.len() / 3;
+                places.insert(at, places[at]);
+                points.insert(at, points[at] + random.direction() * 1e-14);
+            }
+        }
+        Spacing::Repeated(apart) => {
+            let at = 1 + random.below(count as u32 - 1) as usize;
+            places.insert(at, places[at]);
+            points.insert(at, points[at] + random.direction() * apart);
+        }
+        Spacing::Even | Spacing::Random | Spacing::Sections => {}
+    }
+    (places, points)
+}
+
+/// A way to make a tube of samples.
+#[derive(Clone, Copy)]
+enum Way {
+    Samples,
+    SamplesAndTangents,
+    Frames,
+    /// Within this of each sample.
+    Fit(f64),
+}
+
+impl Way {
+    fn tube(self, scene: &Scene, places: &[f64], points: &[Vector]) -> Result<Tube, RobotError> {
+        let radii = vec![RADIUS; points.len() - 1];
+        match self {
+            Self::Samples => Tube::from_samples(points, &radii, None),
+            Self::SamplesAndTangents => Tube::from_samples(points, &radii, Some(scene.arcs.end_tangents())),
+            Self::Frames => {
+                let tangents: Vec<_> = places.iter().map(|&s| scene.arcs.at(s).1).collect();
+                Tube::from_frames(points, &tangents, &radii)
+            }
+            Self::Fit(deviation) => Tube::fit(points, &radii, deviation),
+        }
+    }
+
+    fn name(self) -> String {
+        match self {
+            Self::Samples => "`from_samples`".to_owned(),
+            Self::SamplesAndTangents => "`from_samples` with end tangents".to_owned(),
+            Self::Frames => "`from_frames`".to_owned(),
+            Self::Fit(deviation) => format!("`fit` within {deviation}"),
+        }
+    }
+}
+
+/// What a way states.
+fn deviation(way: Way) -> f64 {
+    if let Way::Fit(deviation) = way { deviation } else { 0.0 }
+}
+
+/// What came of all robots.
+struct Outcome {
+    accepted: usize,
+    resolved: usize,
+    /// The median of how far apart the bounds are, but for what was stated.
+    width: f64,
+    /// The median of how far the clearance of the tube itself, without its deviation, is from the truth.
+    off: f64,
+    covered: usize,
+    /// The medians of what the tube and the query took, in microseconds.
+    times: [f64; 2],
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn ask(scenes: &[Scene], input: Input, way: Way, tolerance: f64) -> Outcome {
+    let mut answers: Vec<(Clearance, f64)> = Vec::new();
+    let (mut times, mut off) = ([Vec::new(), Vec::new()], Vec::new());
+    for (seed, scene) in (1_000..).zip(scenes) {
+        let (places, points) = measure(scene, input, &mut Random::new(seed));
+        let mut search = BvhSearch::new(&scene.mesh).expect("a mesh");
+        let clock = Instant::now();
+        let Ok(tube) = way.tube(scene, &places, &points) else { continue };
+        times[0].push(clock.elapsed().as_secs_f64() * 1e6);
+        search.prepare();
+        let clock = Instant::now();
+        let Ok(found) = search.clearance(&tube, &Pose::IDENTITY, tolerance) else { continue };
+        times[1].push(clock.elapsed().as_secs_f64() * 1e6);
+        answers.push((found, scene.truth));
+        // Of the fitted curve itself, where no face is near.
+        let Ok(found) = search.clearance(&tube, &Pose::IDENTITY, 1e-3) else { continue };
+        if found.uncertainty <= 2.0 * deviation(way) && found.lower > 0.0 {
+            off.push((0.5 * (found.upper + found.lower) - scene.truth).abs());
+        }
+    }
+    let widths =
+        answers.iter().map(|(found, _)| (found.upper - found.lower - found.uncertainty).max(0.0)).collect();
+    Outcome {
+        accepted: answers.len(),
+        resolved: answers.iter().filter(|(found, _)| found.resolved).count(),
+        width: median(widths),
+        off: median(off),
+        covered: answers
+            .iter()
+            .filter(|(found, truth)| found.lower <= *truth && *truth <= found.upper + 1e-6)
+            .count(),
+        times: times.map(median),
+    }
+}
+
+fn main() -> ExitCode {
+    let my = Options::parse();
+    let scenes: Vec<_> = (0..my.robots).map(scene).collect();
+    let clean = |samples| Input { samples, spacing: Spacing::Even, noise: 0.0 };
+    let spaced = |spacing| Input { spacing, ..clean(100) };
+    let noisy = |samples, noise| Input { noise, ..clean(samples) };
+    let scattered = |noise| Input { spacing: Spacing::Random, ..noisy(100, noise) };
+    use Way::{Fit, Frames, Samples, SamplesAndTangents};
+    let mut rows: Vec<(String, Input, Way, f64)> = vec![
+        ("clean".into(), clean(100), Samples, 0.1),
+        ("clean".into(), clean(100), Samples, 0.01),
+        ("clean".into(), clean(100), SamplesAndTangents, 0.01),
+        ("clean, 20 frames".into(), clean(20), Frames, 0.01),
+        ("clean, 60 frames".into(), clean(60), Frames, 0.001),
+        (
+            "clean, 20 frames, at the sections' ends too".into(),
+            Input { spacing: Spacing::Sections, ..clean(20) },
+            Frames,
+            0.01,
+        ),
+        (
+            "clean, 60 frames, at the sections' ends too".into(),
+            Input { spacing: Spacing::Sections, ..clean(60) },
+            Frames,
+            0.001,
+        ),
+        ("three sections with end points of their own".into(), spaced(Spacing::Joined), Samples, 0.1),
+        ("at random places".into(), scattered(0.0), Samples, 0.1),
+        ("at random places".into(), scattered(0.0), Samples, 0.2),
+        ("at random places".into(), scattered(0.0), Fit(0.01), 0.1),
+    ];
+    for apart in [1e-15, 1e-12, 1e-8, 1e-4, 1e-2] {
+        let name = format!("one sample twice, {apart:e} apart");
+        rows.push((name.clone(), spaced(Spacing::Repeated(apart)), Samples, 0.1));
+        rows.push((name, spaced(Spacing::Repeated(apart)), Fit(0.02), 0.1));
+    }
+    for noise in [1e-4, 1e-2] {
+        let name = format!("at random places, noise {noise}");
+        rows.push((name.clone(), scattered(noise), Samples, 0.1));
+        rows.push((name, scattered(noise), Fit(5.0 * noise), 0.1));
+    }
+    for samples in [50, 100, 200, 400, 800] {
+        for noise in [0.01, 0.03, 0.1, 0.2, 0.5] {
+            let name = format!("{samples} samples, noise {noise}");
+            if noise <= 0.2 && samples <= 400 {
+                rows.push((name.clone(), noisy(samples, noise), Samples, 0.1));
+            }
+            rows.push((name, noisy(samples, noise), Fit(5.0 * noise), 0.1));
+        }
+    }
+    let mut table = String::from(
+        "| 100 samples unless said otherwise | tube | tolerance | accepted | resolved | bounds apart | off the truth | truth within | µs for the tube, the query |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut refused = Vec::new();
+    for (name, input, way, tolerance) in &rows {
+        let Outcome { accepted, resolved, width, off, covered, times } =
+            ask(&scenes, *input, *way, *tolerance);
+        let [tube, query] = times;
+        let _ = writeln!(
+            table,
+            "| {name} | {} | {tolerance} | {accepted} | {resolved} | {} | {} | {covered} | {}, {} |",
+            way.name(),
+            number(width, 2),
+            number(off, 2),
+            number(tube, 0),
+            number(query, 0)
+        );
+        if input.noise > 0.0 && input.spacing == Spacing::Even {
+            refused.push((matches!(way, Fit(_)), input.samples, input.noise, resolved));
+        }
+    }
+    print!("{table}");
+    let written = quote::in_page(&table, "curves", &my.out.join("book/tube.md")).and_then(|()| {
+        plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
+    });
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A number as the table shows it, if there is one.
+fn number(value: f64, digits: usize) -> String {
+    match digits {
+        _ if value.is_nan() => "none".into(),
+        0 => format!("{value:.0}"),
+        _ => format!("{value:.digits$e}"),
+    }
+}
+
+/// Noise against density: how many are resolved.
+fn plot(
+    refused: &[(bool, usize, f64, usize)],
+    robots: u64,
+    path: &Path,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let root = SVGBackend::new(path, (640, 360)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .caption(format!("resolved within 0.1 mm, of {robots} robots of 80 mm"), ("sans-serif", 16))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(44)
+        .build_cartesian_2d((40.0_f64..1_000.0).log_scale(), 0.0..1.03 * robots as f64)?;
+    chart
+        .configure_mesh()
+        .x_desc("samples")
+        .y_desc("resolved")
+        .x_label_formatter(&|samples| format!("{samples:.0}"))
+        .draw()?;
+    let colours =
+        [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), BLACK];
+    for (noise, colour) in [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours) {
+        for fit in [true, false] {
+            let line: Vec<_> = refused
+                .iter()
+                .filter(|(by_fit, _, of, _)| *by_fit == fit && *of == noise)
+                .map(|&(_, samples, _, resolved)| (samples as f64, resolved as f64))
+                .collect();
+            if line.is_empty() {
+                continue;
+            }
+            let style =
+                ShapeStyle { color: colour.to_rgba(), filled: false, stroke_width: if fit { 3 } else { 1 } };
+            let name = format!("noise {noise}, {}", if fit { "fit" } else { "from_samples" });
+            chart
+                .draw_series(LineSeries::new(line.clone(), style))?
+                .label(name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
+            chart.draw_series(
+                line.into_iter().map(|at| Circle::new(at, if fit { 4 } else { 2 }, colour.filled())),
+            )?;
+        }
+    }
+    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
+    root.present()?;
+    Ok(())
+}
