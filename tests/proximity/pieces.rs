@@ -181,8 +181,9 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
     let mut random = Random::new(8);
     let mut many = 0;
     for round in 0..60 {
-        let (length, bend) =
-            ([0.15, 0.7, 2.0, 8.0][round % 4] * random.between(0.7, 1.3), random.between(0.1, 0.9));
+        let length = [0.15, 0.7, 2.0, 8.0][round % 4] * random.between(0.7, 1.3);
+        // It does not come back to the wall.
+        let bend = random.between(0.1, 0.9_f64.min(1.5 / length));
         let tube = short_arc(length, bend);
         let gap = [0.3, 1e-3, 2.0][round % 3];
         let corners = [[-1.0, -2.0], [2.0, -2.0], [0.0, 3.0]];
@@ -198,7 +199,7 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
             counts[1] <= 10 * counts[0].max(4) && counts[2] <= 10 * counts[1],
             "{length} {bend}: {counts:?}"
         );
-        many += usize::from(counts[2] > 30);
+        many += usize::from(counts[2] > 15);
         assert!(counts[2] < 600, "{length} {bend}: {counts:?}");
     }
     assert!(many > 10, "{many}");

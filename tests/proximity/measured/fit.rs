@@ -2,8 +2,8 @@
 
 use super::{Discs, Seen, discs, judge};
 use continuum_testing::{Arcs, Random};
-use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::{RobotError, Tube};
 use std::f64::consts::{PI, TAU};
 
 /// Evenly spread in a ball.
@@ -52,19 +52,28 @@ fn measured(random: &mut Random, arcs: &Arcs, count: usize, noise: f64) -> (Vec<
 
 #[test]
 fn noise_within_the_deviation_never_makes_a_bound_wrong() {
-    let (mut random, mut seen) = (Random::new(91), Seen::default());
-    for _ in 0..1_000 {
+    let (mut random, mut seen, mut roughest, mut refused) = (Random::new(91), Seen::default(), 0, 0);
+    while seen.asked < 10_000 {
         let arcs = robot(&mut random);
         let deviation = [0.02, 0.05, 0.25, 1.0][random.below(4) as usize];
         let count = [50, 100, 200, 400][random.below(4) as usize];
-        let noise = deviation * [0.0, 0.3, 0.9][random.below(3) as usize];
+        let noise = deviation * [0.0, 0.3, 0.5, 1.0][random.below(4) as usize];
         let (points, radii) = measured(&mut random, &arcs, count, noise);
-        let tube = Tube::fit(&points, &radii, deviation).unwrap();
+        let tube = Tube::fit(&points, &radii, deviation);
+        if noise == deviation {
+            // Points that were measured twice may be so far apart that only a kink is near enough to both.
+            let found = tube.as_ref().is_ok_and(|tube| tube.residual() <= deviation);
+            assert!(found || matches!(tube, Err(RobotError::TurnsTooSharply { .. })), "{tube:?}");
+            (roughest, refused) = (roughest + 1, refused + usize::from(!found));
+            continue;
+        }
+        let tube = tube.unwrap();
         assert!(tube.residual() <= deviation);
         let curve = |s: f64| arcs.at(s);
         judge(&mut random, &tube, (&discs(&arcs), &curve), [5.0, 0.1], 10, &mut seen);
     }
-    assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
+    assert!(roughest > 200 && 20 * refused < roughest, "{refused} of {roughest}");
+    assert!(seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
     assert!(seen.resolved > 9_900, "{seen:?}");
 }
 
