@@ -142,6 +142,8 @@ fn every_public_name_has_an_example_or_a_page() {
     let unmentioned: Vec<_> = items
         .iter()
         .filter(|item| variant_of_error(&item.path).is_none() && !is_field_of_error(&item.path))
+        // A page needs no other.
+        .filter(|item| !item.path.starts_with("parry_continuum::book"))
         .filter(|item| !item.is_in(&text, &words))
         .map(|item| &item.path)
         .collect();
