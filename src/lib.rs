@@ -89,8 +89,8 @@ pub use host::ContinuumDispatcher;
 pub use host::rapier;
 pub use robot::{
     BendingMotion, BendingRates, BendingSection, Cap, Chain, ConstantCurvature, LinearMotion, MatrixError,
-    ModifiedCylinder, Motion, RigidMotion, RobotError, Speed, Tube, TubeSection, bending_speed,
-    pose_from_matrix, simplify, stations, verify_motion,
+    ModifiedCylinder, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube, TubeSection,
+    bending_speed, pose_from_matrix, simplify, stations, verify_motion,
 };
 
 /// Runs the code in the README, where rapier is among it.

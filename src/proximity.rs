@@ -30,7 +30,9 @@
 //! | question | call |
 //! |---|---|
 //! | does a [`Motion`](crate::Motion) keep a margin all the way? | [`clears_motion`](BvhSearch::clears_motion) |
+//! | do a planner's own shapes keep it, and all between them? | [`clears_path`](BvhSearch::clears_path) |
 //! | when does it first lose it? | [`time_of_contact`](BvhSearch::time_of_contact) |
+//! | how near does it come, when and where? | [`clearance_of_motion`](BvhSearch::clearance_of_motion) |
 //!
 //! **A proof for others**
 //!
@@ -101,7 +103,7 @@
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, PlacementFault, Proof, ProximityError,
+    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof, ProximityError,
     RobotProximity, SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest,
     TriangleFeature, TubePiece, Witness, Work,
 };

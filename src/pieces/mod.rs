@@ -1,5 +1,6 @@
 //! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
 
+mod on_loose_tube;
 mod on_tube;
 mod outer;
 mod piece;

@@ -39,6 +39,9 @@ impl PlacedTube<'_> {
     /// How near `x` is to a section at most, looking from an arc length nearby.
     pub(crate) fn near(&self, number: u32, arc: Real, x: Vector) -> OnTube {
         let section = self.section(number);
+        if self.tube.is_loose() {
+            return self.near_loose(number, arc, x);
+        }
         let rounding = self.tube.error() + self.slack;
         let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
         let [a, b] = foot.between.map(|point| self.pose * point);

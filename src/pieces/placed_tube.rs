@@ -80,6 +80,10 @@ impl<'a> PlacedTube<'a> {
     /// not.
     pub(crate) fn doubt(&self, piece: &Piece) -> Real {
         let (section, arcs) = (self.section(piece.section), self.arcs(piece));
+        if self.tube.is_loose() {
+            // A face at the end of the run of links may be what is near.
+            return section.radius;
+        }
         let near = 2.0 * (section.radius + self.tube.error());
         let away = [arcs[0] - section.start, section.end - arcs[1]];
         let of = |end: usize| if away[end] <= near { self.tube.doubt(section, end) } else { 0.0 };

@@ -164,6 +164,12 @@ pub enum RobotError {
         /// Why, in the words of the kinematics.
         reason: &'static str,
     },
+    /// A path needs at least one motion.
+    #[error("there are no motions in `{parameter}`; a path needs at least one motion")]
+    NoMotions {
+        /// The parameter, as the function that was called names it.
+        parameter: &'static str,
+    },
     /// A stated speed is not a number that is at least 0.
     #[error("the motion states the speed {value} for section {section}; it must be finite and at least 0")]
     BadSpeed {

@@ -31,10 +31,11 @@ pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
-pub(crate) use motion::Sections;
 pub use motion::{
-    BendingMotion, BendingRates, LinearMotion, Motion, RigidMotion, Speed, bending_speed, verify_motion,
+    BendingMotion, BendingRates, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
+    bending_speed, verify_motion,
 };
+pub(crate) use motion::{Sections, ShapePath};
 pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};

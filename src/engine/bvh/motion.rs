@@ -1,10 +1,10 @@
 //! Queries about motions, as [`BvhSearch`] answers them.
 
 use super::search::{BvhSearch, Context, Remembered};
-use crate::answer::{MotionAnswer, ProximityError};
-use crate::query::check_decision;
-use crate::query::motion::MotionSearch;
-use crate::robot::Motion;
+use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
+use crate::query::motion::{MotionSearch, Wanted};
+use crate::query::{check_decision, check_not_negative};
+use crate::robot::{Chain, Motion, ShapePath};
 use parry3d_f64::math::Real;
 
 impl BvhSearch {
@@ -58,7 +58,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion, margin, resolution).clears()
+        self.context().motion(motion).clears(Wanted { margin, resolution })
     }
 
     /// When a motion first comes as close to the mesh as `margin`: between the two times of the answer's
@@ -94,7 +94,97 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion, margin, resolution).first_contact()
+        self.context().motion(motion).first_contact(Wanted { margin, resolution })
+    }
+
+    /// Whether the robot keeps more than `margin` away all the way along a planner's own shapes, where no speed is stated.
+    ///
+    /// `shapes` are the robot at the planner's steps, in the mesh's frame, with the same number of links and the same radii. Between
+    /// two of them every vertex is taken to move straight and evenly. At every moment the robot is some tube whose centreline is
+    /// smooth and lies within `deviation` of the links, place by place: the deviation counts how far the links leave the curve,
+    /// how far the robot's way leaves the straight one between two steps, and what the kinematics or a sensor errs.
+    ///
+    /// A place says nothing of a direction. On its side the tube is known to the deviation; at the flat faces of its two ends and of
+    /// steps in radius it may stand any way: it lies within the ball around its centre, and holds that centre. So caps of the
+    /// shapes do not matter.
+    ///
+    /// - `Clear`: every such tube keeps the margin at every time.
+    /// - `Contact`: every such tube is at most the margin away at the time of the named shape. Times are shared out evenly: of n
+    ///   shapes the first is at t = 0, the next at 1 / (n - 1).
+    /// - `Undecided`: it depends on the tube, or on less than `resolution`.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, parry::{math::Vector, shape::Ball}, proximity::{BvhSearch, Decision}};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// // A needle that is pushed by 5 in steps of 1.
+    /// let needle = |tip: u32| Chain::capsules(&[Vector::ZERO, Vector::Z * f64::from(tip)], &[0.5]);
+    /// let shapes = (1..=6).map(needle).collect::<Result<Vec<_>, _>>()?;
+    /// let found = search.clears_path(&shapes, 0.1, 1.0, 1e-3)?;
+    /// assert_eq!(found.decision, Decision::Clear);
+    /// let found = search.clears_path(&shapes, 0.1, 5.0, 1e-3)?;
+    /// assert_eq!(found.decision, Decision::Contact); // the tip is less than 4 away in the end
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - The margin or the resolution is negative or NaN, or the deviation is, or is not finite.
+    /// - There are no shapes, or they differ in their number of links or in radii.
+    /// - The resolution is finer than rounding, or than shapes so far apart can be divided.
+    /// - The robot is out of range.
+    pub fn clears_path(
+        &mut self,
+        shapes: &[Chain],
+        deviation: Real,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<MotionAnswer, ProximityError> {
+        check_decision(margin, resolution)?;
+        check_not_negative("deviation", deviation)?;
+        let path = ShapePath::new(shapes, deviation)?;
+        self.context().motion(&path).clears(Wanted { margin, resolution })
+    }
+
+    /// How near a motion comes to the mesh at any time from 0 to 1, between bounds that are at most `tolerance` apart where the
+    /// motion's shapes allow that.
+    ///
+    /// `lower` <= the least clearance of all shapes <= `upper`, for every instant and not only for some: this is proven from the
+    /// speeds that the motion states, rounding included. The shape at [`t`](MotionClearance::t) realises `upper`, at the two
+    /// points of the answer. Where the motion stays as near for a while, `t` is one such time.
+    ///
+    /// There are always bounds; [`resolved`](MotionClearance::resolved) says whether they are as close as was asked for. Samples
+    /// may be too coarse for that, an end may turn from flat to round and be what comes near, or the query ends after 65,536
+    /// shapes. A [`MotionPath`](crate::MotionPath) asks about many motions at once: each is looked at only as closely as it may
+    /// be the one that comes nearest.
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// // The tip turns from the one side to the other, and comes nearest in the middle.
+    /// let motion = LinearMotion::chain(
+    ///     &[Vector::Z * 2.0, Vector::new(-4.0, 0.0, 6.0)],
+    ///     &[Vector::Z * 2.0, Vector::new(4.0, 0.0, 6.0)],
+    ///     &[0.5],
+    /// )?;
+    /// let least = search.clearance_of_motion(&motion, 0.001)?;
+    /// assert!(least.resolved && least.upper - least.lower <= 0.001);
+    /// println!("{} mm at t = {}, at {}", least.upper, least.t, least.on_mesh);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The tolerance is negative or NaN; the motion has no shape at some time, its sections change, or a stated speed is not
+    /// finite; or the robot is out of range.
+    pub fn clearance_of_motion(
+        &mut self,
+        motion: &impl Motion,
+        tolerance: Real,
+    ) -> Result<MotionClearance, ProximityError> {
+        check_not_negative("tolerance", tolerance)?;
+        self.context().motion(motion).least(tolerance)
     }
 
     /// [`clears_motion`](Self::clears_motion) for many motions, on all cores. `out` gets the answer of each, or why there is
@@ -112,16 +202,16 @@ impl BvhSearch {
         out.clear();
         check_decision(margin, resolution)?;
         self.batch(motions, out, MotionAnswer::clear, |context, motion, out| {
-            *out = context.motion(motion, margin, resolution).clears();
+            *out = context.motion(motion).clears(Wanted { margin, resolution });
         });
         Ok(())
     }
 }
 
 impl<'a> Context<'a> {
-    /// A search along a motion. Margin and resolution were checked.
-    fn motion<M: Motion>(self, motion: &'a M, margin: Real, resolution: Real) -> MotionSearch<'a, M> {
+    /// A search along a motion.
+    fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
-        MotionSearch { search, memory, motion, margin, resolution, shapes: 0, last: None }
+        MotionSearch { search, memory, motion, shapes: 0, last: None }
     }
 }

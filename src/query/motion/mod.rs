@@ -1,6 +1,10 @@
-//! Whether a motion keeps a margin, and until when.
+//! Whether a motion keeps a margin, until when, and how near it comes.
 
+mod least;
 mod moment;
 mod motion_search;
+mod moving;
+mod waiting;
 
+pub(crate) use moment::Wanted;
 pub(crate) use motion_search::{MotionMemory, MotionSearch};

@@ -12,7 +12,9 @@
 //! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
-use super::moment::{Moment, Seen, Waiting};
+use super::moment::{Moment, Seen, Wanted};
+use super::moving::Moving;
+use super::waiting::Waiting;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
 use crate::pieces::{Found, Piece, PlacedTube, TubeInMesh, refine};
@@ -33,7 +35,7 @@ pub(crate) struct MotionMemory {
     begun: Vec<Piece>,
     /// Those that failed, one interval's after another's.
     failed: Vec<Waiting>,
-    intervals: VecDeque<Interval>,
+    pub(super) intervals: VecDeque<Interval>,
 }
 
 impl Default for MotionMemory {
@@ -49,17 +51,51 @@ impl Default for MotionMemory {
     }
 }
 
-/// An interval of time and what has to be proven in it.
+/// An interval of time and what has to be looked at in it.
 #[derive(Clone, Debug)]
-struct Interval {
+pub(super) struct Interval {
     times: [Real; 2],
-    /// Which of the failed pieces.
-    pieces: Range<usize>,
+    /// Which of the failed pieces; none if it is the whole robot.
+    pieces: Option<Range<usize>>,
+    /// How near these come in it at least.
+    pub lower: Real,
 }
 
 impl Interval {
-    fn middle(&self) -> Real {
+    pub(super) fn middle(&self) -> Real {
         0.5 * self.times[0] + 0.5 * self.times[1]
+    }
+
+    /// The same, in which the pieces are known to come no nearer than this.
+    pub(super) fn comes_no_nearer(self, lower: Real) -> Self {
+        Self { lower: self.lower.max(lower), ..self }
+    }
+
+    /// What is left of it before and after its middle shape, which decides for a while what becomes of the pieces.
+    pub(super) fn halves(&self, still: Real, pieces: &Range<usize>) -> [Option<Self>; 2] {
+        let t = self.middle();
+        let half = |times: [Real; 2]| {
+            let is_left = !pieces.is_empty() && times[0] < times[1];
+            is_left.then(|| Self { times, pieces: Some(pieces.clone()), lower: self.lower })
+        };
+        [half([self.times[0], t - still]), half([t + still, self.times[1]])]
+    }
+}
+
+/// The pieces that have their turn in a shape.
+pub(super) struct Turn<'a> {
+    pub pieces: &'a mut Vec<Waiting>,
+    begun: &'a mut Vec<Piece>,
+    is_whole: bool,
+}
+
+impl Turn<'_> {
+    /// Begins with the pieces of the whole robot, unless some have failed before. `scale` is what is to be decided.
+    pub(super) fn begin(&mut self, tube: &TubeInMesh, scale: Real) {
+        if self.is_whole {
+            tube.begin(scale, self.begun);
+            self.pieces.extend(self.begun.iter().map(|piece| Waiting::of(piece, &tube.tube)));
+        }
     }
 }
 
@@ -68,8 +104,6 @@ pub(crate) struct MotionSearch<'a, M> {
     pub search: MeshSearch<'a>,
     pub memory: &'a mut MotionMemory,
     pub motion: &'a M,
-    pub margin: Real,
-    pub resolution: Real,
     /// How many shapes were looked at.
     pub shapes: u64,
     /// The triangle that was found last.
@@ -83,7 +117,7 @@ const PATIENCE: u64 = 256;
 
 impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
-    pub(crate) fn clears(&mut self) -> Result<MotionAnswer, ProximityError> {
+    pub(crate) fn clears(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let mut undecided = None::<[Real; 2]>;
         // An interval with a shape near the margin, and how many shapes there may be in all then.
         let mut near = None::<([Real; 2], u64)>;
@@ -98,7 +132,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 });
                 return Ok(MotionAnswer::undecided(first));
             }
-            let (seen, failed) = self.examine(&interval)?;
+            let (seen, failed) = self.judge(&interval, wanted)?;
             if seen.is_near && near.is_none() {
                 near = Some((interval.times, self.shapes + PATIENCE));
             }
@@ -110,7 +144,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
                 undecided = if is_first { Some(interval.times) } else { undecided };
             }
-            self.memory.intervals.extend(halves(&interval, &seen, failed).into_iter().flatten());
+            self.memory.intervals.extend(interval.halves(seen.still, &failed).into_iter().flatten());
         }
         Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -118,15 +152,17 @@ impl<M: Motion> MotionSearch<'_, M> {
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
     /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
     /// larger intervals first, and with patience.
-    pub(crate) fn first_contact(&mut self) -> Result<MotionAnswer, ProximityError> {
+    pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
         let (mut clear_until, mut most) = (1.0, u64::MAX);
         self.begin();
+        // The last one comes first.
+        self.memory.intervals.make_contiguous().reverse();
         while self.shapes < most {
             let intervals = &mut self.memory.intervals;
             let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
             let Some(interval) = next else { break };
-            let (seen, failed) = self.examine(&interval)?;
+            let (seen, failed) = self.judge(&interval, wanted)?;
             if seen.is_undecided && undecided.is_none() {
                 undecided = Some(interval.times);
                 most = self.shapes + PATIENCE;
@@ -137,12 +173,12 @@ impl<M: Motion> MotionSearch<'_, M> {
                 clear_until = if seen.is_fine { interval.times[0] } else { t };
                 self.memory.intervals.clear();
                 if !seen.is_fine {
-                    let before = Interval { times: [interval.times[0], t], pieces: failed.clone() };
+                    let before = Interval { times: [interval.times[0], t], pieces: Some(failed), ..interval };
                     self.memory.intervals.push_back(before);
                 }
                 continue;
             }
-            self.memory.intervals.extend(halves(&interval, &seen, failed).into_iter().rev().flatten());
+            self.memory.intervals.extend(interval.halves(seen.still, &failed).into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
             return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
@@ -156,13 +192,19 @@ impl<M: Motion> MotionSearch<'_, M> {
         ShapeInContact { t, upper: found.upper, section: found.section, witness: found.witness }
     }
 
-    fn begin(&mut self) {
+    /// Begins with each part of the motion's time.
+    pub(super) fn begin(&mut self) {
         let MotionMemory { sections, intervals, failed, .. } = &mut *self.memory;
         sections.clear();
         intervals.clear();
         failed.clear();
-        // The first shape gives its pieces.
-        intervals.push_back(Interval { times: [0.0, 1.0], pieces: 0..0 });
+        let legs = self.motion.legs().max(1);
+        let time = |leg: usize| leg as Real / legs as Real;
+        intervals.extend((0..legs).map(|leg| Interval {
+            times: [time(leg), time(leg + 1)],
+            pieces: None,
+            lower: Real::NEG_INFINITY,
+        }));
     }
 
     /// Fills the tube with the shape at `t`.
@@ -176,10 +218,26 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(pose)
     }
 
-    /// Judges an interval by its middle shape; and which of the failed pieces are those that failed there.
-    fn examine(&mut self, interval: &Interval) -> Result<(Seen, Range<usize>), ProximityError> {
+    /// Whether the margin is kept in an interval, as far as its middle shape shows; and which of the failed pieces are those that
+    /// failed there.
+    fn judge(&mut self, interval: &Interval, wanted: Wanted) -> Result<(Seen, Range<usize>), ProximityError> {
+        self.examine(interval, |tube, turn, moving| {
+            // Below that, rounding decides.
+            tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
+            turn.begin(tube, wanted.margin.max(wanted.resolution));
+            let mut moment = Moment { moving, wanted, seen: Seen::default() };
+            refine(tube, turn.pieces, &mut moment)?;
+            Ok(Seen { still: moment.moving.still, ..moment.seen })
+        })
+    }
+
+    /// Asks a question of the middle shape of an interval; and which of the failed pieces are those that failed there.
+    pub(super) fn examine<T>(
+        &mut self,
+        interval: &Interval,
+        ask: impl FnOnce(&mut TubeInMesh, &mut Turn, Moving<M>) -> Result<T, ProximityError>,
+    ) -> Result<(T, Range<usize>), ProximityError> {
         let t = interval.middle();
-        let is_first = self.shapes == 0;
         let pose = self.shape(t)?;
         let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let (motion, times) = (self.motion, interval.times);
@@ -192,42 +250,15 @@ impl<M: Motion> MotionSearch<'_, M> {
         let MeshSearch { level, hierarchy, .. } = self.search;
         let search = MeshSearch { level, hierarchy, scratch: &mut *self.search.scratch };
         let mut tube = TubeInMesh { search, tube };
-        // Below that, rounding decides.
-        tube.check_resolved(32.0 * tube.tube.slack(), self.resolution)?;
         pieces.clear();
-        if is_first {
-            tube.begin(self.margin.max(self.resolution), begun);
-            pieces.extend(begun.iter().map(|piece| Waiting::of(piece, &tube.tube)));
-        } else {
-            pieces.extend_from_slice(&failed[interval.pieces.clone()]);
-        }
+        pieces.extend_from_slice(interval.pieces.clone().map_or(&[], |failing| &failed[failing]));
         let first = failed.len();
-        let (margin, resolution, last) = (self.margin, self.resolution, &mut self.last);
-        let mut moment = Moment {
-            motion,
-            times,
-            half,
-            margin,
-            resolution,
-            opening,
-            last,
-            failed,
-            speed: 0.0,
-            seen: Seen::default(),
-        };
-        refine(&mut tube, pieces, &mut moment)?;
-        let seen = moment.seen;
+        let (speed, still, last) = (0.0, Real::INFINITY, &mut self.last);
+        let moving = Moving { motion, times, half, opening, failed: &mut *failed, last, speed, still };
+        let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
+        let seen = ask(&mut tube, &mut turn, moving)?;
         // What a contact left unasked.
         failed.append(pieces);
         Ok((seen, first..failed.len()))
     }
-}
-
-/// What is left of an interval before and after its middle shape.
-fn halves(interval: &Interval, seen: &Seen, pieces: Range<usize>) -> [Option<Interval>; 2] {
-    let t = interval.middle();
-    let half = |times: [Real; 2]| {
-        (!pieces.is_empty() && times[0] < times[1]).then(|| Interval { times, pieces: pieces.clone() })
-    };
-    [half([interval.times[0], t - seen.still]), half([t + seen.still, interval.times[1]])]
 }

@@ -2,17 +2,24 @@
 
 mod bending;
 mod linear;
+mod motion_path;
+mod moving_base;
 mod rigid;
+mod rigid_path;
 mod sampled;
 mod sections;
+mod shape_path;
 #[cfg(test)]
 mod tests;
 mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_speed};
 pub use linear::LinearMotion;
+pub use motion_path::MotionPath;
+pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
 pub(crate) use sections::Sections;
+pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;
 
 use super::{COORDINATE_LIMIT, NotRigid, RobotError, Tube, rigid};
@@ -20,8 +27,8 @@ use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, and an upper bound on how fast it moves.
 ///
-/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use. For a motion of your own, implement the two
-/// methods. What is proven of a motion relies on the bounds that it states, so let your tests check them by
+/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use; [`MovingBase`] moves the base of any of them, and
+/// [`MotionPath`] puts them one after another. For a motion of your own, implement the first two methods. What is proven of a motion relies on the bounds that it states, so let your tests check them by
 /// [`verify_motion`].
 ///
 /// Two shapes of a motion must be comparable:
@@ -75,6 +82,11 @@ pub trait Motion {
     /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound that is too large costs time.
     /// One that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
+
+    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a path of many motions.
+    fn legs(&self) -> usize {
+        1
+    }
 }
 
 /// How fast a centreline moves, per unit of the motion's time. At a steady speed this is how far it moves from t = 0 to 1.

@@ -1,10 +1,10 @@
 //! Stated speeds against dense sampling, between any two shares and any two times.
 
-use super::{BendingMotion, LinearMotion, Motion, RigidMotion};
+use super::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed};
 use crate::robot::BendingSection;
 use crate::robot::Tube;
 use continuum_testing::Random;
-use parry3d_f64::math::{Real, Vector};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The point and the direction in the mesh's frame.
 fn at(motion: &dyn Motion, t: Real, section: usize, share: Real) -> (Vector, Vector) {
@@ -27,7 +27,7 @@ fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {
 fn stated_speeds_hold_between_any_shares_and_times() {
     let mut random = Random::new(1);
     // How much of the stated speed is used at most, by kind of motion: points and turns.
-    let mut used = [[0.0_f64; 2]; 3];
+    let mut used = [[0.0_f64; 2]; 4];
     for _ in 0..300 {
         let count = 1 + random.below(4) as usize;
         let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
@@ -43,10 +43,12 @@ fn stated_speeds_hold_between_any_shares_and_times() {
         let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
         let mut tube = Tube::empty();
         bending.shape(random.unit(), &mut tube).unwrap();
-        let motions: [&dyn Motion; 3] = [
+        let moving = MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
+        let motions: [&dyn Motion; 4] = [
             &LinearMotion::chain(&from, &to, &radii).unwrap(),
             &RigidMotion::new(tube, poses).unwrap(),
             &bending,
+            &moving,
         ];
         for (motion, used) in motions.into_iter().zip(&mut used) {
             for _ in 0..4 {
@@ -75,6 +77,87 @@ fn stated_speeds_hold_between_any_shares_and_times() {
             }
         }
     }
-    // No bound is so loose that nothing could break it.
-    assert!(used.iter().flatten().all(|used| *used > 0.8), "{used:?}");
+    // No bound is so loose that nothing could break it; that of a moving base adds up others.
+    assert!(used.iter().take(3).flatten().all(|used| *used > 0.8), "{used:?}");
+    assert!(used[3].iter().all(|used| *used > 0.5), "{used:?}");
+}
+
+/// The largest share of a stated speed that is used at the tip, in fine steps of a part of the time.
+fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
+    let Speed { point, turn } = motion.speed(0, [1.0; 2], times);
+    let step = (times[1] - times[0]) / 256.0;
+    let mut used = [0.0_f64; 2];
+    for k in 0..256 {
+        let t = times[0] + step * Real::from(k);
+        let [before, behind] = [t, t + step].map(|t| at(motion, t, 0, 1.0));
+        used[0] = used[0].max((behind.0 - before.0).length() / step / point);
+        used[1] = used[1].max((behind.1 - before.1).length() / step / turn);
+    }
+    used
+}
+
+/// Each term of a moving base alone is what differences find: its push, its turn, what bends on it, and that a point may be farther
+/// from the axis at other times than at those whose shapes are known.
+#[test]
+fn each_term_of_a_moving_base_is_as_large_as_differences() {
+    let section = |length, bend| BendingSection { length, radius: 0.5, bend: [bend, 0.0] };
+    let inner = |from, to| BendingMotion::new(&[from], &[to], Pose::IDENTITY).unwrap();
+    let still = inner(section(10.0, 0.0), section(10.0, 0.0));
+    let moving =
+        |motion: &BendingMotion, to: Pose| MovingBase::new(motion.clone(), [Pose::IDENTITY, to]).unwrap();
+    let pushed = moving(&still, Pose::from_translation(Vector::new(1.0, 2.0, -3.0)));
+    let turned = moving(&still, Pose::rotation(Vector::X * 0.5));
+    let bent = moving(&inner(section(10.0, 0.0), section(10.0, 0.02)), Pose::IDENTITY);
+    // Pushed along the tip's way as the base turns it.
+    let both = moving(&still, Pose::new(Vector::Y * -3.0, Vector::X * 0.5));
+    // Grows to twice the length; away from the axis, not only along itself.
+    let growing = moving(&inner(section(1.0, 0.0), section(41.0, 0.0)), Pose::rotation(Vector::X * 3.0));
+    for (name, motion, times, least) in [
+        ("push", &pushed, [0.0, 1.0], [0.999, 0.0]),
+        ("turn", &turned, [0.0, 1.0], [0.999, 0.999]),
+        ("bend", &bent, [0.0, 1.0], [0.95, 0.95]),
+        ("push and turn", &both, [0.0, 1.0], [0.95, 0.999]),
+        // 3 x 41 across and 40 along: without the way since t = 1/2 it would be 3 x 21.
+        ("turn of what grows", &growing, [0.9, 1.0], [0.75, 0.999]),
+        ("turn of what is short", &growing, [0.0, 0.1], [0.7, 0.999]),
+        ("turn of what is half out", &growing, [0.6, 0.75], [0.7, 0.999]),
+    ] {
+        let used = used_at_tip(motion, times);
+        assert!((0..2).all(|k| least[k] <= used[k] || used[k].is_nan()), "{name}: {used:?}");
+        assert!(used.iter().all(|used| *used <= 1.0 + 1e-9 || used.is_nan()), "{name}: {used:?}");
+    }
+}
+
+/// Motions one after another are as fast as each of them, on its share of the time.
+#[test]
+fn a_path_is_as_fast_as_its_motions() {
+    let way = |from: Real, to: Real| {
+        LinearMotion::capsules(
+            &[Vector::X * from, Vector::X * from + Vector::Z],
+            &[Vector::X * to, Vector::X * to + Vector::Z],
+            &[0.1],
+        )
+    };
+    let motions = vec![way(0.0, 1.0).unwrap(), way(1.0, 5.0).unwrap(), way(5.0, 5.0).unwrap()];
+    let path = MotionPath::new(motions).unwrap();
+    super::verify_motion(&path, 30).unwrap();
+    let speed = |times| path.speed(0, [0.0, 1.0], times).point;
+    let third = 1.0 / 3.0;
+    for (times, expected) in [
+        ([0.0, third], 3.0),
+        ([0.1, 0.2], 3.0),
+        ([0.3, 0.4], 12.0),
+        ([third, 2.0 * third], 12.0),
+        ([2.0 * third, 1.0], 0.0),
+        ([0.7, 0.7], 0.0),
+        ([0.0, 1.0], 12.0),
+    ] {
+        assert!((speed(times) - expected).abs() < 1e-9, "{times:?}: {}", speed(times));
+    }
+    assert_eq!(path.leg(0.0), (0, 0.0));
+    assert_eq!(path.leg(1.0), (2, 1.0));
+    assert_eq!(path.leg(0.5).0, 1);
+    assert!((path.leg(0.5).1 - 0.5).abs() < 1e-15);
+    assert!((at(&path, 0.5, 0, 0.0).0 - Vector::X * 3.0).length() < 1e-12);
+    assert!(MotionPath::<LinearMotion>::new(Vec::new()).is_err());
 }

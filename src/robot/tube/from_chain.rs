@@ -66,6 +66,43 @@ impl Tube {
         (self.ends, self.caps) = (ends, caps);
     }
 
+    /// Links of any tube whose centreline is within `deviation` of theirs, place by place; which way its discs stand nobody knows.
+    /// Flat of such a tube are its two ends and the ends of each run of links with one radius, whichever way; a step in radius is
+    /// taken for two of them, which leaves out nothing: their centres are in the tube, and a ball around each holds its disc.
+    pub(crate) fn set_loose_links(
+        &mut self,
+        links: impl Iterator<Item = ([Vector; 2], Real)>,
+        deviation: Real,
+    ) {
+        let links = links.zip(0..);
+        let links =
+            links.map(|((ends, radius), segment)| Straight { ends, radius, caps: [Cap::Round; 2], segment });
+        self.set_straight(links, Lasting::Never);
+        self.error = deviation;
+        let count = self.sections.len();
+        for number in 0..count {
+            let Section { radius, first, last, .. } = self.sections[number];
+            let ticks = [first, last];
+            let is_other = |other: Option<&Section>| other.is_none_or(|other| other.radius != radius);
+            let is_end = [
+                is_other(number.checked_sub(1).and_then(|before| self.sections.get(before))),
+                is_other(self.sections.get(number + 1)),
+            ];
+            for end in [0, 1] {
+                let centre = self.point(&self.sections[number], ticks[end]);
+                let face =
+                    Face { centre, outward: Vector::ZERO, tilt: Real::INFINITY, lasting: Lasting::Never };
+                self.sections[number].faces[end] = is_end[end].then_some(face);
+            }
+        }
+    }
+
+    /// Whether only places of it are known, and no directions ([`Tube::set_loose_links`]).
+    pub(crate) fn is_loose(&self) -> bool {
+        let first = self.sections.first().and_then(|section| section.faces[0]);
+        first.is_some_and(|face| face.tilt == Real::INFINITY && face.lasting == Lasting::Never)
+    }
+
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
     /// `lasting` knows flat ends that are not so by the radii alone.
     fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {

@@ -4,7 +4,10 @@ mod chains;
 mod edges;
 mod first_contact;
 mod jumps;
+mod least;
 mod left_out;
+mod moving_base;
+mod path;
 mod refused;
 mod speeds;
 

@@ -1,0 +1,30 @@
+//! What waits for its turn: a piece of the robot, whatever its shape.
+
+use crate::pieces::{Part, Piece, PlacedTube};
+use parry3d_f64::math::Real;
+
+/// What is between two shares of a section.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Waiting {
+    pub section: u32,
+    pub shares: [Real; 2],
+}
+
+impl Waiting {
+    /// What a piece of a shape is in any shape.
+    pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
+        Self { section: piece.section, shares: tube.shares(piece) }
+    }
+}
+
+impl Part for Waiting {
+    fn piece(&self, tube: &PlacedTube) -> Piece {
+        tube.between(self.section, self.shares)
+    }
+
+    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
+        let [_, between] = tube.shares(&halves[0]);
+        let [from, to] = self.shares;
+        [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
+    }
+}

@@ -1,0 +1,86 @@
+//! Motions one after another, as one.
+
+use super::{Motion, Speed};
+use crate::distance::Scalar;
+use crate::robot::{RobotError, Tube};
+use parry3d_f64::math::{Pose, Real};
+
+/// A path: motions one after another, each of which takes the same share of the time.
+///
+/// Of n motions the first one is from t = 0 to 1 / n, the next to 2 / n, and so on; [`leg`](Self::leg) tells which one it is at
+/// a time. All have the same sections. One should begin where the one before ends, and
+/// [`verify_motion`](crate::verify_motion) finds out if not.
+///
+/// ```
+/// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+/// let shapes = [Vector::Z, Vector::Z + Vector::X * 2.0, Vector::X * 5.0].map(|tip| [Vector::ZERO, tip]);
+/// let edges = shapes.windows(2).map(|ends| LinearMotion::chain(&ends[0], &ends[1], &[1.0]));
+/// let path = MotionPath::new(edges.collect::<Result<_, _>>()?)?;
+/// let least = search.clearance_of_motion(&path, 0.01)?;
+/// assert!(least.resolved && path.leg(least.t).0 == 1); // the second edge comes nearest
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MotionPath<M> {
+    motions: Vec<M>,
+}
+
+impl<M: Motion> MotionPath<M> {
+    /// # Errors
+    /// There are no motions.
+    pub fn new(motions: Vec<M>) -> Result<Self, RobotError> {
+        if motions.is_empty() {
+            Err(RobotError::NoMotions { parameter: "motions" })
+        } else {
+            Ok(Self { motions })
+        }
+    }
+
+    /// Which motion it is at a time from 0 to 1, and that motion's own time.
+    pub fn leg(&self, t: Real) -> (usize, Real) {
+        let along = t * self.motions.len() as Real;
+        // A number out of range becomes the nearest that is in it.
+        let leg = (along as usize).min(self.motions.len() - 1);
+        (leg, self.time_in(leg, t))
+    }
+
+    /// The time of a motion, however far before or behind it `t` is.
+    fn time_in(&self, leg: usize, t: Real) -> Real {
+        (t * self.motions.len() as Real - leg as Real).max(0.0).min(1.0)
+    }
+}
+
+impl<M: Motion> Motion for MotionPath<M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let (leg, t) = self.leg(t);
+        self.motions[leg].shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        // Times are rounded: those of one motion may seem to be another's.
+        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
+        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.leg(t).0);
+        let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let all = (first.min(last)..=last).map(|leg| {
+            let own = [-rounding, rounding];
+            let times = [0, 1].map(|end| self.time_in(leg, times[end] + own[end]));
+            self.motions[leg].speed(section, shares, times)
+        });
+        all.fold(Speed { point: 0.0, turn: 0.0 }, |most, speed| Speed {
+            point: larger(most.point, speed.point * up),
+            turn: larger(most.turn, speed.turn * up),
+        })
+    }
+
+    fn legs(&self) -> usize {
+        self.motions.len()
+    }
+}
+
+/// The larger one; NaN if either is.
+fn larger(a: Real, b: Real) -> Real {
+    if a >= b || a.is_nan() { a } else { b }
+}

@@ -1,0 +1,97 @@
+//! Any motion whose base moves as well.
+//!
+//! In the frame of its base a point moves by p(t), at most at the speed that the motion states there; the frame itself goes
+//! along a path (`rigid_path`): it turns about an axis a by the angle w in all and moves by v. In the mesh's frame the point
+//! then moves at v + R (w a x p + p'), which is at most |v| + w |a x p| + |p'|, and a direction turns at w and what the motion
+//! states.
+//!
+//! How far p is from the axis is known of the motion's shapes at three times. Until another time it moves away by no more than
+//! the motion moves it in between: by its stated speed between the two times, times how far they are apart. Two distances from
+//! a line differ by no more than the points are apart. Of the three bounds the least counts.
+
+use super::rigid_path::RigidPath;
+use super::{Motion, Speed};
+use crate::distance::Scalar;
+use crate::robot::{RobotError, Tube};
+use parry3d_f64::math::{Pose, Real};
+
+/// A motion whose base is moved at the same time, evenly from one pose to another: what a robot does that is pushed or turned
+/// while its sections bend and grow.
+///
+/// The motion is any one without a jump, and its poses are in the frame of the base. The base's origin moves straight and evenly while the
+/// base turns evenly about one axis by the lesser angle, as in a [`RigidMotion`](crate::RigidMotion).
+///
+/// ```
+/// use parry_continuum::{BendingMotion, BendingSection, MovingBase, parry::math::{Pose, Vector}, verify_motion};
+///
+/// let straight = BendingSection { length: 30.0, radius: 1.0, bend: [0.0, 0.0] };
+/// let bent = BendingSection { length: 32.0, radius: 1.0, bend: [0.03, 0.01] };
+/// let bending = BendingMotion::new(&[straight], &[bent], Pose::IDENTITY)?;
+/// // Pushed by 5 and rolled by 1 rad.
+/// let pushed = Pose::new(Vector::Z * 5.0, Vector::Z);
+/// let motion = MovingBase::new(bending, [Pose::IDENTITY, pushed])?;
+/// verify_motion(&motion, 100)?;
+/// # Ok::<(), parry_continuum::RobotError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MovingBase<M> {
+    motion: M,
+    path: RigidPath,
+    /// Shapes of the motion in the frame of the base, at some times.
+    known: Vec<(Real, Tube, Pose)>,
+}
+
+/// When shapes are known.
+const KNOWN_AT: [Real; 3] = [0.0, 0.5, 1.0];
+
+impl<M: Motion> MovingBase<M> {
+    /// The motion of a robot whose base goes from the first pose to the second, in the mesh's frame.
+    ///
+    /// # Errors
+    /// A pose is not finite or out of range, or its rotation is not of unit length; or the motion has no shape at its beginning,
+    /// in its middle or at its end.
+    pub fn new(motion: M, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
+        let path = RigidPath::new([from, to])?;
+        let shape = |t: Real| {
+            let mut tube = Tube::empty();
+            let pose = motion.shape(t, &mut tube)?;
+            Ok((t, tube, pose))
+        };
+        let known = KNOWN_AT.map(shape).into_iter().collect::<Result<_, RobotError>>()?;
+        Ok(Self { motion, path, known })
+    }
+
+    /// How fast the base carries a piece of the robot.
+    fn carried(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let bounds = self.known.iter().map(|(at, tube, pose)| {
+            let Speed { point, turn } = self.path.speed(tube, pose, section, shares);
+            // Until the time that is farthest from it.
+            let apart = (at - times[0]).max(times[1] - at).max(0.0);
+            let since = self.motion.speed(section, shares, [times[0].min(*at), times[1].max(*at)]);
+            Speed { point: point + self.path.angle() * since.point * apart, turn }
+        });
+        let none = Speed { point: Real::INFINITY, turn: Real::INFINITY };
+        bounds.fold(none, |least, bound| if bound.point < least.point { bound } else { least })
+    }
+}
+
+impl<M: Motion> Motion for MovingBase<M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let pose = self.motion.shape(t, tube)?;
+        let base = self.path.pose(t);
+        let rotation = (base.rotation * pose.rotation).normalize();
+        Ok(Pose::from_parts(base.translation + base.rotation * pose.translation, rotation))
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let (carried, own) =
+            (self.carried(section, shares, times), self.motion.speed(section, shares, times));
+        // A few roundings of numbers that are added up here.
+        let up = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
+        Speed { point: (carried.point + own.point) * up, turn: (carried.turn + own.turn) * up }
+    }
+
+    fn legs(&self) -> usize {
+        self.motion.legs()
+    }
+}

@@ -1,0 +1,71 @@
+//! A frame that goes evenly from one pose to another, and how fast it carries a curve.
+//!
+//! The frame turns evenly about an axis a that is fixed in it, by the angle w in all, while its origin moves evenly by v. The
+//! point p of the frame then moves at v + w R(a x p), at most |v| + w |a x p| fast, and no direction turns faster than w.
+//! |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is within k l^2 / 8 of its chord,
+//! where the larger of the chord's two ends counts.
+
+use super::{Speed, rigid_pose};
+use crate::distance::Scalar;
+use crate::robot::rigid_pose::rotation_by;
+use crate::robot::{RobotError, Tube};
+use parry3d_f64::math::{Pose, Real, Rotation, Vector};
+
+/// A frame on its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RigidPath {
+    from: Pose,
+    /// By how much the origin moves.
+    shift: Vector,
+    /// The axis in the frame, times the angle.
+    turn: Vector,
+}
+
+impl RigidPath {
+    /// # Errors
+    /// A pose is not finite or out of range, or its rotation is not of unit length.
+    pub(super) fn new([from, to]: [Pose; 2]) -> Result<Self, RobotError> {
+        let (from, to) = (rigid_pose("from", &from)?, rigid_pose("to", &to)?);
+        let way = (from.rotation.inverse() * to.rotation).normalize();
+        let way = if way.w < 0.0 { -way } else { way };
+        Ok(Self { from, shift: to.translation - from.translation, turn: scaled_axis(way) })
+    }
+
+    /// Where the frame is.
+    pub(super) fn pose(&self, t: Real) -> Pose {
+        let rotation = self.from.rotation * rotation_by(self.turn * t);
+        Pose::from_parts(self.from.translation + self.shift * t, rotation.normalize())
+    }
+
+    /// By how much the frame turns in all, or a little more.
+    pub(super) fn angle(&self) -> Real {
+        self.turn.length() * UP
+    }
+
+    /// How fast a piece of a tube moves that is at rest in the frame, at a pose there.
+    pub(super) fn speed(&self, tube: &Tube, pose: &Pose, section: usize, shares: [Real; 2]) -> Speed {
+        let angle = self.angle();
+        let Some(section) = tube.sections().get(section) else { return Speed { point: 0.0, turn: 0.0 } };
+        let ends = shares.map(|share| tube.at_share(section, share));
+        let [a, b] = ends.map(|end| self.turn.cross(*pose * end.point).length());
+        let known = tube.bound(section, tube.ticks_around(section, shares));
+        let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
+        // The ends are between samples, and the curve beside them.
+        let beside = ends[0].off.max(ends[1].off).max(known.off);
+        let off = 0.125 * known.curvature * length * length + beside + tube.error();
+        let reach = pose.translation.abs().max_element() + 2.0 * tube.reach();
+        let rounding = 32.0 * Real::UNIT_ROUNDOFF * reach;
+        Speed { point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * UP, turn: angle }
+    }
+}
+
+/// Fewer than 32 roundings, each of a number no larger than those that are added up here.
+const UP: Real = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
+
+/// The axis of a rotation by half a turn or less, times its angle. (`to_scaled_axis` takes angles below 2e-8 for none.)
+fn scaled_axis(rotation: Rotation) -> Vector {
+    let half = Vector::new(rotation.x, rotation.y, rotation.z);
+    let sine = half.length();
+    // The sine of half of the angle, which is as long as the angle where its square vanishes.
+    half * if sine > 0.0 { 2.0 * libm::atan2(sine, rotation.w) / sine } else { 2.0 }
+}

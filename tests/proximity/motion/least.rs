@@ -1,0 +1,202 @@
+//! How near motions come, against their shapes in fine steps.
+
+use super::{Steps, anatomy, polyline, random_edge};
+use continuum_demo::ctr;
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::proximity::{BvhSearch, MotionClearance, ProximityError};
+use parry_continuum::{
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    RobotError, Speed, Tube,
+};
+use std::cell::Cell;
+
+/// A motion that counts its shapes.
+struct Counted<'a, M>(&'a M, Cell<u64>);
+
+impl<M: Motion> Motion for Counted<'_, M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        self.1.set(self.1.get() + 1);
+        self.0.shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        self.0.speed(section, shares, times)
+    }
+
+    fn legs(&self) -> usize {
+        self.0.legs()
+    }
+}
+
+#[derive(Debug, Default)]
+struct Judged {
+    resolved: usize,
+    touching: usize,
+    within: usize,
+    of: usize,
+    shapes: u64,
+}
+
+/// Compares the bounds of a motion with its shapes in so many steps.
+fn judge(search: &mut BvhSearch, motion: &impl Motion, steps: usize, tolerance: Real, judged: &mut Judged) {
+    let counted = Counted(motion, Cell::new(0));
+    let least: MotionClearance = search.clearance_of_motion(&counted, tolerance).unwrap();
+    let shape = |t: Real| {
+        let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
+        let pose = motion.shape(t, &mut tube).unwrap();
+        (tube, pose)
+    };
+    // The shape that is named realises the upper bound.
+    let (tube, pose) = shape(least.t);
+    let at = search.clearance(&tube, &pose, 1e-7).unwrap();
+    assert!(at.lower <= least.upper + 1e-9, "{at:?}, {least:?}");
+    assert!((least.on_robot - least.on_mesh).length() <= least.upper + 1e-9, "{least:?}");
+    // No shape is nearer than the lower one.
+    let truth = Steps::new(search, steps, 1e-3 * tolerance.max(1e-4), shape);
+    let [lower, upper] = truth.least();
+    assert!(least.lower <= upper, "{least:?} but {lower} to {upper}");
+    assert!(0.0 <= least.lower && least.lower <= least.upper);
+    if least.resolved {
+        judged.resolved += 1;
+        assert!(least.upper - least.lower <= tolerance + least.uncertainty);
+        assert!(least.upper <= upper + tolerance, "{least:?} but {lower} to {upper}");
+    }
+    judged.touching += usize::from(least.upper <= 0.0);
+    judged.within += usize::from(least.upper < 1.0);
+    judged.of += 1;
+    judged.shapes += counted.1.get();
+}
+
+#[test]
+fn bounds_hold_for_edges_of_a_planner() {
+    let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(21));
+    let mut judged = Judged::default();
+    for round in 0..90 {
+        let distance = [0.5, 1.0, 2.0, 5.0, 10.0][round % 5];
+        let motion = random_edge(&robot, &mut random, distance);
+        judge(&mut search, &motion, 200, [1e-3, 0.01, 0.1][round % 3], &mut judged);
+    }
+    println!("{judged:?}");
+    assert!(judged.resolved == judged.of && judged.touching > 10 && judged.touching < 80, "{judged:?}");
+}
+
+#[test]
+fn bounds_hold_for_bases_that_move_and_for_chains() {
+    let (mut search, mut random) = (anatomy(), Random::new(22));
+    let [mut bases, mut chains, mut rigid, mut paths] = [0; 4].map(|_: i32| Judged::default());
+    for round in 0..60 {
+        let near = search_vertex(&mut random, &search) + random.point() * 6.0;
+        let tolerance = [1e-3, 0.01, 0.1][round % 3];
+        let mut bent = || {
+            let mut bend = || random.between(-0.2, 0.2);
+            let bends = [bend(), bend()];
+            BendingSection { length: random.between(1.0, 6.0), radius: 0.4, bend: bends }
+        };
+        let [from, to] = [0; 2].map(|_| [bent(), bent()]);
+        let inner = BendingMotion::new(&from, &to, Pose::IDENTITY).unwrap();
+        let turn = random.direction() * random.between(0.0, 2.0);
+        let start = Pose::new(near, turn);
+        let end =
+            Pose::new(near + random.point() * 2.0, turn + random.direction() * random.between(0.0, 0.5));
+        let base = MovingBase::new(inner.clone(), [start, end]).unwrap();
+        judge(&mut search, &base, 200, tolerance, &mut bases);
+        let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
+        inner.shape(0.3, &mut tube).unwrap();
+        judge(&mut search, &RigidMotion::new(tube, [start, end]).unwrap(), 200, tolerance, &mut rigid);
+        let (from, radii) = polyline(&mut random, near);
+        let shift = random.direction() * random.between(0.0, 3.0);
+        let to: Vec<_> = from.iter().map(|&point| point + shift + random.point() * 0.5).collect();
+        let on: Vec<_> = to.iter().map(|&point| point + random.point()).collect();
+        let motion = if round % 2 == 0 { LinearMotion::capsules } else { LinearMotion::chain };
+        judge(&mut search, &motion(&from, &to, &radii).unwrap(), 200, tolerance, &mut chains);
+        let legs = vec![motion(&from, &to, &radii).unwrap(), motion(&to, &on, &radii).unwrap()];
+        judge(&mut search, &MotionPath::new(legs).unwrap(), 200, tolerance, &mut paths);
+    }
+    println!("{bases:?}\n{chains:?}\n{rigid:?}\n{paths:?}");
+    for judged in [&bases, &rigid, &chains, &paths] {
+        assert!(judged.touching > 5 && judged.touching + 10 < judged.of && judged.within > 20, "{judged:?}");
+    }
+    assert!(bases.resolved == bases.of && rigid.resolved == rigid.of, "{bases:?} {rigid:?}");
+    // An end that turns round may be what comes nearest.
+    assert!(chains.resolved * 10 >= chains.of * 9, "{chains:?}");
+}
+
+fn search_vertex(random: &mut Random, search: &BvhSearch) -> Vector {
+    use parry_continuum::proximity::Proximity;
+    search.vertices()[random.below(search.vertices().len() as u32) as usize]
+}
+
+/// A square of 40 across z at the origin.
+fn floor() -> BvhSearch {
+    let corners = [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]];
+    let corners = corners.map(|[x, y]| Vector::new(x, y, 0.0));
+    BvhSearch::from_triangles(&corners, &[[0, 1, 2], [0, 2, 3]]).unwrap()
+}
+
+/// What touches at one moment, what slides along a wall at one distance, what stands still, and what passes through.
+#[test]
+fn touching_and_sliding_motions_are_bounded() {
+    let mut search = floor();
+    let link = |x: Real, z: Real| [Vector::new(x, 0.0, z), Vector::new(x + 2.0, 0.0, z)];
+    let radius = 0.5;
+    for gap in [0.0, 1e-12, 1e-9, 1e-3, 1.0] {
+        let height = radius + gap;
+        // Down and up again, exactly to the gap at half time.
+        let down = LinearMotion::chain(&link(-2.0, height + 3.0), &link(0.0, height), &[radius]).unwrap();
+        let up = LinearMotion::chain(&link(0.0, height), &link(2.0, height + 3.0), &[radius]).unwrap();
+        let bounce = MotionPath::new(vec![down, up]).unwrap();
+        let slide = LinearMotion::chain(&link(-2.0, height), &link(2.0, height), &[radius]).unwrap();
+        let still = LinearMotion::chain(&link(0.0, height), &link(0.0, height), &[radius]).unwrap();
+        for tolerance in [1e-3, 0.1] {
+            for least in [
+                search.clearance_of_motion(&bounce, tolerance).unwrap(),
+                search.clearance_of_motion(&slide, tolerance).unwrap(),
+                search.clearance_of_motion(&still, tolerance).unwrap(),
+            ] {
+                assert!(least.lower <= gap + 1e-14 && gap <= least.upper + 1e-14, "{gap}: {least:?}");
+                assert!(least.resolved, "{gap}: {least:?}");
+            }
+        }
+        let least = search.clearance_of_motion(&bounce, 1e-3).unwrap();
+        assert!((least.t - 0.5).abs() < 1e-3, "{least:?}");
+    }
+    let through = LinearMotion::capsules(&link(0.0, 8.0), &link(0.0, -9.0), &[radius]).unwrap();
+    let least = search.clearance_of_motion(&through, 1e-3).unwrap();
+    assert!(least.upper <= 1e-3 && least.lower == 0.0 && least.resolved, "{least:?}");
+}
+
+/// Of a path only what may come nearest is looked at closely.
+#[test]
+fn a_path_looks_closely_where_it_comes_nearest() {
+    let mut search = floor();
+    let link = |x: Real, z: Real| [Vector::new(x, 0.0, z), Vector::new(x + 2.0, 0.0, z)];
+    let heights: Vec<_> = (0..=200).map(|k| 5.0 + 3.0 * (Real::from(k) * 0.1).cos()).collect();
+    let legs = heights
+        .windows(2)
+        .map(|ends| LinearMotion::chain(&link(0.0, ends[0]), &link(0.1, ends[1]), &[0.5]).unwrap());
+    let path = MotionPath::new(legs.collect()).unwrap();
+    let counted = Counted(&path, Cell::new(0));
+    let least = search.clearance_of_motion(&counted, 1e-3).unwrap();
+    let lowest = heights.iter().copied().fold(Real::INFINITY, Real::min) - 0.5;
+    assert!(least.lower <= lowest && lowest <= least.upper && least.resolved, "{lowest}: {least:?}");
+    // One for each, and a few more where it is low.
+    assert!(counted.1.get() < 200 + 400, "{}", counted.1.get());
+    let (leg, t) = path.leg(least.t);
+    let height = heights[leg] + (heights[leg + 1] - heights[leg]) * t;
+    assert!((height - 0.5 - least.upper).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_bounded_is_refused() {
+    let mut search = floor();
+    let link = [Vector::Z, 2.0 * Vector::Z];
+    let motion = LinearMotion::chain(&link, &link, &[0.1]).unwrap();
+    for tolerance in [-1.0, Real::NAN] {
+        let refused = search.clearance_of_motion(&motion, tolerance).unwrap_err();
+        assert!(matches!(refused, ProximityError::Negative { parameter: "tolerance", .. }), "{refused}");
+    }
+    // Without a tolerance the bounds are as close as rounding allows.
+    let least = search.clearance_of_motion(&motion, 0.0).unwrap();
+    assert!(least.lower <= 1.0 && 1.0 <= least.upper && least.upper - least.lower < 1e-12, "{least:?}");
+}

@@ -1,0 +1,86 @@
+//! A base that moves while the robot bends and grows: each term of its speed alone, left out, is found.
+
+use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::{
+    BendingMotion, BendingSection, Motion, MovingBase, RobotError, Speed, Tube, verify_motion,
+};
+
+type Stated = fn(&MovingBase<BendingMotion>, &BendingMotion, usize, [Real; 2], [Real; 2]) -> Speed;
+
+/// What a motion would state if something were left out.
+struct States {
+    motion: MovingBase<BendingMotion>,
+    inner: BendingMotion,
+    stated: Stated,
+}
+
+impl Motion for States {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        self.motion.shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        (self.stated)(&self.motion, &self.inner, section, shares, times)
+    }
+}
+
+fn section(length: Real, bend: [Real; 2]) -> BendingSection {
+    BendingSection { length, radius: 0.5, bend }
+}
+
+#[test]
+fn each_term_that_is_left_out_is_found() {
+    let still = section(20.0, [0.03, 0.01]);
+    let place = Pose::new(Vector::new(3.0, -2.0, 1.0), Vector::new(0.3, 0.2, -0.4));
+    let moved = |shift: Vector, turn: Vector| place * Pose::new(shift, turn);
+    let all: Stated = |motion, _, section, shares, times| motion.speed(section, shares, times);
+    let inner_alone: Stated = |_, inner, section, shares, times| inner.speed(section, shares, times);
+    // As if the robot were at all times as long as in the middle, or did not move in the frame of its base.
+    let base_alone: Stated = |motion, inner, section, shares, times| {
+        let all = motion.speed(section, shares, [0.5, 0.5]);
+        let own = inner.speed(section, shares, times);
+        Speed { point: all.point - own.point, turn: all.turn - own.turn }
+    };
+    let short: Stated = |motion, _, section, shares, _| motion.speed(section, shares, [0.0, 0.0]);
+    let bend = [section(20.0, [0.0, 0.0]), section(20.0, [0.03, 0.0])];
+    let grow = [section(20.0, [0.03, 0.0]), section(26.0, [0.03, 0.0])];
+    let longer = [section(2.0, [0.0, 0.0]), section(26.0, [0.0, 0.0])];
+    let cases = [
+        ("push", [still, still], moved(Vector::Y * 4.0, Vector::ZERO), inner_alone),
+        ("roll", [still, still], moved(Vector::ZERO, Vector::Z * 0.4), inner_alone),
+        ("turn", [still, still], moved(Vector::ZERO, Vector::X * 0.4), inner_alone),
+        ("bend", bend, place, base_alone),
+        ("grow", grow, place, base_alone),
+        ("longer", longer, moved(Vector::ZERO, Vector::X * 1.5), short),
+    ];
+    for (name, [from, to], end, stated) in cases {
+        let inner = BendingMotion::new(&[from], &[to], Pose::IDENTITY).unwrap();
+        let motion = MovingBase::new(inner.clone(), [place, end]).unwrap();
+        for steps in [1, 7, 100, 1000] {
+            let mut states = States { motion: motion.clone(), inner: inner.clone(), stated: all };
+            assert_eq!(verify_motion(&states, steps), Ok(()), "{name}, {steps}");
+            states.stated = stated;
+            // One step sees that both ends of a path that is stated for its beginning are as near as that allows.
+            let refused = verify_motion(&states, steps);
+            assert!(refused.is_err() || steps == 1 && name == "longer", "{name} was left out, {steps}");
+        }
+    }
+}
+
+/// Pushed, rolled, bent and grown at once: what is stated holds, and is no more than a few times what happens.
+#[test]
+fn all_at_once_is_stated() {
+    let from = [section(10.0, [0.0, 0.02]), section(5.0, [0.05, 0.0])];
+    let to = [section(14.0, [0.03, 0.0]), section(9.0, [0.0, -0.05])];
+    let inner = BendingMotion::new(&from, &to, Pose::new(Vector::X, Vector::Y * 0.1)).unwrap();
+    let ends = [Pose::IDENTITY, Pose::new(Vector::Z * 3.0, Vector::new(0.1, 0.0, 0.5))];
+    let motion = MovingBase::new(inner, ends).unwrap();
+    for steps in [1, 10, 500] {
+        assert_eq!(verify_motion(&motion, steps), Ok(()));
+    }
+    let refused = MovingBase::new(motion.clone(), [Pose::IDENTITY, Pose::from_translation(Vector::NAN)]);
+    assert!(matches!(refused, Err(RobotError::BadPose { parameter: "to", .. })));
+    // A base on a base.
+    let twice = MovingBase::new(motion, [Pose::IDENTITY, Pose::rotation(Vector::X * 0.2)]).unwrap();
+    assert_eq!(verify_motion(&twice, 100), Ok(()));
+}
