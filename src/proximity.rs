@@ -31,6 +31,7 @@
 //! |---|---|
 //! | does a [`Motion`](crate::Motion) keep a margin all the way? | [`clears_motion`](BvhSearch::clears_motion) |
 //! | do a planner's own shapes keep it, and all between them? | [`clears_path`](BvhSearch::clears_path) |
+//! | does it keep it from a mesh that moves meanwhile? | [`clears_motion_while`](BvhSearch::clears_motion_while) |
 //! | when does it first lose it? | [`time_of_contact`](BvhSearch::time_of_contact) |
 //! | how near does it come, when and where? | [`clearance_of_motion`](BvhSearch::clearance_of_motion) |
 //!

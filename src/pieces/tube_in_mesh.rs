@@ -94,7 +94,7 @@ impl TubeInMesh<'_> {
 
     /// The point of a triangle nearest to a point.
     fn nearest_to(&self, point: Vector, triangle: u32) -> Nearest {
-        let corners = self.search.hierarchy.mesh.corners(triangle);
+        let corners = self.search.corners(triangle);
         PlacedLink::between(point, point, 0.0, [false; 2]).measure(triangle, corners)
     }
 

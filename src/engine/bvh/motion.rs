@@ -5,7 +5,7 @@ use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
 use crate::query::motion::{MotionSearch, Wanted};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::{Chain, Motion, ShapePath};
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 
 impl BvhSearch {
     /// Whether a motion keeps more than `margin` away from the mesh at every time from 0 to 1.
@@ -146,6 +146,51 @@ impl BvhSearch {
         self.context().motion(&path).clears(Wanted { margin, resolution })
     }
 
+    /// Whether a motion keeps more than `margin` away from a mesh that moves meanwhile: each vertex goes straight and evenly from
+    /// where it is to its place in `to`, in the same time from 0 to 1.
+    ///
+    /// That is an organ that breathes, a registration that is corrected, or a step of a simulation of tissue. `Clear` is proven for
+    /// every instant, as for [`clears_motion`](Self::clears_motion); a `Contact` names the time, and its points are those of
+    /// robot and mesh at that time. The engine's mesh stays where it was: [`set_vertices`](crate::proximity::Proximity::set_vertices) moves it to
+    /// `to` for good.
+    ///
+    /// A robot at rest is a [`RigidMotion`](crate::RigidMotion) from a pose to the same pose. Each call goes once through all
+    /// triangles. The fastest vertex is taken for the speed of the whole mesh: what moves everywhere alike had better move the
+    /// robot instead ([`MovingBase`](crate::MovingBase)).
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, RigidMotion, Tube, parry::{math::{Pose, Vector}, shape::Ball}};
+    /// use parry_continuum::proximity::{BvhSearch, Decision};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let needle = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?);
+    /// let at_rest = RigidMotion::new(needle, [Pose::IDENTITY; 2])?;
+    /// // The ball shrinks to 0.8 and to 0.6 of its size.
+    /// let shrunk = |share: f64| vertices.iter().map(|vertex| vertex * share).collect::<Vec<_>>();
+    /// assert!(search.clears_motion_while(&shrunk(0.8), &at_rest, 1.0, 1e-3)?.is_clear());
+    /// let found = search.clears_motion_while(&shrunk(0.6), &at_rest, 1.0, 1e-3)?;
+    /// assert_eq!(found.decision, Decision::Contact);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`clears_motion`](Self::clears_motion); or `to` has another number of vertices than the mesh, or one that is not finite
+    /// or out of range.
+    pub fn clears_motion_while(
+        &mut self,
+        to: &[Vector],
+        motion: &impl Motion,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<MotionAnswer, ProximityError> {
+        check_decision(margin, resolution)?;
+        self.prepared().hierarchy.mesh.check_moved(to)?;
+        let mut search = self.context().motion(motion);
+        search.move_mesh(to);
+        search.clears(Wanted { margin, resolution })
+    }
+
     /// How near a motion comes to the mesh at any time from 0 to 1, between bounds that are at most `tolerance` apart where the
     /// motion's shapes allow that.
     ///
@@ -212,6 +257,6 @@ impl<'a> Context<'a> {
     /// A search along a motion.
     fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
-        MotionSearch { search, memory, motion, shapes: 0, last: None }
+        MotionSearch { search, memory, motion, shapes: 0, last: None, does_mesh_move: false }
     }
 }

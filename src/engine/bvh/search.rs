@@ -219,7 +219,7 @@ impl<'a> Context<'a> {
     /// The search in the hierarchy, and what the last answers say.
     pub fn search(self) -> (MeshSearch<'a>, &'a mut Remembered) {
         let Memory { scratch, answers } = self.memory;
-        (MeshSearch { level: self.level, hierarchy: &self.mesh.hierarchy, scratch }, answers)
+        (MeshSearch::new(self.level, &self.mesh.hierarchy, scratch), answers)
     }
 
     fn per_link(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {

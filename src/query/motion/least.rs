@@ -42,6 +42,9 @@ impl<M: Motion> MotionSearch<'_, M> {
                 turn.begin(tube, known.upper().max(tolerance));
                 let mut approach = Approach::new(moving, &mut known, t, tube);
                 refine(tube, turn.pieces, &mut approach)?;
+                if approach.is_answered() {
+                    approach.settle(0.0);
+                }
                 Ok((approach.nearest, approach.moving.still))
             })?;
             let interval = interval.comes_no_nearer(nearest);
@@ -77,7 +80,8 @@ impl Known {
 
     /// Whether what comes no nearer than this does not matter.
     fn is_settled(&self, lower: Real) -> bool {
-        lower >= self.upper() - (self.tolerance + self.uncertainty) || self.upper() <= 0.0
+        let wanted = self.upper() - (self.tolerance + self.uncertainty);
+        wanted <= 0.0 || lower >= wanted
     }
 
     /// Takes note of a place of the shape at `t`.
@@ -187,7 +191,6 @@ impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
         *self.moving.last = Some(near.nearest.triangle);
         self.known.take(*near.found, self.t);
         if self.is_answered() {
-            self.settle(0.0);
             return Ok(Verdict::Answered);
         }
         let (lower, wanted) = (self.at_least(near.nearest.distance, &tube.tube), self.wanted());

@@ -8,6 +8,9 @@
 //! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
 //! fails, and not the motion, the piece is halved instead, in the same shape.
 //!
+//! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is the piece's speed and that of
+//! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
+//!
 //! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
 //! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
@@ -19,8 +22,8 @@ use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
 use crate::pieces::{Found, Piece, PlacedTube, TubeInMesh, refine};
 use crate::robot::{Motion, Sections, Tube};
-use crate::search::hierarchy::MeshSearch;
-use parry3d_f64::math::{Pose, Real};
+use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
+use parry3d_f64::math::{Pose, Real, Vector};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -36,6 +39,8 @@ pub(crate) struct MotionMemory {
     /// Those that failed, one interval's after another's.
     failed: Vec<Waiting>,
     pub(super) intervals: VecDeque<Interval>,
+    /// Where the vertices go, if the mesh moves.
+    mesh: MovingMesh,
 }
 
 impl Default for MotionMemory {
@@ -47,6 +52,7 @@ impl Default for MotionMemory {
             begun: Vec::new(),
             failed: Vec::new(),
             intervals: VecDeque::new(),
+            mesh: MovingMesh::default(),
         }
     }
 }
@@ -108,6 +114,8 @@ pub(crate) struct MotionSearch<'a, M> {
     pub shapes: u64,
     /// The triangle that was found last.
     pub last: Option<u32>,
+    /// Whether the mesh moves as well, as the memory says.
+    pub does_mesh_move: bool,
 }
 
 /// How many shapes are looked at after one that is above the margin by no more than the resolution, or that leaves an
@@ -192,6 +200,13 @@ impl<M: Motion> MotionSearch<'_, M> {
         ShapeInContact { t, upper: found.upper, section: found.section, witness: found.witness }
     }
 
+    /// Moves the mesh during the motion, each vertex to its place here; these were checked.
+    pub(crate) fn move_mesh(&mut self, to: &[Vector]) {
+        let hierarchy = self.search.hierarchy;
+        self.memory.mesh.set(&hierarchy.mesh, hierarchy.single(), to);
+        self.does_mesh_move = true;
+    }
+
     /// Begins with each part of the motion's time.
     pub(super) fn begin(&mut self) {
         let MotionMemory { sections, intervals, failed, .. } = &mut *self.memory;
@@ -245,16 +260,22 @@ impl<M: Motion> MotionSearch<'_, M> {
             // A speed that is not finite or NaN holds nothing; it is refused below.
             half * motion.speed(section, [end as Real; 2], times).point
         });
-        let MotionMemory { tube, pieces, begun, failed, .. } = &mut *self.memory;
-        let tube = PlacedTube::new(tube, &pose, self.search.hierarchy.reach)?.moving();
+        let MotionMemory { tube, pieces, begun, failed, mesh, .. } = &mut *self.memory;
         let MeshSearch { level, hierarchy, .. } = self.search;
-        let search = MeshSearch { level, hierarchy, scratch: &mut *self.search.scratch };
+        let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
+        let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
+        if self.does_mesh_move {
+            (reach, mesh_speed) = (reach.max(mesh.reach()), mesh.speed());
+            search.moved = Some(MeshAt { moving: mesh, share: t });
+        }
+        let tube = PlacedTube::new(tube, &pose, reach)?.moving();
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
         pieces.extend_from_slice(interval.pieces.clone().map_or(&[], |failing| &failed[failing]));
         let first = failed.len();
         let (speed, still, last) = (0.0, Real::INFINITY, &mut self.last);
-        let moving = Moving { motion, times, half, opening, failed: &mut *failed, last, speed, still };
+        let failing = &mut *failed;
+        let moving = Moving { motion, times, half, opening, mesh_speed, failed: failing, last, speed, still };
         let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
         let seen = ask(&mut tube, &mut turn, moving)?;
         // What a contact left unasked.

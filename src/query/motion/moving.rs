@@ -20,11 +20,13 @@ pub(crate) struct Moving<'a, M> {
     pub half: Real,
     /// By how much those flat ends that may become round move in that time.
     pub opening: Real,
+    /// How fast the mesh moves at most.
+    pub mesh_speed: Real,
     /// Pieces about which the shape decides nothing for the whole interval.
     pub failed: &'a mut Vec<Waiting>,
     /// The triangle that was found last.
     pub last: &'a mut Option<u32>,
-    /// How fast the piece moves that is looked at.
+    /// How fast the piece that is looked at and the mesh move towards each other at most.
     pub speed: Real,
     /// For how long before and after the shape the pieces that failed are decided.
     pub still: Real,
@@ -52,11 +54,11 @@ impl<M: Motion> Moving<'_, M> {
                 return Err(RobotError::BadSpeed { section, value });
             }
         }
-        self.speed = (stated.point + radius * turn) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        self.speed = (stated.point + radius * turn + self.mesh_speed) * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
         Ok(())
     }
 
-    /// How far the piece moves from the middle shape.
+    /// How much nearer to the mesh the piece may be than in the middle shape.
     pub(crate) fn reach(&self) -> Real {
         self.half * self.speed
     }

@@ -61,7 +61,7 @@ impl ClearsSearch<'_> {
     /// What of the robot is known to keep more than `margin` away. None where some link does not.
     fn keeps_away(&mut self, margin: Real) -> Option<KeepsAway> {
         let robot = self.robot;
-        let MeshSearch { level, hierarchy, scratch } = &mut self.search;
+        let MeshSearch { level, hierarchy, scratch, .. } = &mut self.search;
         let (level, mesh) = (*level, &hierarchy.mesh);
         let Scratch { work, .. } = &mut **scratch;
         let ClearsMemory { single, double, .. } = &mut *self.memory;

@@ -83,7 +83,8 @@ pub trait Motion {
     /// One that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
 
-    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a path of many motions.
+    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a path of many motions. What
+    /// wraps a motion passes its `legs` on.
     fn legs(&self) -> usize {
         1
     }

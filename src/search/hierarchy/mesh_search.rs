@@ -1,12 +1,13 @@
 //! The search through a mesh for one convex body, in the precision that resolves it.
 
 use super::hierarchies::{Hierarchy, Searched};
+use super::moving_mesh::MeshAt;
 use super::traverse::{Stack, Traversal};
 use crate::answer::Work;
 use crate::distance::Scalar;
 use crate::pair::{Best, Nearest, PlacedLink};
 use fearless_simd::Level;
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 
 /// Memory of a query, used again by the next.
 #[derive(Clone, Default)]
@@ -21,6 +22,8 @@ pub(crate) struct MeshSearch<'a> {
     pub level: Level,
     pub hierarchy: &'a Hierarchy,
     pub scratch: &'a mut Scratch,
+    /// Where the vertices are, if the mesh moves; what `nearest` and `may_meet` find is then found there.
+    pub moved: Option<MeshAt<'a>>,
 }
 
 /// Asks the traversal in the precision that resolves a link, or does something else where none does.
@@ -40,9 +43,27 @@ macro_rules! resolved {
     };
 }
 
+impl<'a> MeshSearch<'a> {
+    /// A search through a mesh at rest.
+    pub(crate) fn new(level: Level, hierarchy: &'a Hierarchy, scratch: &'a mut Scratch) -> Self {
+        Self { level, hierarchy, scratch, moved: None }
+    }
+}
+
 impl MeshSearch<'_> {
     /// The triangle nearest to a link that improves on `best`. The triangles to `start` with come first.
     pub(crate) fn nearest(&mut self, link: &PlacedLink, mut best: Best, start: [Option<u32>; 2]) -> Best {
+        if let Some(moved) = &mut self.moved {
+            let Hierarchy { mesh, .. } = self.hierarchy;
+            return moved.nearest(
+                mesh,
+                self.hierarchy.single(),
+                link,
+                best,
+                start[0],
+                &mut self.scratch.work,
+            );
+        }
         resolved!(self, link, |traversal, searched| traversal.nearest(link, &searched, best, start), {
             let mesh = &self.hierarchy.mesh;
             if !self.is_near(link, best.bound()) {
@@ -97,6 +118,9 @@ impl MeshSearch<'_> {
 
     /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
+        if let Some(moved) = &mut self.moved {
+            return moved.may_meet(self.hierarchy.single(), capsule, bound);
+        }
         self.may_meet_below(capsule, bound, u32::MAX)
     }
 
@@ -117,7 +141,13 @@ impl MeshSearch<'_> {
 
     /// Some triangle, for a link whose nearest no search finds.
     pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
-        link.measure(0, self.hierarchy.mesh.corners(0))
+        link.measure(0, self.corners(0))
+    }
+
+    /// The corners of a triangle.
+    pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
+        let mesh = &self.hierarchy.mesh;
+        self.moved.as_ref().map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
     }
 
     pub(crate) fn single(&mut self) -> Traversal<'_, f32> {

@@ -7,6 +7,7 @@ mod fit;
 mod hierarchies;
 mod leaf_visitor;
 mod mesh_search;
+mod moving_mesh;
 mod node;
 mod traverse;
 
@@ -14,5 +15,6 @@ pub(crate) use build::WideBvh;
 pub(crate) use hierarchies::{Hierarchy, Searched};
 pub(crate) use leaf_visitor::LeafVisitor;
 pub(crate) use mesh_search::{MeshSearch, Scratch};
+pub(crate) use moving_mesh::{MeshAt, MovingMesh};
 pub(crate) use node::{Child, WIDTH};
 pub(crate) use traverse::Traversal;

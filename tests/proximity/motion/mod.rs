@@ -7,6 +7,7 @@ mod jumps;
 mod least;
 mod left_out;
 mod moving_base;
+mod moving_mesh;
 mod path;
 mod refused;
 mod speeds;
