@@ -3,23 +3,27 @@
 //! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole through the foramen of
 //! Monro into the third ventricle, in the space of the robot's joints. Whether an edge keeps the margin is proven by
 //! `clears_motion`; the same planner is then run with edges that are checked by steps, and what these accept is looked
-//! at again. `--picture` draws the shapes of the way. `--mesh` takes real anatomy instead (in millimetres, or with
+//! at again. `--picture` draws the shapes of the way, `--clearance` how near it
+//! comes to the wall over time. `--mesh` takes real anatomy instead (in millimetres, or with
 //! `--scale`); `--base` and `--axis` place the robot in it.
 
 mod draw;
 mod edges;
+mod over_time;
 mod planner;
 
 use clap::Parser;
 use continuum_demo::anatomy::{Anatomy, no_goal};
+use continuum_demo::canvas::Canvas;
 use continuum_demo::ctr::{Robot, three_tubes};
 use continuum_demo::{command, steer, ventricle};
 use edges::{Check, Costs, DRAWN_IN, Edges, Place, RESOLUTION, place, text};
 use indicatif::{ProgressBar, ProgressStyle};
+use over_time::OverTime;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::proximity::{BvhSearch, Decision};
 use planner::{MOST_EDGES, Plan, plan, shorten};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Plan the way of a concentric tube robot into a brain ventricle, every moment of it proven.
@@ -43,6 +47,10 @@ struct Options {
     /// Draw the shapes of the way into this file, or as plan.png into this directory
     #[arg(long, value_name = "PATH")]
     picture: Option<PathBuf>,
+
+    /// Draw how near the way comes to the wall over time into this file, or as clearance.png into this directory
+    #[arg(long, value_name = "PATH")]
+    clearance: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -52,7 +60,11 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), String> {
     let mesh = options.anatomy.load()?;
     let mut search = BvhSearch::new(&mesh).map_err(text)?;
-    let picture = options.picture.as_ref().map(|path| command::picture_path(path, "plan.png")).transpose()?;
+    let file = |path: &Option<PathBuf>, name: &str| {
+        path.as_ref().map(|path| command::picture_path(path, name)).transpose()
+    };
+    let picture = file(&options.picture, "plan.png")?;
+    let clearance = file(&options.clearance, "clearance.png")?;
     let robot = three_tubes();
     let base = options.anatomy.pose(&mesh)?;
     let goal = if options.anatomy.is_planned() {
@@ -111,11 +123,24 @@ fn run(options: &Options) -> Result<(), String> {
         edges.costs.shapes
     );
     if let Some(file) = picture {
-        draw::draw(&mesh, &edges, &path)?.save(&file).map_err(|error| {
-            format!("cannot write {} ({error}); choose another --picture", file.display())
-        })?;
-        println!("picture: {}", file.display());
+        save(&draw::draw(&mesh, &edges, &path)?, &file, "--picture")?;
     }
+    if let Some(file) = clearance {
+        let found = OverTime::new(&mut edges, &path)?;
+        let [proven, seen] = found.least();
+        println!("no shape of the way is nearer than {proven:.3} mm; steps of 0.5 mm come to {seen:.3} mm");
+        save(&found.draw(options.margin), &file, "--clearance")?;
+    }
+    Ok(())
+}
+
+/// # Errors
+/// The file cannot be written; `option` chooses another.
+fn save(canvas: &Canvas, file: &Path, option: &str) -> Result<(), String> {
+    canvas
+        .save(file)
+        .map_err(|error| format!("cannot write {} ({error}); choose another {option}", file.display()))?;
+    println!("picture: {}", file.display());
     Ok(())
 }
 

@@ -106,7 +106,16 @@ fn a_fixture_keeps_the_robot_away_from_the_wall() {
 
 #[test]
 fn a_way_is_planned_proven_and_drawn() {
-    let out = succeed("plan", &["--plans", "2", "--margin", "0.3", "--picture", "planned/way.png"]);
+    let out = succeed(
+        "plan",
+        &[
+            ["--plans", "2"],
+            ["--margin", "0.3"],
+            ["--picture", "planned/way.png"],
+            ["--clearance", "planned/clearance.png"],
+        ]
+        .concat(),
+    );
     let rows: Vec<_> = ["proof", "steps of 0.5 mm", "steps of 0.1 mm"]
         .into_iter()
         .map(|name| {
@@ -127,6 +136,13 @@ fn a_way_is_planned_proven_and_drawn() {
     assert!(rows[2][4] > 2.0 * rows[1][4] && rows[2][4] > rows[0][4], "{out}");
     assert!(out.contains("it keeps 0.3 mm, which"), "{out}");
     assert!(colours("planned/way.png") > 1000);
+    // Nothing comes nearer than is proven, nor sees what steps do not.
+    let line =
+        out.lines().find(|line| line.starts_with("no shape of the way")).unwrap_or_else(|| panic!("{out}"));
+    let numbers: Vec<f64> = line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let [proven, _, seen] = numbers[..] else { panic!("{line}") };
+    assert!(0.29 <= proven && proven <= seen, "{line}");
+    assert!(colours("planned/clearance.png") > 10);
 }
 
 #[test]

@@ -28,7 +28,9 @@ const MOST_PIECES: u32 = 1 << 16;
 impl<M: Motion> MotionSearch<'_, M> {
     /// How near the motion comes, with bounds no farther apart than the tolerance where that can be.
     pub(crate) fn least(&mut self, tolerance: Real) -> Result<MotionClearance, ProximityError> {
-        let mut known = Known { tolerance, uncertainty: 0.0, best: None, lower: Real::INFINITY };
+        let nothing = Doubtful { lower: Real::INFINITY, doubt: 0.0 };
+        let mut known =
+            Known { tolerance, uncertainty: 0.0, best: None, lower: Real::INFINITY, doubtful: nothing };
         self.begin();
         while let Some(interval) = self.take_nearest() {
             if known.is_settled(interval.lower) || self.shapes >= MOST_SHAPES {
@@ -71,6 +73,15 @@ struct Known {
     best: Option<(Found, Real)>,
     /// Whatever is settled comes no nearer.
     lower: Real,
+    /// The part of that where it is not known which way a face stands.
+    doubtful: Doubtful,
+}
+
+/// What is settled although its bounds are farther apart, because more is not known.
+struct Doubtful {
+    lower: Real,
+    /// How much farther.
+    doubt: Real,
 }
 
 impl Known {
@@ -108,7 +119,10 @@ impl Known {
         let Some((Found { upper, section, witness }, t)) = self.best else {
             return Err(ProximityError::EmptyTube);
         };
-        let (lower, uncertainty) = (self.lower.min(upper).max(0.0), self.uncertainty);
+        let lower = self.lower.min(upper).max(0.0);
+        // It matters if nothing else is as near.
+        let matters = self.doubtful.lower < upper - (self.tolerance + self.uncertainty);
+        let uncertainty = self.uncertainty + if matters { self.doubtful.doubt } else { 0.0 };
         let resolved = upper - lower <= self.tolerance + uncertainty;
         Ok(MotionClearance { lower, upper, resolved, uncertainty, t, section, witness })
     }
@@ -198,7 +212,13 @@ impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
             self.settle(lower);
             return Ok(Verdict::Settled);
         }
-        let reach = self.moving.reach();
+        let (reach, doubt) = (self.moving.reach(), tube.tube.doubt(near.piece));
+        if doubt > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - doubt {
+            let Doubtful { lower: least, doubt: most } = self.known.doubtful;
+            self.known.doubtful = Doubtful { lower: least.min(lower), doubt: most.max(doubt) };
+            self.settle(lower);
+            return Ok(Verdict::Settled);
+        }
         if reach > 0.25 * self.aim && (near.found.upper <= wanted + reach || near.outer.over <= 0.25 * reach)
         {
             self.fail(near, &tube.tube);

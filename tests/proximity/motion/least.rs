@@ -200,3 +200,48 @@ fn what_cannot_be_bounded_is_refused() {
     let least = search.clearance_of_motion(&motion, 0.0).unwrap();
     assert!(least.lower <= 1.0 && 1.0 <= least.upper && least.upper - least.lower < 1e-11, "{least:?}");
 }
+
+/// What an insertion costs beside the distances of some of its shapes, which prove nothing of those between. Run by name.
+#[test]
+#[ignore = "prints a ratio of times"]
+fn an_insertion_costs_little_more_than_its_shapes() {
+    use continuum_demo::ctr::Joints;
+    use continuum_demo::joint_motion::JointMotion;
+    use continuum_demo::ventricle;
+    use parry_continuum::proximity::Proximity;
+    use std::time::Instant;
+    let (mut search, robot, goal) = (anatomy(), ctr::three_tubes(), ventricle::goal());
+    let out = |sections: usize| Joints {
+        extensions: (0..3).map(|k| if k < sections { goal.extensions[k] } else { 0.01 }).collect(),
+        angles: goal.angles.clone(),
+    };
+    let leg = |k: usize| JointMotion::new(&robot, [&out(k), &out(k + 1)], ventricle::entry()).unwrap();
+    let path = MotionPath::new((0..3).map(leg).collect()).unwrap();
+    let chains: Vec<_> = (0..500)
+        .map(|k| {
+            let (leg, t) = path.leg((Real::from(k) + 0.5) / 500.0);
+            let joints =
+                JointMotion::new(&robot, [&out(leg), &out(leg + 1)], ventricle::entry()).unwrap().joints(t);
+            let line = robot.centreline(&joints, 100);
+            let (points, radii) = parry_continuum::stations(&line.points, &line.radii, 0.01).unwrap();
+            Chain::from_centreline(&points, &radii).unwrap()
+        })
+        .collect();
+    let base = ventricle::entry();
+    for _ in 0..3 {
+        let begin = Instant::now();
+        let least = chains.iter().map(|chain| search.minimum(chain, &base).unwrap().distance);
+        let least = least.fold(Real::INFINITY, Real::min);
+        let steps = begin.elapsed();
+        let counted = Counted(&path, Cell::new(0));
+        let begin = Instant::now();
+        let found = search.clearance_of_motion(&counted, 0.01).unwrap();
+        let proof = begin.elapsed();
+        println!(
+            "{least:.4}; {found:?}; {} shapes; {:.2} times",
+            counted.1.get(),
+            proof.as_secs_f64() / steps.as_secs_f64()
+        );
+        assert!(found.resolved && found.lower <= least + 0.02);
+    }
+}
