@@ -208,7 +208,7 @@ impl BvhSearch {
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
-    /// // The tip turns from the one side to the other, and comes nearest in the middle.
+    /// // The tip goes from the one side to the other.
     /// let motion = LinearMotion::chain(
     ///     &[Vector::Z * 2.0, Vector::new(-4.0, 0.0, 6.0)],
     ///     &[Vector::Z * 2.0, Vector::new(4.0, 0.0, 6.0)],

@@ -49,7 +49,8 @@ impl<M: Motion> MotionPath<M> {
 
     /// The time of a motion, however far before or behind it `t` is.
     fn time_in(&self, leg: usize, t: Real) -> Real {
-        (t * self.motions.len() as Real - leg as Real).max(0.0).min(1.0)
+        let within = (t * self.motions.len() as Real - leg as Real).max(0.0);
+        within.min(1.0)
     }
 }
 

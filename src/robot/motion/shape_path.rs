@@ -42,7 +42,8 @@ impl<'a> ShapePath<'a> {
         let along = t * legs as Real;
         // A number out of range becomes the nearest that is in it.
         let leg = (along as usize).min(legs - 1);
-        ([leg, leg + 1].map(|shape| &self.shapes[shape.min(last)]), (along - leg as Real).max(0.0).min(1.0))
+        let share = (along - leg as Real).max(0.0);
+        ([leg, leg + 1].map(|shape| &self.shapes[shape.min(last)]), share.min(1.0))
     }
 }
 
