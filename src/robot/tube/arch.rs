@@ -199,7 +199,7 @@ impl Arch {
             return Err(libm::acos(back.dot(self.chord).max(-1.0)));
         }
         // Written so that NaN is too much.
-        if !(turn < 0.9) {
+        if turn.is_nan() || turn >= 0.9 {
             return Err(turn);
         }
         let curvature = across * (1.0 + 0.25 * turn * turn);

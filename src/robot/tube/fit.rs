@@ -77,7 +77,7 @@ impl Tube {
         let origin = points[0];
         let reach =
             points.iter().fold(0.0, |most: Real, point| (*point - origin).abs().max_element().max(most));
-        if !(reach > 0.0) {
+        if reach.is_nan() || reach <= 0.0 {
             return Err(RobotError::AllPointsEqual);
         }
         let (scale, largest) = (
@@ -266,7 +266,7 @@ fn lay(
                 if most > 0.0 { most / (slowest.max(0.0) * slowest) * (1.0 + 1e-12) } else { 0.0 };
             let turn = curvature * length;
             // Written so that NaN is too much.
-            if !(turn <= 1.0) {
+            if turn.is_nan() || turn > 1.0 {
                 return Err(RobotError::TurnsTooSharply { index: k, after: k, turn });
             }
             stretched = stretched.max(stretch(turn));

@@ -75,19 +75,19 @@ impl Factors {
         let count = right.len();
         for k in 0..count {
             if k > 0 {
-                right[k] = right[k] - right[k - 1] * self.first[k - 1];
+                right[k] -= right[k - 1] * self.first[k - 1];
             }
             if k > 1 {
-                right[k] = right[k] - right[k - 2] * self.second[k - 2];
+                right[k] -= right[k - 2] * self.second[k - 2];
             }
         }
         for k in (0..count).rev() {
             right[k] /= self.diagonal[k];
             if k + 1 < count {
-                right[k] = right[k] - right[k + 1] * self.first[k];
+                right[k] -= right[k + 1] * self.first[k];
             }
             if k + 2 < count {
-                right[k] = right[k] - right[k + 2] * self.second[k];
+                right[k] -= right[k + 2] * self.second[k];
             }
         }
     }
