@@ -37,7 +37,7 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
     let mut page = format!(
         "## The worst of many\n\n\
          {written}. {shapes} random shapes of three tubes, 30 links each, in the cavity: each new, without any memory of the last \
-         one, and asked about {ROUNDS} times, of which the least counts, in time that the thread computed. `prepare` was called before, so that no question \
+         one, and asked about {ROUNDS} times, of which the least counts, in time that the thread computed, the clock included. `prepare` was called before, so that no question \
          builds anything. Shapes that touch the wall and those that are free apart; `clears` with margin 0, `within` with \
          {MARGIN} mm. Microseconds: the median, what one shape in a thousand exceeds, and the worst; and the worst over the \
          median. Most free shapes are settled by one look at a body around the whole robot, so that the median of `clears` and \
