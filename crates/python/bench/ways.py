@@ -67,8 +67,7 @@ def coal_way(vertices, faces, shape):
     model = coal.BVHModelOBBRSS()
     model.beginModel(len(faces), len(vertices))
     model.addVertices(vertices)
-    for face in faces:
-        model.addTriangle(*map(int, face))
+    model.addTriangles(faces.astype("u4"))
     model.endModel()
     nowhere, shape = coal.Transform3s(), getattr(coal, shape)
 

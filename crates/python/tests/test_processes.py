@@ -123,6 +123,25 @@ def test_forks_while_other_threads_ask() -> None:
 
 
 @needs_fork
+@quiet
+def test_forks_while_another_thread_builds() -> None:
+    """A first question builds something, which others wait for. In the child it stays half built, and nobody finishes it."""
+    vertices, faces = sphere(10.0, 250, 125)
+    asks = [lambda mesh: mesh.side([0.0, 0, 0]), lambda mesh: len(mesh.within(ROBOTS[0], 0.1, 1.0).segment)]
+    in_the_middle = 0
+    for turn in range(12):
+        ask = asks[turn % 2]
+        mesh = Mesh(vertices, faces)
+        thread = threading.Thread(target=ask, args=(mesh,))
+        thread.start()
+        time.sleep(0.001 * (turn // 2))
+        in_the_middle += thread.is_alive()
+        assert in_child(lambda: ask(mesh) is not None) == 0
+        thread.join()
+    assert in_the_middle > 0
+
+
+@needs_fork
 def test_a_fork_in_a_signal_handler() -> None:
     """Python's handlers run between the chunks of a batch: the child goes on with its own batch."""
     program = """

@@ -1,0 +1,52 @@
+"""A million calls, and many of the larger kinds, take no more memory than some thousands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from parry_continuum import ContinuumError, Mesh, Scene, between
+from shapes import robots
+
+MESH = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+ROBOT = np.array([[0, 0, 1.0], [0, 0, 2.0]])
+MANY = robots(np.random.default_rng(0), 20, points=3)
+SCENE = Scene()
+SCENE.add("floor", MESH, 0.1)
+
+
+def refused() -> None:
+    with pytest.raises(ContinuumError):
+        MESH.distance(ROBOT * np.nan, 0.1)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="asks Linux how much memory is used")
+@pytest.mark.parametrize(
+    ("ask", "count"),
+    [
+        (lambda: MESH.clears(ROBOT, 0.1, 0.1), 1_000_000),
+        (lambda: MESH.per_link(ROBOT, 0.1), 100_000),
+        (lambda: MESH.within(ROBOT, 0.1, 0.5), 100_000),
+        (lambda: MESH.clearance(ROBOT, 0.1, 0.1), 50_000),
+        (lambda: MESH.distance_and_gradient(ROBOT, 0.1), 10_000),
+        (lambda: MESH.distance(MANY, 0.1), 10_000),
+        (lambda: MESH.move(MESH.vertices), 5_000),
+        (lambda: Mesh(MESH), 5_000),
+        (lambda: between(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
+        (lambda: SCENE.tightest([(ROBOT, 0.1)]), 20_000),
+        (refused, 20_000),
+    ],
+)
+def test_nothing_is_kept(ask: object, count: int) -> None:
+    def pages() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1])
+
+    for _ in range(2000):
+        ask()  # type: ignore[operator]
+    before = pages()
+    for _ in range(count):
+        ask()  # type: ignore[operator]
+    # 2 MiB, of which an array kept by each call would take several times as much in most rows.
+    assert pages() - before < 512
