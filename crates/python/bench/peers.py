@@ -57,7 +57,7 @@ def peers(mesh, vertices, faces, shapes):
         taken, found = timed(make(vertices, faces), shapes[:count])
         true = mesh.distance(shapes[:count], RADIUS, caps=caps)
         error, is_free = found - true, true > 0
-        over, under = error[is_free].max(initial=0), -error[is_free].min(initial=0)
+        over, under = error[is_free].max(initial=0), (-error[is_free]).max(initial=0)
         called_free = np.mean(found[~is_free] > 0) if (~is_free).any() else 0
         rows.append((name, taken, f"{over:.1e}", f"{under:.1e}", f"{called_free:.0%}"))
         print(rows[-1], flush=True)
