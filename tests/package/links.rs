@@ -9,7 +9,7 @@ fn pages(directory: &Path, found: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
-            if !["target", ".git", "out", "corpus"].contains(&name.as_str()) {
+            if !["target", ".git", "out", "corpus", "node_modules"].contains(&name.as_str()) {
                 pages(&path, found);
             }
         } else if name.ends_with(".md") {

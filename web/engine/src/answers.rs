@@ -1,0 +1,72 @@
+use crate::flat;
+use parry_continuum::parry::math::{Pose, Real};
+use parry_continuum::proximity::{LinkProximity, Side};
+use parry_continuum::{Cap, ModifiedCylinder};
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// How far each link of a robot is from the wall, and where the links are.
+#[wasm_bindgen]
+pub struct Answers {
+    pub(crate) links: Vec<LinkProximity>,
+    pub(crate) minimum: LinkProximity,
+    pub(crate) base: Side,
+    pub(crate) robot: Vec<ModifiedCylinder>,
+    pub(crate) pose: Pose,
+}
+
+#[wasm_bindgen]
+impl Answers {
+    pub fn distances(&self) -> Vec<Real> {
+        self.links.iter().map(|link| link.distance).collect()
+    }
+
+    /// The closest points on the robot.
+    pub fn on_robot(&self) -> Vec<Real> {
+        flat(self.links.iter().map(|link| &link.on_robot))
+    }
+
+    /// The closest points on the wall.
+    pub fn on_mesh(&self) -> Vec<Real> {
+        flat(self.links.iter().map(|link| &link.on_mesh))
+    }
+
+    /// The link that is closest.
+    pub fn closest(&self) -> u32 {
+        self.minimum.link
+    }
+
+    pub fn minimum(&self) -> Real {
+        self.minimum.distance
+    }
+
+    /// How far along the robot the closest point is.
+    pub fn arc_length(&self) -> Real {
+        self.minimum.arc_length
+    }
+
+    /// Of the robot's base: `inside`, `outside` or `undecided`.
+    pub fn base(&self) -> String {
+        match self.base {
+            Side::Inside => "inside",
+            Side::Outside => "outside",
+            Side::Undecided => "undecided",
+        }
+        .to_owned()
+    }
+
+    /// The two ends of each link.
+    pub fn ends(&self) -> Vec<Real> {
+        let ends = self.robot.iter().flat_map(|link| [self.pose * link.start(), self.pose * link.end()]);
+        flat(&ends.collect::<Vec<_>>())
+    }
+
+    pub fn radii(&self) -> Vec<Real> {
+        self.robot.iter().map(|link| link.radius()).collect()
+    }
+
+    /// Whether the two caps of each link are round: 1, or 0 if flat.
+    pub fn is_round(&self) -> Vec<u8> {
+        let caps = self.robot.iter().flat_map(|link| link.caps());
+        caps.map(|cap| u8::from(cap == Cap::Round)).collect()
+    }
+}
