@@ -9,6 +9,9 @@ pub mod kinematics {}
 #[doc = include_str!("../docs/book/queries.md")]
 pub mod queries {}
 
+#[doc = include_str!("../docs/book/engines.md")]
+pub mod engines {}
+
 #[doc = include_str!("../docs/book/threads.md")]
 pub mod threads {}
 
@@ -26,6 +29,11 @@ pub mod tube {}
 
 #[doc = include_str!("../docs/book/trade.md")]
 pub mod trade {}
+
+// Its code runs where rapier is there.
+#[cfg(any(not(doctest), feature = "rapier"))]
+#[doc = include_str!("../docs/book/hosts.md")]
+pub mod hosts {}
 
 #[doc = include_str!("../docs/book/certificates.md")]
 pub mod certificates {}

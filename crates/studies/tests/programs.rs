@@ -9,24 +9,23 @@ const SPEED: &str = env!("CARGO_BIN_EXE_speed");
 const STUDIES: &str = env!("CARGO_BIN_EXE_studies");
 const TRADEOFF: &str = env!("CARGO_BIN_EXE_tradeoff");
 
-/// A README with marks, and what becomes of it.
-fn readme(directory: &str, mark: &str) {
-    let text = format!("before\n<!-- {mark} -->\nstale\n<!-- /{mark} -->\nafter\n");
-    file(&format!("{directory}/README.md"), &text);
+/// A page with marks, and what becomes of it.
+fn page_with(name: &str, mark: &str) {
+    file(name, &format!("before\n<!-- {mark} -->\nstale\n<!-- /{mark} -->\nafter\n"));
 }
 
-fn assert_quoted(directory: &str, mark: &str, begins: &str) {
-    let readme = read(&format!("{directory}/README.md"));
+fn assert_quoted(name: &str, mark: &str, begins: &str) {
+    let page = read(name);
     let begins = format!("before\n<!-- {mark} -->\n{begins}");
-    assert!(readme.starts_with(&begins) && !readme.contains("stale"), "{readme}");
-    assert!(readme.ends_with(&format!("\n<!-- /{mark} -->\nafter\n")), "{readme}");
-    assert_finite(&readme);
+    assert!(page.starts_with(&begins) && !page.contains("stale"), "{page}");
+    assert!(page.ends_with(&format!("\n<!-- /{mark} -->\nafter\n")), "{page}");
+    assert_finite(&page);
 }
 
 #[test]
 fn the_trade_is_measured_drawn_and_quoted() {
     let hall = room("hall.obj");
-    readme("trade", "tradeoff");
+    page_with("trade/docs/book/trade.md", "tradeoff");
     let place = ["--mesh", &hall, "--base", "30,30,30", "--axis", "0,0,1"];
     let small = ["--shapes", "12", "--timed", "2", "--edges", "4", "--out", "trade/docs"];
     succeed(TRADEOFF, &[&place[..], &small].concat());
@@ -83,8 +82,8 @@ fn the_trade_is_measured_drawn_and_quoted() {
     // With a GPU the legend has a frame for one precision, and another mark for the other.
     let frame = r##"width="8" height="8" opacity="1" fill="none" stroke="#000000""##;
     assert!(picture.matches(frame).count() <= 1, "{picture}");
-    assert_quoted("trade", "tradeoff", "**Take a `Tube`");
-    assert_eq!(table(&read("trade/README.md"), "| error | free shape: `Tube` |").len(), 4);
+    assert_quoted("trade/docs/book/trade.md", "tradeoff", "**Take a `Tube`");
+    assert_eq!(table(&read("trade/docs/book/trade.md"), "| error | free shape: `Tube` |").len(), 4);
 
     let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
     let arguments =
@@ -101,7 +100,7 @@ fn percent(text: &str) -> f64 {
 
 #[test]
 fn speed_is_measured_drawn_and_quoted() {
-    readme("speed", "speed");
+    page_with("speed/README.md", "speed");
     let arguments = ["--largest", "1", "--enough", "0", "--out", "speed/docs"];
     assert_eq!(succeed(SPEED, &arguments), "speed/docs/SPEED.md\n");
     let page = read("speed/docs/SPEED.md");
@@ -178,7 +177,7 @@ fn speed_is_measured_drawn_and_quoted() {
     }
     assert!(plot.matches("<polyline").count() >= 18, "{plot}");
     assert_quoted(
-        "speed",
+        "speed/README.md",
         "speed",
         "Written by `cargo run --release -p continuum-studies --bin speed -- --largest 1",
     );

@@ -130,6 +130,11 @@ An *over-estimate* reports more clearance than there is, by more than 1e-9 of th
 column is the largest over-estimate relative to the true distance, among the cases whose distance is at least 1/1000 of
 the extent.
 
+![Two panels of one slice of configurations, coloured by the relative error of the clearance: in parry's it is mostly between 1e-12 and 1e-7, in this crate's it is the rounding of a double everywhere.](correctness.png)
+
+In the picture a triangle moves around a tube half a millimetre thick; all lengths are in metres. Every cell is one
+query. Its colour is the error relative to the true clearance, which is proven for each.
+
 ";
 
 fn main() -> ExitCode {

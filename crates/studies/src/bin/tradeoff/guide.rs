@@ -1,4 +1,4 @@
-//! For this error, choose this: the guide of the README, and the table of links for an error.
+//! For this error, choose this: the guide of the book, and the table of links for an error.
 
 use crate::clock::Times;
 use crate::from_samples::FromSamples;
@@ -42,7 +42,7 @@ pub fn text(facts: &Facts) -> String {
          from about 270 samples of a new shape to its clearance, on one thread:\n\n\
          {}\n\
          Links instead of a curve suit parry, rapier and robots that are made of rigid parts:\n\n\
-         - The links decide the error, the engine only the time. [docs/TRADEOFF.md](docs/TRADEOFF.md) has a table of links for an \
+         - The links decide the error, the engine only the time. `docs/TRADEOFF.md` has a table of links for an \
          error. Within 0.1 mm a query takes {:.1} us in a control loop. `Exhaustive::<f32>` takes {:.0} times as long, and \
          parry's cylinders {:.0} times.\n\
          - The flat face of a chain is perpendicular to its last link, not to the curve. In a fine chain that is the largest \

@@ -1,5 +1,5 @@
 //! What accuracy costs: every model, tolerance and engine on seeded shapes of a concentric tube robot in a ventricle.
-//! Writes `docs/TRADEOFF.md`, its plot and the README's guide.
+//! Writes `docs/TRADEOFF.md`, its plot and the guide in docs/book/trade.md.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin tradeoff
@@ -187,7 +187,7 @@ fn measure(options: &Options) -> Result<(), String> {
         forbidden: shares::forbidden(&outcomes, subject::Model::Capsule),
         torsion: [torsion_median, torsion_worst],
     });
-    quote::in_readme(&guide, "tradeoff", &out)?;
+    quote::in_page(&guide, "tradeoff", &out.join("book/trade.md"))?;
     stage("done");
     println!("{}", file.display());
     Ok(())
