@@ -2,25 +2,32 @@
 //!
 //! Reads 64-bit floats, little-endian: the counts of vertices, triangles, robots and points each, the vertices, the triangles,
 //! and the robots' points; all radii are the last number. Writes one line for each question: its name, and the nanoseconds
-//! that it took for one robot after the other, and for all of them as a batch.
+//! of processor time that it took for one robot after the other, and for all of them as a batch. Linux and macOS alone.
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use std::error::Error;
 use std::io::{Read, stdin};
-use std::time::Instant;
 
 /// Of so many rounds the fastest counts.
 const ROUNDS: usize = 15;
+
+/// The seconds that this process has computed, whatever else the machine does.
+fn processor_time() -> f64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the pointer is that of a structure which lives as long as the call.
+    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
 
 /// The nanoseconds that the work takes for one robot.
 fn time(robots: usize, mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let mut least = f64::INFINITY;
     for _ in 0..ROUNDS {
-        let begin = Instant::now();
+        let begin = processor_time();
         work()?;
-        least = least.min(begin.elapsed().as_secs_f64());
+        least = least.min(processor_time() - begin);
     }
     Ok(1e9 * least / robots as f64)
 }
