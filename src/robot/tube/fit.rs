@@ -36,7 +36,7 @@ const PASSES: u32 = 3;
 
 /// In how many steps forces are looked for that bring the spline within the deviation, and for how many weights.
 const MOST_STEPS: u32 = 200;
-const MOST_SOFTENED: u32 = 16;
+const MOST_SOFTENED: u32 = 32;
 
 /// A segment is laid in no more parts.
 const MOST_PARTS: u32 = 64;
@@ -150,6 +150,11 @@ fn within(
     let wanted = deviation * (1.0 - 1.0 / 64.0);
     for _ in 0..MOST_SOFTENED {
         let smoother = Smoother::new(knots, weight);
+        // A softer spline gives way to smaller forces; and where it is far too stiff, forces would only bend it in jerks.
+        weight /= 16.0;
+        if smoother.spline(points).largest_residual(points) > 4.0 * deviation {
+            continue;
+        }
         let mut forces = vec![Vector::ZERO; points.len()];
         let mut ahead = forces.clone();
         let mut pace: Real = 1.0;
@@ -170,8 +175,6 @@ fn within(
                 *force = next;
             }
         }
-        // A softer spline gives way to smaller forces.
-        weight /= 16.0;
     }
     Smoother::new(knots, 0.0).spline(points)
 }

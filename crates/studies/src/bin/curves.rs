@@ -188,7 +188,7 @@ struct Outcome {
     /// The median of how far the clearance of the tube itself, without its deviation, is from the truth.
     off: f64,
     covered: usize,
-    /// The medians of what the tube and the query took, in microseconds.
+    /// What the tube and the query took at least, in microseconds.
     times: [f64; 2],
 }
 
@@ -228,7 +228,7 @@ fn ask(scenes: &[Scene], input: Input, way: Way, tolerance: f64) -> Outcome {
             .iter()
             .filter(|(found, truth)| found.lower <= *truth && *truth <= found.upper + 1e-6)
             .count(),
-        times: times.map(median),
+        times: times.map(|times| times.into_iter().fold(f64::NAN, f64::min)),
     }
 }
 
@@ -283,7 +283,7 @@ fn main() -> ExitCode {
         }
     }
     let mut table = String::from(
-        "| 100 samples unless said otherwise | tube | tolerance | accepted | resolved | bounds apart | off the truth | truth within | µs for the tube, the query |\n\
+        "| 100 samples unless said otherwise | tube | tolerance | accepted | resolved | bounds apart | off the truth | truth within | µs for the tube, the query, at least |\n\
          |---|---|---|---|---|---|---|---|---|\n",
     );
     let mut refused = Vec::new();
