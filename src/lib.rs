@@ -1,4 +1,4 @@
-//! Exact proximity queries between continuum robots and triangle meshes, for parry and rapier.
+//! Exact proximity queries between continuum robots and triangle meshes, and among robots, for parry and rapier.
 //!
 //! How far is each link of a catheter, a concentric tube robot or a snake from the wall around it, and which two
 //! points are closest? From centreline to clearance:
@@ -39,6 +39,8 @@
 //!   `gpu` adds `gpu::GpuExhaustive`. The first page of [`proximity`] has a call for each question.
 //! - **The motion.** [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that a [`Motion`] keeps a margin
 //!   all the way.
+//! - **Several robots.** [`RobotPair`](proximity::RobotPair) holds two robots, or one and itself, against one another;
+//!   [`Scene`](proximity::Scene) has several structures, each with its margin: [`book::robots`].
 //! - **Threads.** Each has a clone of the engine: [`book::threads`].
 //! - **Contacts.** [`within`](proximity::Proximity::within) finds every place where the robot is near the wall, with a
 //!   normal, and how it changes with the joints. [`book::control`] is about controllers.

@@ -91,6 +91,16 @@ pub(crate) fn from_centre<T: Scalar>(
         point1: from.along(chord, found.s),
         point2: to.along(diameter, found.t),
     };
+    // Where the chord passes through the second disc, that point is common, whatever rounding says of its height.
+    let climb = sine * half;
+    let (low, high) = (height0 - climb, height0 + climb);
+    let share = low.abs().over(low.abs() + high.abs());
+    let across = from.along(chord, share) - centre;
+    let across = across.along(normal2, -across.dot(normal2));
+    let passes = (low * high).le(zero) & across.norm_squared().le(radius2 * radius2);
+    let common = across + centre;
+    let met = Closest { distance: zero, point1: common, point2: common };
+    let inner = Closest::select(passes, met, inner);
 
     // Case 2, with all lengths multiplied by 1 + t^2.
     let mut t = zero;

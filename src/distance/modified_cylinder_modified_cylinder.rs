@@ -93,7 +93,11 @@ impl<T: Scalar> TwoLinks<T> {
             first_ends = first_ends.unless(at_flat, first.flat_ends_facing(on_disc));
         }
         // Cases 3 and 4.
-        self.nearer_from_disc(first_ends.any(), first_ends.centre(first), closest, may)
+        let closest = self.nearer_from_disc(first_ends.any(), first_ends.centre(first), closest, may);
+        // Of a point in the plane of a cap rounding may say that it is beyond it; the other link's point may be within.
+        let (distance, point1) = first.closest_to(closest.point2);
+        let back = Closest { distance, point1, point2: closest.point2 };
+        closest.nearer(back)
     }
 
     /// The closest points of the flat cap around one end of the first link, which has a length, and the second link. `may` is

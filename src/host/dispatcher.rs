@@ -29,19 +29,19 @@ use parry3d_f64::shape::Shape;
 ///
 /// What is answered for a link or a chain against another shape, in either order:
 ///
-/// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | `Ball` | other convex shape |
-/// |---|---|---|---|---|
-/// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
-/// | `intersection_test` | exact | exact | exact | parry's GJK |
-/// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
-/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | separates, to rounding; round links exact; the shortest translation but for what stands below |
-/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 |
-/// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal |
+/// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | `Ball` | link, chain, `Capsule`, `Cylinder` | other convex shape |
+/// |---|---|---|---|---|---|
+/// | `distance`, `closest_points` | exact | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `intersection_test` | exact | exact | exact | exact | parry's GJK |
+/// | `contact`, apart | exact | exact | exact | exact, but where two flat caps meet: parry's GJK, within 1e-5 | parry's GJK: within 1e-5 |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | separates, to rounding; round links exact; the shortest translation but for what stands below | separates, to rounding; the shortest translation but for what stands below |
+/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 | never late but for GJK; early by 1e-5 |
+/// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK | never late but for GJK |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
 /// Numbers are for shapes of size one. parry's tolerances are absolute, so in another unit of length the relative error is
-/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column links too large or
-/// too small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
+/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column, and for contacts and
+/// casts of the one before, links too large or too small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
 ///
 /// **The shortest translation.** The one that separates a link from another convex shape may be longer than the shortest that
 /// a search of all directions finds. It is longer by at most
@@ -136,6 +136,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
                     return Ok(ShapeIntersection::new(contact.dist <= 0.0));
                 }
+                if let Some(links) = LinkPair::of(pos12, g1, g2) {
+                    return Ok(ShapeIntersection::new(links.distance()? <= 0.0));
+                }
                 self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2)
             }
         }
@@ -165,6 +168,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::None => {
                 if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
                     return Ok(ShapeDistance::new(contact.dist.max(0.0)));
+                }
+                if let Some(links) = LinkPair::of(pos12, g1, g2) {
+                    return links.distance().map(ShapeDistance::new);
                 }
                 let inner = self.inner(pos12, g1, g2)?;
                 let answer = match ConvexPair::of(inner, pos12, g1, g2) {
@@ -244,6 +250,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::None => {
                 if let Some(points) = link_ball::closest_points(pos12, g1, g2, max_dist)? {
                     return Ok(points);
+                }
+                if let Some(links) = LinkPair::of(pos12, g1, g2) {
+                    return links.closest_points(pos12, max_dist);
                 }
                 let inner = self.inner(pos12, g1, g2)?;
                 match ConvexPair::of(inner, pos12, g1, g2) {

@@ -28,7 +28,7 @@ pub(super) fn update<M, C: Default + Copy>(
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
 ) -> bool {
-    let Some(LinkPair { links: [first, second], origin, extent }) = LinkPair::of(pos12, g1, g2) else {
+    let Some(LinkPair { links: [first, second], origin, extent, .. }) = LinkPair::of(pos12, g1, g2) else {
         return false;
     };
     let touch = match link_link::touch(&first, &second, extent, prediction) {

@@ -9,6 +9,9 @@ use continuum_testing::precision::{Precision, extent, vector};
 use continuum_testing::{LinkCase, link_cases};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::query::{ClosestPoints, QueryDispatcher};
+use parry_continuum::parry::shape::{Capsule, Shape};
+use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -107,6 +110,68 @@ fn every_single_precision_reference_in_single_precision() {
     let cases: Vec<_> = link_cases().into_iter().filter(|case| case.f32).collect();
     assert!(cases.len() > 600, "{}", cases.len());
     println!("f32: {:.2} units of the extent", worst::<f32>(&cases));
+}
+
+#[test]
+fn every_reference_through_parrys_dispatcher() {
+    let dispatcher = ContinuumDispatcher::default();
+    let (mut touching, mut parrys) = (0, 0);
+    for case in link_cases() {
+        let links = Links::from(&case);
+        let made = |k: usize| {
+            let caps = links.flat[k].map(|flat| if flat { Cap::Flat } else { Cap::Round });
+            ModifiedCylinder::new(links.axes[k][0], links.axes[k][1], links.radii[k], caps).unwrap()
+        };
+        let (first, second) = (made(0), made(1));
+        let mut check = |g1: &dyn Shape, g2: &dyn Shape| {
+            let found = dispatcher.distance(&Pose::IDENTITY, g1, g2).unwrap().distance;
+            let off = (found - case.distance()).abs() / (UNIT * case.scale);
+            assert!(off <= 16.0, "{} {}: {off} units", case.id, case.cat);
+            let slack = 8.0 * UNIT * (case.mag + case.scale);
+            match dispatcher.closest_points(&Pose::IDENTITY, g1, g2, f64::MAX).unwrap() {
+                ClosestPoints::WithinMargin(p1, p2) => {
+                    assert!(((p1 - p2).length() - found).abs() <= slack, "{}", case.id);
+                }
+                ClosestPoints::Intersecting => touching += 1,
+                ClosestPoints::Disjoint => panic!("{} is nowhere", case.id),
+            }
+        };
+        check(&first, &second);
+        check(&second, &first);
+        // A capsule of parry's is a link; one of no thickness is a line to the dispatcher.
+        if links.flat[1] == [false; 2] && links.radii[1] > 1e-9 * case.scale {
+            let capsule = Capsule::new(second.start(), second.end(), second.radius());
+            check(&first, &capsule);
+            check(&capsule, &first);
+            parrys += 1;
+        }
+    }
+    assert!(touching > 600 && parrys > 200, "{touching} {parrys}");
+}
+
+/// Moved together by a little more than they are apart, links overlap: then the distance is 0, but for what rounding says of
+/// faces that lie in one plane.
+#[test]
+fn links_that_overlap_meet() {
+    let (mut overlapping, mut missed) = (0, 0);
+    for case in link_cases().iter().filter(|case| case.cat != "wires") {
+        let mut links = Links::from(case);
+        let closest = links.answer::<f64>();
+        if closest.distance < 1e-4 * case.scale {
+            continue;
+        }
+        let way = (vector(closest.point1) - vector(closest.point2)) / closest.distance;
+        for share in [1e-4, 1e-7, 1e-10] {
+            let deep = share * (links.radii[0] + links.radii[1]);
+            let moved = Links::from(case).axes[1].map(|end| end + way * (closest.distance + deep));
+            links.axes[1] = moved;
+            let distance = links.distance();
+            assert!(distance <= 4.0 * UNIT * case.scale, "{} {}: {distance}", case.id, case.cat);
+            overlapping += 1;
+            missed += usize::from(distance > 0.0);
+        }
+    }
+    assert!(overlapping > 2000 && missed < 20, "{overlapping} {missed}");
 }
 
 /// Half of what a scene is made of: aligned axes, touching caps, small integers.

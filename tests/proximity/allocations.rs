@@ -4,7 +4,7 @@ use continuum_demo::{ctr, ventricle};
 use continuum_testing::answered;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
     simplify,
@@ -72,6 +72,39 @@ fn a_control_loop_allocates_nothing() {
 }
 
 /// A chain that is filled again is the chain that is made anew, and keeps what it was if the new line is bad.
+#[test]
+fn two_robots_and_a_scene_allocate_nothing() {
+    let (vertices, indices) = ventricle::mesh(6_000);
+    let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
+    let (base, mut moved) = (ventricle::entry(), Vec::new());
+    let mut chain = Chain::from_centreline(&line.points, &line.radii).unwrap();
+    let other = chain.clone();
+    let mut scene = Scene::new();
+    for (name, margin) in [("wall", Some(0.5)), ("target", None), ("vessel", Some(0.1))] {
+        scene.add(name, BvhSearch::from_triangles(&vertices, &indices).unwrap(), margin).unwrap();
+    }
+    scene.set_robot_margin(Some(0.2)).unwrap();
+    let mut pair = RobotPair::new();
+    let (mut places, mut walls, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
+    let allocated = steady_state(|tick| {
+        sway(&line.points, tick, &mut moved);
+        chain.set_centreline(&moved, &line.radii).unwrap();
+        let there = Pose::from_translation(Vector::X * 4.0) * base;
+        pair.minimum(&chain, &base, &other, &there).unwrap();
+        pair.per_link(&chain, &base, &other, &there, &mut places).unwrap();
+        pair.within(&chain, &base, &other, &there, 5.0, &mut places).unwrap();
+        pair.clears(&chain, &base, &other, &there, 0.5).unwrap();
+        pair.self_minimum(&chain).unwrap();
+        pair.self_clears(&chain, 0.5).unwrap();
+        let robots = [(&chain, base), (&other, there)];
+        scene.clears(&robots).unwrap();
+        assert!(scene.tightest(&robots).unwrap().is_some());
+        scene.per_structure(&robots, &mut walls).unwrap();
+        scene.contacts(&robots, 1.0, &mut contacts).unwrap();
+    });
+    assert_eq!(allocated, 0);
+}
+
 #[test]
 fn a_chain_is_filled_again() {
     let lines = [
