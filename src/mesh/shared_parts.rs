@@ -4,7 +4,6 @@
 //! there may be any number of them (Weiler's radial edge). So nothing is numbered but the corners, and that by their
 //! places alone: as long as those stay together that were, and none meets another, the rings stay as they are.
 
-use super::joined::first_of;
 use parry3d_f64::math::{Real, Vector};
 use std::iter::successors;
 
@@ -26,8 +25,6 @@ pub(crate) struct SharedParts {
     /// For each vertex the first at the same place.
     corners: Vec<u32>,
     rings: Rings,
-    /// For each triangle one bit for each corner that is pinched.
-    pinched: Vec<u8>,
 }
 
 /// A part of a triangle.
@@ -87,14 +84,13 @@ impl SharedParts {
                 next = Some(rings.next(part)).filter(|next| Some(*next) != first);
             }
         }
-        let pinched = pinched(indices, &rings, corner);
-        Self { corners, rings, pinched }
+        Self { corners, rings }
     }
 
-    /// Whether some triangles around a corner are joined at it alone, and not from edge to edge.
+    /// The first vertex at the place of a vertex.
     #[inline(always)]
-    pub(crate) fn is_pinched(&self, triangle: u32, corner: usize) -> bool {
-        self.pinched[triangle as usize] >> corner & 1 == 1
+    pub(crate) fn first_at(&self, vertex: u32) -> u32 {
+        self.corners[vertex as usize]
     }
 
     /// Whether they are the same with the vertices at these places.
@@ -120,48 +116,6 @@ impl SharedParts {
         let next = self.rings.next(SharedPart { triangle, number: edge as u8 });
         (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
     }
-}
-
-/// For each triangle one bit for each corner around which not all triangles are joined from edge to edge. `corner` is
-/// the same for corners at one place.
-fn pinched(indices: &[[u32; 3]], rings: &Rings, corner: impl Fn(SharedPart) -> u32) -> Vec<u8> {
-    let of = |triangle: u32, number: u8| SharedPart { triangle, number: number % 3 };
-    let place = |part: SharedPart| 3 * part.triangle + u32::from(part.number);
-    // For each corner of each triangle an earlier one that is joined with it, or itself.
-    let mut joined: Vec<u32> = (0..3 * indices.len() as u32).collect();
-    let mut join = |one: SharedPart, other: SharedPart| {
-        if corner(one) == corner(other) {
-            let [one, other] = [place(one), place(other)].map(|place| first_of(&mut joined, place));
-            joined[one.max(other) as usize] = one.min(other);
-        }
-    };
-    for triangle in 0..indices.len() as u32 {
-        for number in 0..3 {
-            let ends = [of(triangle, number), of(triangle, number + 1)];
-            join(ends[0], ends[1]);
-            let next = rings.next(SharedPart { triangle, number: number + 3 });
-            for end in ends {
-                join(end, of(next.triangle, next.number));
-                join(end, of(next.triangle, next.number + 1));
-            }
-        }
-    }
-    let mut pinched = vec![0; indices.len()];
-    for triangle in 0..indices.len() as u32 {
-        for number in 0..3 {
-            if pinched[triangle as usize] >> number & 1 == 1 {
-                continue;
-            }
-            let part = of(triangle, number);
-            let [one, other] = [part, rings.next(part)].map(|part| first_of(&mut joined, place(part)));
-            if one != other {
-                // Two that are neighbours in the ring are apart: so the corner is pinched for all of it.
-                pinched[triangle as usize] |= 1 << number;
-                rings.others(part).for_each(|part| pinched[part.triangle as usize] |= 1 << part.number);
-            }
-        }
-    }
-    pinched
 }
 
 impl Rings {

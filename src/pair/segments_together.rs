@@ -1,7 +1,7 @@
 //! Points and segments of the mesh against one link, a pack at a time: the bits are the same on every instruction set.
 
 use super::coordinates::Placed;
-use super::pair_lanes::{PairLanes, Rows, TOGETHER, corners, put_corners};
+use super::pair_lanes::{PairLanes, Rows, TOGETHER, corners, put_corners, store};
 use super::placed_link::PlacedLink;
 use super::ranked::rounding;
 use crate::distance::lanes::Pack;
@@ -14,6 +14,8 @@ use parry3d_f64::math::{Real, Vector};
 pub(crate) struct Height {
     pub distance: Real,
     pub rounding: Real,
+    /// The way to a point from the nearest one of the link; for a segment it is none.
+    pub way: Vector,
 }
 
 /// Measures points. `take` gets the height of each, in order.
@@ -43,7 +45,7 @@ fn measure(
     are_points: bool,
     mut take: impl FnMut(Height),
 ) {
-    let (mut rows, mut found) = ([[0.0; TOGETHER]; 9], [[0.0; TOGETHER]; 2]);
+    let (mut rows, mut found) = ([[0.0; TOGETHER]; 9], [[0.0; TOGETHER]; 5]);
     loop {
         let mut count = 0;
         for [from, to] in segments.by_ref().take(TOGETHER) {
@@ -54,9 +56,9 @@ fn measure(
             return;
         }
         measure_pack(level, link, &rows, count, are_points, &mut found);
-        let [distances, extents] = &found;
-        for (&distance, &extent) in distances.iter().zip(extents).take(count) {
-            take(Height { distance, rounding: rounding(extent) });
+        for lane in 0..count {
+            let [distance, extent, x, y, z] = found.map(|row| row[lane]);
+            take(Height { distance, rounding: rounding(extent), way: Vector::new(x, y, z) });
         }
     }
 }
@@ -68,7 +70,7 @@ fn measure_pack(
     segments: &Rows<9>,
     count: usize,
     are_points: bool,
-    found: &mut Rows<2>,
+    found: &mut Rows<5>,
 ) {
     dispatch!(level, simd => fill::<Unfused<_>>(simd, link, segments, count, are_points, found));
 }
@@ -80,20 +82,21 @@ fn fill<L: Pack<Element = f64>>(
     segments: &Rows<9>,
     count: usize,
     are_points: bool,
-    [distances, extents]: &mut Rows<2>,
+    found: &mut Rows<5>,
 ) {
     let link = Placed::<L>::splat(token, link);
     for lane in (0..count).step_by(L::LANES) {
         let corners = corners::<L, 9>(token, segments, lane);
-        let (distance, unit, extent) = if are_points {
+        let (distance, pair) = if are_points {
             let pair = link.with(corners);
-            let (distance, _) = pair.link.closest_to(pair.triangle[0]);
-            (distance, pair.unit, pair.extent)
+            let (distance, on_link) = pair.link.closest_to(pair.triangle[0]);
+            store(found, 2, lane, (pair.triangle[0] - on_link) * pair.unit);
+            (distance, pair)
         } else {
-            let found = PairLanes::between(&link, corners);
-            (found.closest.distance, found.pair.unit, found.pair.extent)
+            let PairLanes { pair, closest, .. } = PairLanes::between(&link, corners);
+            (closest.distance, pair)
         };
-        (distance * unit).store(&mut distances[lane..]);
-        extent.store(&mut extents[lane..]);
+        (distance * pair.unit).store(&mut found[0][lane..]);
+        pair.extent.store(&mut found[1][lane..]);
     }
 }

@@ -363,8 +363,14 @@ fn a_label_map_gives_a_handful_a_link() {
     for margin in [5.0, 8.0, 12.0] {
         let (all, kept) =
             (within(&mut search, &robot, margin, 0.0), within(&mut search, &robot, margin, 1.0));
+        let mut best = [Duration::MAX; 2];
+        for round in 0..40 {
+            let begin = Instant::now();
+            within(&mut search, &robot, margin, f64::from(round % 2));
+            best[round as usize % 2] = best[round as usize % 2].min(begin.elapsed());
+        }
         println!(
-            "margin {margin}: {} contacts of {} triangles, {} prominent",
+            "margin {margin}: {} contacts with {} triangles, {} prominent, in {best:?}",
             all.len(),
             mesh.indices().len(),
             kept.len()

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Says yes or no to each proof that is named on the command line behind its mesh, and how long it took.
+/// Says yes or no to each proof that is named on the command line behind its mesh, and how much time of a processor it took.
 const ALL: &str = "
 import contextlib, io, sys, time
 sys.dont_write_bytecode = True
@@ -21,7 +21,7 @@ sys.path.insert(0, sys.argv[1])
 import check_proof
 names = sys.argv[2:]
 for mesh, proof in zip(names[::2], names[1::2]):
-    said, begin = io.StringIO(), time.perf_counter()
+    said, begin = io.StringIO(), time.process_time()
     try:
         with contextlib.redirect_stdout(said):
             check_proof.main(mesh, proof)
@@ -29,7 +29,7 @@ for mesh, proof in zip(names[::2], names[1::2]):
     except (check_proof.No, OSError, ValueError) as reason:
         answer = f'no: {reason}'
     lines = said.getvalue().replace(chr(10), '|')
-    print(f'{time.perf_counter() - begin:.3f};{answer};{lines}')
+    print(f'{time.process_time() - begin:.3f};{answer};{lines}')
 ";
 
 /// What the program says.
@@ -279,6 +279,9 @@ fn what_was_tampered_with_is_refused() {
     let fewer = mesh.trim_end().rsplit_once('\n').unwrap().0.to_owned();
     tamper("a triangle is missing", &fewer, good().text());
     let mut lines = good();
+    lines.steps.push(lines.steps[planes[0]].clone());
+    tamper("a step behind the last", &mesh, lines.text());
+    let mut lines = good();
     lines.steps[planes[0]] = "0,0,0".to_owned();
     tamper("a plane without a normal", &mesh, lines.text());
 
@@ -351,10 +354,14 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     }
     let (from, to) = (bend(8, 7.0, 0.01), bend(8, 7.0, 0.12));
     let bending = LinearMotion::chain(&from, &to, &[0.5; 8]).unwrap();
-    for margin in [0.0, 0.2] {
-        let proof = search.prove_motion(&bending, margin, 1e-2).unwrap();
+    // At its end the robot is nearest to the wall.
+    let last = Chain::from_centreline(&to, &[0.5; 8]).unwrap();
+    let least = search.minimum(&last, &Pose::IDENTITY).unwrap().distance;
+    for share in [0.0, 0.5, 0.9] {
+        let proof = search.prove_motion(&bending, share * least, 1e-3).unwrap();
         prove(&search, proof, "bending");
     }
+    assert_eq!(search.prove_motion(&bending, least, 1e-3).unwrap(), None);
     let away = Pose::from_translation(Vector::new(1.0, 1.0, -2.0));
     let pushed = RigidMotion::new(tubes[0].1.clone(), [Pose::IDENTITY, away]).unwrap();
     let proof = search.prove_motion(&pushed, 0.1, 1e-2).unwrap();
@@ -363,17 +370,25 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     let through = RigidMotion::new(tubes[0].1.clone(), [Pose::IDENTITY, through]).unwrap();
     assert_eq!(search.prove_motion(&through, 0.0, 1e-2).unwrap(), None);
 
-    // A motion that was tampered with.
-    let good = texts.iter().find(|(name, _)| name == "bending").unwrap().1.to_string();
+    // A motion that was tampered with: one of several shapes.
+    let good = texts.iter().rfind(|(name, _)| name == "bending").unwrap();
+    assert!(good.1.shapes() > 3, "{}", good.1.shapes());
+    let good = good.1.to_string();
     let times: Vec<_> = good.lines().filter(|line| line.starts_with("shape ")).collect();
     let faster = with_line(&good, "0.5 ", |line| {
         let words: Vec<_> = line.split(' ').collect();
         format!("{} {} {} {} {} 1000.0 {}", words[0], words[1], words[2], words[3], words[4], words[6])
     });
-    let late = good.replacen(times[0], &times[0].replacen(" 0.0 ", " 0.0625 ", 1), 1);
-    let short =
-        good.replacen(times[times.len() - 1], &times[times.len() - 1].replacen(" 1.0 ", " 0.9375 ", 1), 1);
-    for text in [&faster, &late, &short] {
+    let late = good.replacen(times[0], &times[0].replacen(" 0.0 ", " 0.0078125 ", 1), 1);
+    let last = times[times.len() - 1];
+    let short = good.replacen(last, &last.replacen(" 1.0 ", " 0.9921875 ", 1), 1);
+    // A shape is left out: the times have a gap.
+    let second = good.find(times[1]).unwrap();
+    let third = good.find(times[2]).unwrap();
+    let count = format!("motion {}", times.len());
+    let fewer = format!("{}{}", &good[..second], &good[third..]);
+    let fewer = fewer.replacen(&count, &format!("motion {}", times.len() - 1), 1);
+    for text in [&faster, &late, &short, &fewer] {
         assert_ne!(**text, good);
         checks.add(&obj(&search), text);
     }

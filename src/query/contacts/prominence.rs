@@ -19,8 +19,8 @@
 //! What of a triangle is within a distance c is convex, because the link is. So two triangles are joined by a corner or an
 //! edge f that both have exactly from c = d(f) on (see `local_minima`): a way that stays within c can follow a chain of
 //! triangles each of which shares with the next an f with d(f) <= c. The least distance of f is a *pass*, and the pieces
-//! of wall within c are what passes up to c join. At a corner triangles are joined from edge to edge, if all around it are
-//! joined so at all: no edge is farther than its ends. So corners count only where they are pinched.
+//! of wall within c are what passes up to c join. Between its ends an edge may be nearer than at them, and is a pass of its
+//! own; else the nearer of its ends is one.
 //!
 //! C asks for the pieces of wall below d(C) + p. As the minima are taken nearest first, these distances rise, and one sweep
 //! over the passes serves them all: each pass waits for the first minimum that may use it. All triangles that may be within
@@ -31,13 +31,11 @@
 //! triangle that has f is found by every engine.
 //!
 //! # How much work it is
-//! Most passes need not be measured. With a and b the distances of an edge's ends and l its length, its least distance is at
-//! most min(a, b) and at least (a + b - l) / 2. From the upper bound on the edge joins for certain. A minimum that finds one
-//! to stand for it then is left out: with more joined it would find one too. Only for the others the edges between the two
-//! bounds are measured, those that would join nothing apart. So the corners near the link are measured once and few edges
-//! besides, and the work grows with the triangles within the margin, however long the rings around them are. Of those that
-//! are kept in one piece a minimum asks one after another, first the one that answered last: where there are many, most
-//! have such a normal.
+//! The corners near the link are measured, each once. They join most of what there is, and a minimum for which one stands
+//! by then is left out: with more joined there would be one too. Only for the others edges are measured that may be nearer
+//! between their ends, as far as they would join what is not joined yet; bounds tell for which minimum that is first needed.
+//! So the work grows with the triangles within the margin. Of those that are kept in one piece a minimum asks one after
+//! another, first the one that answered last: where there are many, most have such a normal.
 
 use super::local_minima::NONE;
 use super::passes::{Passes, Surroundings};
@@ -96,7 +94,7 @@ impl Prominence {
         below.clear();
         below.extend(contacts.iter().map(|contact| contact.distance + asked.prominence));
         passes.find(level, around, asked.margin, below);
-        pieces.begin(around.near.places());
+        pieces.begin(passes.pieces(around));
         for (minimum, contact) in (0..).zip(contacts) {
             passes.join_certain(around, minimum, pieces);
             let place = around.place(contact.triangle).filter(|_| contact.normal.is_some());
