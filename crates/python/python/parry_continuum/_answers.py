@@ -150,6 +150,31 @@ class MotionAnswer(NamedTuple):
     """The triangle there."""
 
 
+class MotionClearance(NamedTuple):
+    """How near a motion comes, between bounds, and when."""
+
+    lower: FloatOrFloats
+    """No shape of the motion is nearer than this."""
+    upper: FloatOrFloats
+    """The shape at ``t`` is no farther away than this: 0 where it touches the mesh."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What the errors that shapes state for themselves cost, and no finer tolerance can mend."""
+    t: FloatOrFloats
+    """The time of the shape that realises ``upper``, from 0 to 1."""
+    on_robot: Floats
+    """A point of that shape, (3,)."""
+    on_mesh: Floats
+    """A point of the mesh, (3,). The two are ``upper`` apart, or nearer."""
+    segment: IntOrInts
+    """The segment of the input there."""
+    arc_length: FloatOrFloats
+    """How far along that shape's centreline from the base."""
+    triangle: IntOrInts
+    """The triangle there."""
+
+
 class InsideAnswer(NamedTuple):
     """Whether a robot keeps a margin, and on which side its base is."""
 

@@ -17,6 +17,7 @@ from ._answers import (
     Ints,
     Minimum,
     MotionAnswer,
+    MotionClearance,
     PerLink,
     RobotProximity,
     SideOrSides,
@@ -129,6 +130,15 @@ class Mesh:
         *,
         caps: Literal["fitted", "capsules"] = "fitted",
     ) -> MotionAnswer: ...
+    def clearance_of_motion(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        radii: ArrayLike,
+        tolerance: float,
+        *,
+        caps: Literal["fitted", "capsules"] = "fitted",
+    ) -> MotionClearance: ...
     def certify(
         self,
         points: ArrayLike,

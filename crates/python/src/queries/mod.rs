@@ -6,6 +6,7 @@ mod clears;
 pub(crate) mod distance;
 mod gradient;
 mod motion;
+mod motion_clearance;
 mod per_link;
 mod side;
 pub(crate) mod two_robots;

@@ -5,13 +5,27 @@ use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, decision_value, flat, members};
 use crate::threads::{Session, ask_each};
-use parry_continuum::LinearMotion;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{BvhSearch, MotionAnswer, ProximityError, ShapeInContact};
+use parry_continuum::{LinearMotion, RobotError};
 use pyo3::prelude::*;
 
 /// A question about a motion: the margin and the resolution come last.
 type Question = fn(&mut BvhSearch, &LinearMotion, f64, f64) -> Result<MotionAnswer, ProximityError>;
+
+/// What makes a motion of two shapes and radii.
+type Maker = fn(&[Vector], &[Vector], &[f64]) -> Result<LinearMotion, RobotError>;
+
+pub(super) fn maker(py: Python<'_>, caps: Caps) -> PyResult<Maker> {
+    match caps {
+        Caps::Fitted => Ok(LinearMotion::chain),
+        Caps::Capsules => Ok(LinearMotion::capsules),
+        Caps::Cylinders => {
+            let text = "`caps` is 'cylinders'; motions take 'fitted' or 'capsules'";
+            Err(Refused::other("bad_caps", text).raise(py, None))
+        }
+    }
+}
 
 #[pymethods]
 impl Mesh {
@@ -134,14 +148,7 @@ impl Mesh {
         caps: Caps,
         question: Question,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let make = match caps {
-            Caps::Fitted => LinearMotion::chain,
-            Caps::Capsules => LinearMotion::capsules,
-            Caps::Cylinders => {
-                let text = "`caps` is 'cylinders'; motions take 'fitted' or 'capsules'";
-                return Err(Refused::other("bad_caps", text).raise(py, None));
-            }
-        };
+        let make = maker(py, caps)?;
         let robots = Robots::new("start", start, radii, None)?.with_as_many("end", end, "start")?;
         let mut all: Vec<MotionAnswer> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<MotionAnswer>]| {
