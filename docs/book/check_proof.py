@@ -83,7 +83,7 @@ class Words:
 class Mesh:
     def __init__(self, path):
         self.vertices, self.triangles, self.groups = [], [], {}
-        with open(path, encoding="utf-8") as lines:
+        with open(path, encoding="utf-8-sig") as lines:
             for line in lines:
                 words = line.split()
                 if words[:1] == ["v"]:

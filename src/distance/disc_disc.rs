@@ -20,9 +20,10 @@
 //! 2. e > 0: it lies on the rim. There a = r1 sin(theta), k = r1 cos(theta), and the sign of
 //!
 //!    ```text
-//!    g = rho h s k + o (b c k + e a),  rho / 2 times the derivative of F by theta,
+//!    g = w h s k + o (b c k + e a),  w / 2 times the derivative of F by theta,
 //!    ```
 //!
+//!    with w = rho, or 1 where o = 0 and rho is no more than a weight, which may vanish,
 //!    tells on which side the minimum lies. Halvings of t = tan(theta / 2), which runs from -1 to 1, find it: no root of a
 //!    polynomial, no division but by 1 + t^2, by which the numbers are multiplied instead. Then the arc that is left is
 //!    replaced by its tangent, and segment-disc does the rest.
@@ -113,7 +114,8 @@ pub(crate) fn from_centre<T: Scalar>(
         let e = foot.mul_add(whole, -k).max(zero);
         let rho = b.mul_add(b, e * e).sqrt();
         let o = (-radius2).mul_add(whole, rho).max(zero);
-        let g = (rho * h) * (sine * k) + o * (b * cosine).mul_add(k, e * a);
+        let weight = zero.lt(o).select(rho, one);
+        let g = (weight * h) * (sine * k) + o * (b * cosine).mul_add(k, e * a);
         t = t + g.lt(zero).select(step, -step);
     }
     let per_whole = one / t.mul_add(t, one);

@@ -26,7 +26,8 @@ impl PlacedTube<'_> {
         let away = way.length();
         let reach = away + rounding;
         if [0, 1].into_iter().all(|end| self.is_before_end(number, end, x, reach + rounding)) {
-            let upper = (reach - section.radius).max(0.0);
+            // What is not known is no touch.
+            let upper = if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
             let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
             return OnTube { upper, arc: foot.arc, point };
         }

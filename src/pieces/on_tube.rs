@@ -88,7 +88,8 @@ impl PlacedTube<'_> {
             }
         }
         if is_beside {
-            let upper = (reach - section.radius).max(0.0);
+            // What is not known is no touch.
+            let upper = if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
             let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
             best = OnTube { upper, arc: foot.arc, point };
         }

@@ -197,7 +197,7 @@ impl Scene {
         // Those that may be tightest are asked first: they rule out the others.
         let mut order = std::mem::take(&mut self.order);
         let asked = self.rank(robots, &mut order).and_then(|()| {
-            order.sort_by(|one, other| one.0.total_cmp(&other.0));
+            order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
             for &(room, [structure, robot]) in &order {
                 if best.as_ref().is_some_and(|(_, best)| room > best.slack.next_up()) {
                     break;
@@ -217,7 +217,7 @@ impl Scene {
             for second in first + 1..robots.len() {
                 let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
                 let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(between([first, second]))?;
-                let slack = DoubleDouble::from(nearest.distance) - margin.into();
+                let slack = slack(nearest.distance, margin);
                 if best.as_ref().is_none_or(|(least, _)| slack.lt(*least)) {
                     let between = Between::Robots { robots: [first as u32, second as u32], nearest };
                     best = Some((slack, Tightest { slack: slack.rounded(), between }));
@@ -355,7 +355,7 @@ impl Scene {
             best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up());
         let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
         let Some(found) = found else { return Ok(()) };
-        let slack = DoubleDouble::from(found.distance) - margin.into();
+        let slack = slack(found.distance, margin);
         let is_tighter = best.as_ref().is_none_or(|(least, best)| {
             let comes_first = match best.between {
                 Between::Structure(near) => [number, robot] < [near.structure as usize, near.robot as usize],
@@ -375,6 +375,14 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// The distance less the margin, which may be infinite.
+fn slack(distance: Real, margin: Real) -> DoubleDouble {
+    if margin == Real::INFINITY {
+        return Real::NEG_INFINITY.into();
+    }
+    DoubleDouble::from(distance) - margin.into()
 }
 
 /// A margin that can be kept, if there is one.

@@ -281,3 +281,39 @@ fn discs_are_as_far_as_their_nearest_chords() {
     }
     assert!(crossing > 30 && apart > 200, "{crossing} {apart}");
 }
+
+/// Where a disc's centre is not off to one side of the other's, a number that only weighs a sign vanishes.
+#[test]
+fn aligned_discs_and_links_are_as_far_as_they_are() {
+    let discs = |[normal1, normal2]: [Vector; 2], radii: [f64; 2], centre: Vector| {
+        let [zero, to, n1, n2] = [Vector::ZERO, centre, normal1, normal2].map(<f64 as Precision>::vec3);
+        [disc_disc(zero, n1, radii[0], to, n2, radii[1]), disc_disc(to, n2, radii[1], zero, n1, radii[0])]
+            .map(|closest| closest.distance)
+    };
+    assert_eq!(discs([Vector::Z, Vector::X], [2.0, 2.0], Vector::new(2.0, 1.5, 0.0)), [0.0; 2]);
+    assert_eq!(discs([Vector::Z, Vector::X], [2.0, 2.0], Vector::new(4.0, 1.5, 0.0)), [2.0; 2]);
+    // Found by alternating projections.
+    for (a, f, radius, expected) in
+        [(0.75, 1.75, 1.5, 0.0), (1.0, 1.75, 2.0, 0.0178), (1.0, 1.75, 1.5, 0.1485), (1.5, 1.75, 2.0, 0.7199)]
+    {
+        let first = [Vector::Z * -4.0, Vector::ZERO];
+        let second = [Vector::new(a, f, a), Vector::new(a + 4.0, f, a + 4.0)];
+        let links = Links { axes: [first, second], radii: [2.0, radius], flat: [[true; 2]; 2] };
+        for links in [links, links.swapped(), links.turned()] {
+            assert!((links.distance() - expected).abs() < 1e-4, "{links:?}: {}", links.distance());
+        }
+    }
+    let mut random = Random::new(6);
+    let axes = [Vector::X, Vector::Y, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(0.0, 1.0, -1.0)];
+    let mut tilted = 0;
+    for _ in 0..12_000 {
+        let normals = [0; 2].map(|_| axes[random.below(5) as usize]);
+        let radii = [0; 2].map(|_| 0.5 * f64::from(1 + random.below(4)));
+        let centre = (random.point() * 6.0).round() / 2.0;
+        let [one, other] = discs(normals, radii, centre);
+        let extent = centre.abs().max_element().max(radii[0]).max(radii[1]);
+        assert!((one - other).abs() <= 32.0 * UNIT * extent, "{one} {other}: {normals:?} {radii:?} {centre}");
+        tilted += u32::from(normals[0].cross(normals[1]) != Vector::ZERO && one > 0.0);
+    }
+    assert!(tilted > 4000, "{tilted}");
+}

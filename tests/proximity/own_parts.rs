@@ -197,3 +197,24 @@ fn a_joint_that_is_too_sharp_is_named() {
     assert_eq!(error.kind(), "joint_too_sharp");
     assert!(error.to_string().contains("joint 1"), "{error}");
 }
+
+/// A capsule's round end where the robot gets thinner is in the way like a face.
+#[test]
+fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
+    let points =
+        [[0.0, 0.0, -10.0], [0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [3.0, 0.0, -2.196_152]].map(Vector::from);
+    let robot = Chain::capsules(&points, &[2.0, 0.1, 0.1]).unwrap();
+    let met = self_minimum(&robot).unwrap().unwrap();
+    assert!(met.distance == 0.0 && met.links == [0, 2], "{met:?}");
+    assert!(!self_clears(&robot, 0.0).unwrap());
+    // Thinner by so much that it stays away, as far as the point of the axis that is nearest to the step is.
+    let robot = Chain::capsules(&points, &[0.5, 0.1, 0.1]).unwrap();
+    let apart = self_minimum(&robot).unwrap().unwrap();
+    let [tip, joint] = [points[3], points[2]];
+    let way = (tip - joint).normalize();
+    let nearest = (joint + way * (points[1] - joint).dot(way) - points[1]).length();
+    assert!((apart.distance - (nearest - 0.6)).abs() < 1e-12 && apart.links == [0, 2], "{apart:?} {nearest}");
+    assert!(
+        self_clears(&robot, 0.99 * apart.distance).unwrap() && !self_clears(&robot, apart.distance).unwrap()
+    );
+}

@@ -188,3 +188,25 @@ fn who_is_at_fault_is_named() {
     assert_eq!(scene.set_margin(7, None).unwrap_err().kind(), "no_such_structure");
     assert!(scene.contacts(&robots, -1.0, &mut Vec::new()).is_err());
 }
+
+/// What must be infinitely far away never is.
+#[test]
+fn an_infinite_margin_is_kept_by_nobody() {
+    let mut random = Random::new(4);
+    let robot = robot(&mut random);
+    let robots = [(&robot, Pose::IDENTITY), (&robot, Pose::translation(40.0, 0.0, 0.0))];
+    let mut scene = Scene::new();
+    scene.add("near", ball(Vector::X * 30.0, 1.0), Some(0.5)).unwrap();
+    scene.add("forbidden", ball(Vector::X * -30.0, 1.0), Some(f64::INFINITY)).unwrap();
+    scene.add("far", ball(Vector::X * 90.0, 1.0), Some(0.5)).unwrap();
+    let tightest = scene.tightest(&robots).unwrap().unwrap();
+    assert_eq!(tightest.slack, f64::NEG_INFINITY);
+    assert!(matches!(tightest.between, Between::Structure(near) if near.structure == 1), "{tightest:?}");
+    assert!(!scene.clears(&robots).unwrap());
+    let mut scene = Scene::new();
+    scene.add("near", ball(Vector::X * 30.0, 1.0), Some(0.5)).unwrap();
+    scene.set_robot_margin(Some(f64::INFINITY)).unwrap();
+    let tightest = scene.tightest(&robots).unwrap().unwrap();
+    assert!(tightest.slack == f64::NEG_INFINITY && matches!(tightest.between, Between::Robots { .. }));
+    assert!(!scene.clears(&robots).unwrap());
+}

@@ -127,6 +127,9 @@ fn set_chain_at(
     set_chain(&mut chains[place], robot, caps)
 }
 
+/// Each robot of a list holds the next one.
+const MOST_ROBOTS: usize = 1000;
+
 /// The list of robots that a function was given.
 fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
     let refuse = |text: &str| Refused::other("bad_type", text).raise(py, None);
@@ -140,6 +143,13 @@ fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robot
         })?;
         Robots::new("points", &points, &radii, pose.as_ref())
     };
+    if given.len() > MOST_ROBOTS {
+        let text = format!(
+            "`robots` lists {} robots of one scene, more than {MOST_ROBOTS}; give many shapes of one robot as a batch, (B, N, 3)",
+            given.len()
+        );
+        return Err(refuse(&text));
+    }
     let mut all = given.iter().rev();
     let last = all.next().ok_or_else(|| refuse("`robots` is empty; give a list of at least one robot"))?;
     all.try_fold(one(last)?, |others, given| one(given)?.with_others(py, others))

@@ -254,7 +254,9 @@ impl<M: Motion> MotionSearch<'_, M> {
     ) -> Result<(T, Range<usize>), ProximityError> {
         let t = interval.middle();
         let pose = self.shape(t)?;
-        let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        // The middle is rounded, and so is a motion's own time in a path: by less than 4 u, however short the interval.
+        let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF)
+            + 4.0 * Real::UNIT_ROUNDOFF;
         let (motion, times) = (self.motion, interval.times);
         let opening = self.memory.tube.hold_faces(|section, end| {
             // A speed that is not finite or NaN holds nothing; it is refused below.

@@ -22,8 +22,13 @@
 //! away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no more
 //! than 3/2 pi, which leaves pi / 2 for the joints.
 //!
-//! **Two flat faces** at any turn: two steps of a straight robot may face one another. What such a pair has found counts
-//! if the way between the two leaves both faces on their outer sides, or if they meet.
+//! **A round cap at the wider side of a step** is a ball around c, and asked for like a face. Of a link alone the place nearest to
+//! y may be its end for no other reason than that the robot is thinner beyond: going on along the centreline is no descent then, so
+//! that the corner at c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for the joints. At a round base or
+//! tip the centreline does not go on, and the first rule has it.
+//!
+//! **Two such ends** at any turn: two steps of a straight robot may face one another. What such a pair has found counts
+//! if the way between the two leaves both on their outer sides, or if they meet.
 //!
 //! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two links
 //! overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near whom, and
@@ -99,23 +104,24 @@ impl Turns {
     }
 }
 
-/// A flat face of a robot: one end of a link.
+/// A flat face of a robot, or the round cap at the wider side of a step: one end of a link.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     link: usize,
     end: usize,
+    is_flat: bool,
 }
 
 impl Face {
-    /// All faces of a chain: its ends, and the wider sides of its steps, where they are flat.
+    /// All faces of a chain: its ends, where they are flat, and the wider sides of its steps.
     fn all(links: &[ModifiedCylinder], faces: &mut Vec<Self>) {
         faces.clear();
         for (number, link) in links.iter().enumerate() {
             let before = number.checked_sub(1).and_then(|before| links.get(before));
             for (end, neighbour) in [(0, before), (1, links.get(number + 1))] {
-                let is_step = neighbour.is_none_or(|neighbour| neighbour.radius() < link.radius());
-                if link.flat()[end] && is_step {
-                    faces.push(Self { link: number, end });
+                let is_flat = link.flat()[end];
+                if neighbour.map_or(is_flat, |neighbour| neighbour.radius() < link.radius()) {
+                    faces.push(Self { link: number, end, is_flat });
                 }
             }
         }
@@ -125,6 +131,34 @@ impl Face {
     fn outward(&self, robot: &PlacedRobot) -> Vector {
         let axis = robot.links()[self.link].axis();
         if self.end == 0 { -axis } else { axis }
+    }
+
+    /// The ball around its centre, which is all of it that is asked for if it is round.
+    fn ball(&self, robot: &PlacedRobot) -> PlacedLink {
+        let link = robot.link(self.link);
+        let centre = [link.start(), link.end()][self.end];
+        PlacedLink::between(centre, centre, link.radius(), [false; 2])
+    }
+
+    fn nearest_to_link(&self, robot: &PlacedRobot, other: &PlacedLink) -> NearestOfLinks {
+        if self.is_flat {
+            robot.link(self.link).face_to_link(self.end, other)
+        } else {
+            self.ball(robot).measure_link(other)
+        }
+    }
+
+    fn nearest_to_face(&self, robot: &PlacedRobot, other: &Self) -> NearestOfLinks {
+        if !other.is_flat {
+            return self.nearest_to_link(robot, &other.ball(robot));
+        }
+        let (link, facing) = (robot.link(self.link), robot.link(other.link));
+        if self.is_flat {
+            link.face_to_face([self.end, other.end], &facing)
+        } else {
+            let turned = facing.face_to_link(other.end, &self.ball(robot));
+            NearestOfLinks { on_first: turned.on_second, on_second: turned.on_first, ..turned }
+        }
     }
 }
 
@@ -207,7 +241,7 @@ impl<'a> OneRobot<'a> {
                 .filter(|&link| turns.reach(0.5 * PI, face.link, link) && !turns.reach(PI, face.link, link));
             for link in before.chain(after) {
                 let other = self.robot.link(link);
-                let nearest = on_face.face_to_link(face.end, &other);
+                let nearest = face.nearest_to_link(&self.robot, &other);
                 if leaves(&nearest) && !keep(in_order([face.link, link], [&on_face, &other], &nearest)) {
                     return false;
                 }
@@ -217,7 +251,7 @@ impl<'a> OneRobot<'a> {
                     continue;
                 }
                 let other = self.robot.link(facing.link);
-                let nearest = on_face.face_to_face([face.end, facing.end], &other);
+                let nearest = face.nearest_to_face(&self.robot, facing);
                 let way = nearest.on_first - nearest.on_second;
                 let meets = nearest.distance <= 0.0 || way.dot(facing.outward(&self.robot)) >= 0.0;
                 if meets

@@ -10,7 +10,7 @@
 //! a line differ by no more than the points are apart. Of the three bounds the least counts.
 
 use super::rigid_path::RigidPath;
-use super::{Motion, Speed};
+use super::{Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
@@ -48,13 +48,13 @@ impl<M: Motion> MovingBase<M> {
     /// The motion of a robot whose base goes from the first pose to the second, in the mesh's frame.
     ///
     /// # Errors
-    /// A pose is not finite or out of range, or its rotation is not of unit length; or the motion has no shape at its beginning,
+    /// A pose, of the base or of the motion, is not finite or out of range, or its rotation is not of unit length; or the motion has no shape at its beginning,
     /// in its middle or at its end.
     pub fn new(motion: M, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
         let path = RigidPath::new([from, to])?;
         let shape = |t: Real| {
             let mut tube = Tube::empty();
-            let pose = motion.shape(t, &mut tube)?;
+            let pose = rigid_pose("motion", &motion.shape(t, &mut tube)?)?;
             Ok((t, tube, pose))
         };
         let known = KNOWN_AT.map(shape).into_iter().collect::<Result<_, RobotError>>()?;
@@ -77,7 +77,7 @@ impl<M: Motion> MovingBase<M> {
 
 impl<M: Motion> Motion for MovingBase<M> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
-        let pose = self.motion.shape(t, tube)?;
+        let pose = rigid_pose("motion", &self.motion.shape(t, tube)?)?;
         let base = self.path.pose(t);
         let rotation = (base.rotation * pose.rotation).normalize();
         Ok(Pose::from_parts(base.translation + base.rotation * pose.translation, rotation))

@@ -3,9 +3,9 @@
 use crate::robot::{Lasting, RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// The sections of the shapes so far: their radii, and which of their ends are always flat.
+/// The sections of the shapes so far: their radii, and which of their ends are always flat, as far as that matters.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sections(Vec<(Real, [bool; 2])>);
+pub(crate) struct Sections(Vec<(Real, [Option<bool>; 2])>);
 
 impl Sections {
     pub(crate) fn clear(&mut self) {
@@ -18,12 +18,29 @@ impl Sections {
     /// The shape at `t` has other sections.
     pub(crate) fn check(&mut self, t: Real, tube: &Tube) -> Result<(), RobotError> {
         let found = tube.sections().iter().map(|section| {
-            let lasts = |end: usize| section.faces[end].is_some_and(|face| face.lasting == Lasting::Always);
+            // A face whose direction gets lost is taken for round, whatever it is in other shapes; without a length it has none.
+            let lasts = |end: usize| match section.faces[end].map(|face| face.lasting) {
+                Some(Lasting::Never) => None,
+                None if section.start == section.end => None,
+                lasting => Some(lasting == Some(Lasting::Always)),
+            };
             (section.radius, [lasts(0), lasts(1)])
         });
         if self.0.is_empty() {
             self.0.extend(found);
-        } else if !found.eq(self.0.iter().copied()) {
+            return Ok(());
+        }
+        let is_same =
+            |one: Option<bool>, other: Option<bool>| one.is_none() || other.is_none() || one == other;
+        let mut count = 0;
+        for ((radius, ends), known) in found.zip(&mut self.0) {
+            if radius != known.0 || !(0..2).all(|end| is_same(ends[end], known.1[end])) {
+                return Err(RobotError::SectionsChange { t });
+            }
+            known.1 = [0, 1].map(|end| known.1[end].or(ends[end]));
+            count += 1;
+        }
+        if count != self.0.len() || tube.sections().len() != count {
             return Err(RobotError::SectionsChange { t });
         }
         Ok(())

@@ -264,9 +264,10 @@ fn lay(
                 .map(|share| (spline.seconds[k] * (1.0 - share) + spline.seconds[k + 1] * share).length())
                 .into_iter()
                 .fold(0.0, Real::max);
-            let slowest = spline.at(k, 0.5 * (from + to))[1].length() - 0.5 * most * h / Real::from(parts);
-            let curvature =
-                if most > 0.0 { most / (slowest.max(0.0) * slowest) * (1.0 + 1e-12) } else { 0.0 };
+            let halfway = spline.at(k, 0.5 * (from + to))[1].length();
+            // Where it may stand still, it may turn at once.
+            let slowest = (halfway - 0.5 * most * h / Real::from(parts)).max(0.0);
+            let curvature = if most > 0.0 { most / (slowest * slowest) * (1.0 + 1e-12) } else { 0.0 };
             let turn = curvature * length;
             // Written so that NaN is too much.
             if turn.is_nan() || turn > 1.0 {

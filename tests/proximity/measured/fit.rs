@@ -137,3 +137,14 @@ fn a_stated_turn_sharpens_a_face() {
     // The radius, and twice the radius times the turn, beside twice the deviation.
     assert!((0.9..1.04).contains(&unknown) && known < 0.08, "{unknown} {known}");
 }
+
+/// A curve that stands still and turns back has no bound on its curvature.
+#[test]
+fn points_that_turn_back_are_refused() {
+    let points = [0.0, 1.0, 2.0, 0.0].map(|z| Vector::Z * z);
+    for scale in [0.25, 0.5, 1.0] {
+        let points = points.map(|point| point * scale);
+        let found = Tube::fit(&points, &[0.1 * scale; 3], scale);
+        assert!(matches!(found, Err(RobotError::TurnsTooSharply { .. })), "{found:?}");
+    }
+}

@@ -1,8 +1,10 @@
 //! A base that moves while the robot bends and grows: each term of its speed alone, left out, is found.
 
-use parry_continuum::parry::math::{Pose, Real, Vector};
+use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
+use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{
-    BendingMotion, BendingSection, Motion, MovingBase, RobotError, Speed, Tube, verify_motion,
+    BendingMotion, BendingSection, LinearMotion, Motion, MotionPath, MovingBase, RobotError, Speed, Tube,
+    verify_motion,
 };
 
 type Stated = fn(&MovingBase<BendingMotion>, &BendingMotion, usize, [Real; 2], [Real; 2]) -> Speed;
@@ -83,4 +85,37 @@ fn all_at_once_is_stated() {
     // A base on a base.
     let twice = MovingBase::new(motion, [Pose::IDENTITY, Pose::rotation(Vector::X * 0.2)]).unwrap();
     assert_eq!(verify_motion(&twice, 100), Ok(()));
+}
+
+/// A rotation that scales is no rotation, in a base that moves as everywhere else.
+#[test]
+fn a_motion_whose_pose_scales_is_refused() {
+    struct Scales;
+    impl Motion for Scales {
+        fn shape(&self, _: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+            tube.set_samples(&[Vector::ZERO, Vector::Z * 10.0], &[0.5], None)?;
+            Ok(Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 0.0, 0.5)))
+        }
+
+        fn speed(&self, _: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+            Speed { point: 0.0, turn: 0.0 }
+        }
+    }
+    let turned = Pose::new(Vector::ZERO, Vector::X);
+    let refused = MovingBase::new(Scales, [Pose::IDENTITY, turned]).map(|_| ());
+    assert!(matches!(refused, Err(RobotError::PoseNotRigid { parameter: "motion", .. })), "{refused:?}");
+}
+
+/// A link that is turned over loses its direction on the way, in one leg of a path and not in the next.
+#[test]
+fn a_link_may_fade_in_one_leg_of_a_path() {
+    let leg = |from: Vector, to: Vector| {
+        LinearMotion::chain(&[Vector::ZERO, from], &[Vector::ZERO, to], &[0.1]).unwrap()
+    };
+    let path =
+        MotionPath::new(vec![leg(Vector::Z, -Vector::Z), leg(-Vector::Z, Vector::X - Vector::Z)]).unwrap();
+    let far = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, 5.0));
+    let mut search = BvhSearch::from_triangles(&far, &[[0, 1, 2]]).unwrap();
+    assert!(search.clears_motion(&path, 1.0, 1e-3).unwrap().is_clear());
+    assert!(!search.clears_motion(&path, 4.5, 1e-3).unwrap().is_clear());
 }

@@ -152,3 +152,20 @@ fn paths_that_are_none_are_refused() {
     let infinite = refused(&mut search, &[chain(0.1)], Real::INFINITY);
     assert!(matches!(infinite, ProximityError::Motion(RobotError::Negative { .. })), "{infinite}");
 }
+
+/// A path of many legs is fast, and its times are rounded all the same.
+#[test]
+fn one_shape_of_ten_thousand_is_not_missed_by_rounding() {
+    let link = |x: Real| Chain::capsules(&[Vector::X * x, Vector::new(x, 0.0, 1.0)], &[0.25]).unwrap();
+    let corners = [[-30.0, -30.0], [30.0, -30.0], [0.0, 50.0]].map(|[y, z]| Vector::new(2.0, y, z));
+    let mut search = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
+    for near in [5005, 8049] {
+        let shapes: Vec<_> = (0..=10_000).map(|k| link(if k == near { 1.0 } else { 0.0 })).collect();
+        // The robot comes as near as 0.75.
+        for margin in [0.75, 0.75 + 1e-13] {
+            let found = search.clears_path(&shapes, 0.0, margin, 1e-3).unwrap();
+            assert!(!found.is_clear(), "{near} {margin}: {found:?}");
+        }
+        assert!(search.clears_path(&shapes, 0.0, 0.745, 1e-3).unwrap().is_clear());
+    }
+}

@@ -5,6 +5,7 @@ use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use flate2::read::ZlibDecoder;
 use roxmltree::Node;
+use std::cell::Cell;
 use std::io::Read;
 
 /// What all arrays of a file have in common.
@@ -15,8 +16,12 @@ pub struct Arrays<'a> {
     is_packed: bool,
     /// What is appended, and whether it is base64.
     appended: Option<(&'a [u8], bool)>,
-    limit: u64,
+    /// How many bytes all arrays together may still take, with what becomes of them.
+    left: Cell<u64>,
 }
+
+/// So many bytes a number takes at most: on its own, as an index, in a line, and as the point of a line.
+const EACH: u64 = 48;
 
 /// Some numbers.
 pub enum DataArray {
@@ -66,7 +71,7 @@ impl<'a> Arrays<'a> {
                 Some((&bytes[tag + start + 1..], is_base64))
             }
         };
-        Ok(Self { is_big_endian, header, is_packed, appended, limit })
+        Ok(Self { is_big_endian, header, is_packed, appended, left: Cell::new(limit) })
     }
 
     pub fn read(&self, array: Node) -> Result<DataArray, String> {
@@ -95,12 +100,12 @@ impl<'a> Arrays<'a> {
                     Ok(DataArray::Integers(numbers?))
                 };
             }
-            "binary" => self.unpack_base64(text.trim().as_bytes())?,
+            "binary" => self.unpack_base64(text.trim().as_bytes(), size)?,
             "appended" => {
                 let offset = array.attribute("offset").and_then(|offset| offset.trim().parse::<usize>().ok());
                 let (all, is_base64) = self.appended.ok_or("its arrays are appended, but nothing is")?;
                 let own = all.get(offset.ok_or("an array has no offset")?..).ok_or(SHORT)?;
-                if is_base64 { self.unpack_base64(own)? } else { self.unpack(own)?.0 }
+                if is_base64 { self.unpack_base64(own, size)? } else { self.unpack(own, size)? }
             }
             other => return Err(format!("its format '{}' cannot be read", shown(other))),
         };
@@ -129,11 +134,21 @@ impl<'a> Arrays<'a> {
         usize::try_from(length).map_err(|_| SHORT.into())
     }
 
-    /// The bytes behind their lengths, and how many bytes they took with these.
-    fn unpack(&self, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
+    /// Takes note of memory before it is taken.
+    fn spend(&self, bytes: u64) -> Result<(), String> {
+        let left = self.left.get().checked_sub(bytes).ok_or("its arrays take more memory than is allowed")?;
+        self.left.set(left);
+        Ok(())
+    }
+
+    /// The bytes behind their lengths, of numbers of this size.
+    fn unpack(&self, bytes: &[u8], size: usize) -> Result<Vec<u8>, String> {
+        let each = 1 + EACH.div_ceil(size as u64);
         if !self.is_packed {
             let end = self.length(bytes, 0)?.checked_add(self.header).ok_or(SHORT)?;
-            return Ok((bytes.get(self.header..end).ok_or(SHORT)?.to_vec(), end));
+            let own = bytes.get(self.header..end).ok_or(SHORT)?;
+            self.spend((own.len() as u64).saturating_mul(each))?;
+            return Ok(own.to_vec());
         }
         let blocks = self.length(bytes, 0)?;
         let mut at =
@@ -145,19 +160,19 @@ impl<'a> Arrays<'a> {
         for block in 0..blocks {
             let end = self.length(bytes, 3 + block)?.checked_add(at).ok_or(SHORT)?;
             let packed = bytes.get(at..end).ok_or(SHORT)?;
-            let left = self.limit.saturating_sub(out.len() as u64);
-            let read = ZlibDecoder::new(packed).take(left).read_to_end(&mut out);
+            // One more than there is room for tells that there is no room.
+            let room = self.left.get() / each + 1;
+            let before = out.len() as u64;
+            let read = ZlibDecoder::new(packed).take(room).read_to_end(&mut out);
             read.map_err(|_| "its packed bytes are damaged")?;
-            if out.len() as u64 >= self.limit {
-                return Err("an array takes more memory than is allowed".into());
-            }
+            self.spend((out.len() as u64 - before).saturating_mul(each))?;
             at = end;
         }
-        Ok((out, at))
+        Ok(out)
     }
 
     /// The lengths of packed bytes are base64 of their own, with padding between.
-    fn unpack_base64(&self, text: &[u8]) -> Result<Vec<u8>, String> {
+    fn unpack_base64(&self, text: &[u8], size: usize) -> Result<Vec<u8>, String> {
         let lengths = if self.is_packed {
             let first = decode(text.get(..self.header.div_ceil(3) * 4).ok_or(SHORT)?)?;
             self.length(&first, 0)?
@@ -175,7 +190,7 @@ impl<'a> Arrays<'a> {
                 .checked_add(self.header)
                 .and_then(|bytes| bytes.div_ceil(3).checked_mul(4))
                 .ok_or(SHORT)?;
-            return Ok(self.unpack(&decode(text.get(..whole).ok_or(SHORT)?)?)?.0);
+            return self.unpack(&decode(text.get(..whole).ok_or(SHORT)?)?, size);
         }
         let mut bytes = decode(text.get(..first_text).ok_or(SHORT)?)?;
         let blocks = self.length(&bytes, 0)?;
@@ -187,7 +202,7 @@ impl<'a> Arrays<'a> {
             packed.div_ceil(3).checked_mul(4).and_then(|text| text.checked_add(first_text)).ok_or(SHORT)?;
         bytes.truncate(lengths);
         bytes.extend(decode(text.get(first_text..end).ok_or(SHORT)?)?);
-        Ok(self.unpack(&bytes)?.0)
+        self.unpack(&bytes, size)
     }
 }
 

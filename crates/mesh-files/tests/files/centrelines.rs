@@ -76,6 +76,29 @@ fn a_file_that_ends_too_early_or_holds_other_bytes_never_breaks_the_reader() {
     }
 }
 
+#[test]
+fn arrays_take_no_more_memory_than_is_allowed() {
+    for name in
+        ["lines_binary.vtp", "lines_binary_packed.vtp", "lines_appended.vtp", "lines_appended_packed.vtp"]
+    {
+        let bytes = std::fs::read(data(name)).unwrap();
+        // 21 coordinates, 7 points of lines and 2 ends take 48 bytes each, and 8 before.
+        for (limit, is_enough) in [(30 * 57, true), (29 * 48, false), (100, false)] {
+            let options = Options::default().with_line(Some(0)).with_memory_limit(limit);
+            let found = centreline_from_bytes(name, &bytes, &options).map_err(|error| error.to_string());
+            assert_eq!(found.is_ok(), is_enough, "{name}, {limit}: {found:?}");
+            assert!(is_enough || found.unwrap_err().contains("more memory than is allowed"));
+        }
+    }
+    // Many pieces that name one and the same array.
+    let text = String::from_utf8_lossy(&std::fs::read(data("lines_ascii.vtp")).unwrap()).into_owned();
+    let [head, rest] = text.split_once("<Piece").map(|(head, rest)| [head, rest]).unwrap();
+    let (piece, tail) = rest.split_once("</Piece>").unwrap();
+    let many = format!("{head}{}{tail}", format!("<Piece{piece}</Piece>").repeat(50));
+    let options = Options::default().with_line(Some(99));
+    assert_eq!(centreline_from_bytes("many.vtp", many.as_bytes(), &options).unwrap().points, line(1));
+}
+
 const CURVE: &str = r#"{"markups": [{"type": "Curve", "coordinateSystem": "LPS", "coordinateUnits": "mm", "controlPoints": [
     {"id": "1", "position": [1.5, -2, 3], "positionStatus": "defined"},
     {"id": "2", "position": [0, 0, 0], "positionStatus": "preview"},
