@@ -93,7 +93,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         let tube = Tube::from_samples(&points, &radii, None)?;
-        let found = search.clearance(&tube, &pose, TOLERANCE)?;
+        // Where a tube touches, which common point is named depends on what was asked before.
+        let found = BvhSearch::from_triangles(&vertices, &triangles)?.clearance(&tube, &pose, TOLERANCE)?;
         out.extend([found.lower, found.upper, f64::from(found.resolved), found.uncertainty]);
         add_witness(&mut out, &found.witness);
         for motion in

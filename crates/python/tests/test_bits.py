@@ -54,10 +54,13 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
                 assert contacts.robot[c] == k
                 row += [contacts.fraction[c], contacts.distance[c], contacts.depth[c], contacts.normal[c]]
                 row += witness(contacts, c)
-    tube = mesh.clearance(points, radii, TOLERANCE, pose=pose)
+    # Where a tube touches, which common point is named depends on what was asked before: each is asked of a mesh of its own.
+    many = mesh.clearance(points, radii, TOLERANCE, pose=pose)
     motions = [mesh.clears_motion(points, end, radii, 0.0, TOLERANCE, caps=caps) for caps in ("fitted", "capsules")]
     for k, row in enumerate(out):
-        row += [tube.lower[k], tube.upper[k], tube.resolved[k], tube.uncertainty[k], *witness(tube, k)]
+        tube = Mesh(mesh.vertices, mesh.faces).clearance(points[k], radii[k], TOLERANCE, pose=pose[k])
+        assert many.lower[k] <= tube.upper and tube.lower <= many.upper[k]
+        row += [tube.lower, tube.upper, tube.resolved, tube.uncertainty, *witness(tube)]
         for motion in motions:
             row += [motion.interval[k], motion.decision[k]]
     return np.concatenate([np.ravel(np.asarray(n, float)) for row in out for n in row])
