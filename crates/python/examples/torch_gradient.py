@@ -13,7 +13,7 @@ class Distance(torch.autograd.Function):
         given = [array.detach().cpu().double().numpy() for array in (points, radii, pose)]
         found = mesh.distance_and_gradient(given[0], given[1], pose=given[2])
         ctx.save_for_backward(*(torch.as_tensor(part).to(points) for part in found[1:4]))
-        return torch.as_tensor(found.value).to(points)
+        return points.new_tensor(found.value)
 
     @staticmethod
     def backward(ctx, cotangent):

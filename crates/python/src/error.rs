@@ -26,6 +26,12 @@ impl Refused {
         Self::Other { kind, text: text.into(), index: None }
     }
 
+    /// The same, about the parameter of this name.
+    pub(crate) fn of(self, parameter: &str) -> Self {
+        let (kind, index) = (self.kind(), self.index());
+        Self::Other { kind, text: format!("`{parameter}`: {}", self.text()), index }
+    }
+
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Robot(error) => error.kind(),
@@ -94,6 +100,9 @@ fn index_in_robot(error: &RobotError) -> Option<usize> {
         | RobotError::BadRadius { index, .. }
         | RobotError::FlatCapWithoutAxis { index }
         | RobotError::HidesLength { index, .. }
+        | RobotError::BadLength { index, .. }
+        | RobotError::BadCurvature { index, .. }
+        | RobotError::SectionsDiffer { index }
         | RobotError::BadTangent { index, .. }
         | RobotError::TurnsTooSharply { index, .. }
         | RobotError::BendsWithinRadius { index, .. } => Some(*index),
@@ -119,18 +128,30 @@ fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
 impl From<RobotError> for Refused {
     fn from(mut error: RobotError) -> Self {
         match &mut error {
+            // Sections have their radii beside them in Python.
+            RobotError::BadRadius { parameter: parameter @ ("from" | "to"), .. } => *parameter = "radii",
             RobotError::LengthsDiffer { parameter, .. }
             | RobotError::BadRadius { parameter, .. }
             | RobotError::HidesLength { parameter, .. }
             | RobotError::PointNotFinite { parameter, .. }
             | RobotError::PointOutOfRange { parameter, .. }
             | RobotError::BadTangent { parameter, .. }
+            | RobotError::BadLength { parameter, .. }
+            | RobotError::BadCurvature { parameter, .. }
+            | RobotError::NoSections { parameter, .. }
             | RobotError::TooFewPoints { parameter, .. } => {
                 *parameter = match *parameter {
                     "segment_radii" => "radii",
                     "end_tangents" => "tangents",
                     "from" => "start",
                     "to" => "end",
+                    other => other,
+                };
+            }
+            RobotError::BadPose { parameter, .. } | RobotError::PoseNotRigid { parameter, .. } => {
+                *parameter = match *parameter {
+                    "from" => "start_pose",
+                    "to" => "end_pose",
                     other => other,
                 };
             }

@@ -1,11 +1,12 @@
 //! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python package beside it.
 //!
-//! `input` makes plain numbers of what Python hands over, `threads` asks about them without the GIL, `queries` has a file
-//! for each question, and `output` makes arrays of the answers.
+//! `input` makes plain numbers of what Python hands over, `motions` has a class for each kind of motion, `threads` asks about them
+//! without the GIL, `queries` has a file for each question, and `output` makes arrays of the answers.
 
 mod error;
 mod input;
 mod mesh;
+mod motions;
 mod output;
 mod queries;
 mod robots;
@@ -20,7 +21,9 @@ mod _native {
     #[pymodule_export]
     use super::mesh::{Mesh, load};
     #[pymodule_export]
-    use super::queries::two_robots::{between, clears_between, self_clears, self_minimum};
+    use super::motions::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion};
+    #[pymodule_export]
+    use super::queries::two_robots::{RobotPair, between, clears_between, self_clears, self_minimum};
     #[pymodule_export]
     use super::robots::{simplify, stations};
     #[pymodule_export]

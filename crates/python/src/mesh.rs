@@ -58,9 +58,9 @@ impl Mesh {
     }
 }
 
-/// Vertices as an array of rows.
-fn rows<'py>(given: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    let numbers = Numbers::new(given, "vertices")?;
+/// Vertices as an array of rows; `name` is the parameter's.
+pub(crate) fn rows<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbers<'py>> {
+    let numbers = Numbers::new(given, name)?;
     match *numbers.shape() {
         [_, 3] => Ok(numbers),
         ref shape => {
@@ -68,7 +68,7 @@ fn rows<'py>(given: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
                 [3, _] => "give its transpose, `.T`",
                 _ => "give a row of three coordinates for each vertex",
             };
-            let text = format!("`vertices` has the shape {}, not (V, 3); {advice}", shape_text(shape));
+            let text = format!("`{name}` has the shape {}, not (V, 3); {advice}", shape_text(shape));
             Err(Refused::other("bad_shape", text).raise(given.py(), None))
         }
     }
@@ -90,7 +90,7 @@ impl Mesh {
                 }
             },
         };
-        let vertices = vectors(rows(&vertices)?.points());
+        let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;
         Ok(Self::of(Arc::new(Engine::new(py, &vertices, &triangles)?)))
     }
@@ -135,7 +135,7 @@ impl Mesh {
     /// 0.5
     fn r#move(&self, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = vertices.py();
-        let vertices = vectors(rows(vertices)?.points());
+        let vertices = vectors(rows(vertices, "vertices")?.points());
         let moved = Arc::new(self.engine(py).moved(py, &vertices)?);
         let before = self.0.with(py, |engine| std::mem::replace(engine, moved));
         drop(before); // not under the lock

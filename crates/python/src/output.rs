@@ -4,10 +4,10 @@ use crate::input::numpy;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{Decision, Side};
-use pyo3::IntoPyObjectExt;
-use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::types::PyTuple;
+use pyo3::{BoundObject, IntoPyObjectExt};
 
 /// So few numbers are copied sooner than their memory is handed to numpy.
 const FEW: usize = 4096;
@@ -47,13 +47,18 @@ pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().flat_map(|point| point.to_array()).collect()
 }
 
-/// An answer of the package's Python half: the class of that name, made of these values.
-pub(crate) fn answer<'py>(
-    py: Python<'py>,
-    class: &str,
-    values: impl PyCallArgs<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    answers(py)?.getattr(class)?.call1(values)
+/// An answer of the package's Python half: the tuple with names of that class, of these values.
+///
+/// The class's own `__new__` is Python code, whose work this does: `tuple.__new__` with as many values as the class has names.
+pub(crate) fn answer<'py, V>(py: Python<'py>, class: &str, values: V) -> PyResult<Bound<'py, PyAny>>
+where
+    V: IntoPyObject<'py, Target = PyTuple>,
+    PyErr: From<V::Error>,
+{
+    static NEW: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let find = || Ok::<_, PyErr>(py.get_type::<PyTuple>().getattr("__new__")?.unbind());
+    let values = values.into_pyobject(py)?.into_bound();
+    NEW.get_or_try_init(py, find)?.bind(py).call1((answers(py)?.getattr(class)?, values))
 }
 
 fn answers(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
@@ -70,7 +75,7 @@ pub(crate) fn members<'py>(
     values: Vec<i8>,
 ) -> PyResult<Bound<'py, PyAny>> {
     match (&shape[..], &values[..]) {
-        ([], &[value]) => answer(py, class, (value,)),
+        ([], &[value]) => answers(py)?.getattr(class)?.call1((value,)),
         _ => Ok(array(py, shape, values)?.into_any()),
     }
 }

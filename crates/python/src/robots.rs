@@ -3,7 +3,7 @@
 use crate::error::Refused;
 use crate::input::{Block, Robots};
 use crate::output::{array, flat};
-use crate::threads::compute;
+use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
 use parry_continuum::RobotError;
 use parry_continuum::parry::math::Vector;

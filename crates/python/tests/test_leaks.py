@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Mesh, Scene, between
+from parry_continuum import ContinuumError, LinearMotion, Mesh, RobotPair, Scene, between
 from shapes import robots
 
 MESH = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 ROBOT = np.array([[0, 0, 1.0], [0, 0, 2.0]])
 MANY = robots(np.random.default_rng(0), 20, points=3)
+PAIR = RobotPair()
 SCENE = Scene()
 SCENE.add("floor", MESH, 0.1)
 
@@ -35,7 +36,10 @@ def refused() -> None:
         (lambda: MESH.move(MESH.vertices), 5_000),
         (lambda: Mesh(MESH), 5_000),
         (lambda: between(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
+        (lambda: PAIR.within(ROBOT, 0.1, ROBOT + 3, 0.1, 9.0), 30_000),
         (lambda: SCENE.tightest([(ROBOT, 0.1)]), 20_000),
+        (lambda: SCENE.contacts([(ROBOT, 0.1)], 3.0), 20_000),
+        (lambda: MESH.clears_motion(LinearMotion(MANY, MANY + 1, 0.1), margin=0.1, resolution=0.1), 3_000),
         (refused, 20_000),
     ],
 )

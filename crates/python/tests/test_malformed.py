@@ -5,12 +5,31 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Mesh, simplify, stations
+from parry_continuum import (
+    BendingMotion,
+    ContinuumError,
+    LinearMotion,
+    Mesh,
+    Motion,
+    MotionPath,
+    MovingBase,
+    RigidMotion,
+    RobotPair,
+    Scene,
+    simplify,
+    stations,
+)
 from shapes import poses, robots, soup, sphere
 
 MESHES = [Mesh(*sphere(10.0, 12, 6)), Mesh(*soup(np.random.default_rng(0)))]
 NUMBERS = [0.0, -0.0, 1.0, -1.0, 1e-320, 1e-160, 1e160, 1e300, -1e308, np.nan, np.inf, -np.inf]
 OTHERS: list[object] = [None, "", "tube", b"\0", {}, [], [[]], [[[]]], object(), 1 + 2j, True, [None, 1], [[1, 2], [3]], print]
+
+
+def scene(mesh: Mesh) -> Scene:
+    made = Scene()
+    made.add("wall", mesh, 0.1)
+    return made
 
 
 def spoilt(random: np.random.Generator, array: np.ndarray) -> object:
@@ -46,7 +65,7 @@ def spoilt(random: np.random.Generator, array: np.ndarray) -> object:
 def test_five_thousand_inputs() -> None:
     random = np.random.default_rng(31)
     refused: dict[str, int] = {}
-    answered = 0
+    answered, pair = 0, RobotPair()
     for _ in range(5000):
         count, points = random.integers(1, 20), random.integers(1, 8)
         robot = robots(random, count, points)
@@ -66,6 +85,22 @@ def test_five_thousand_inputs() -> None:
         motion = {"start": given["points"], "end": spoilt(random, robot), "radii": given["radii"]}
         tube = {**plain, "pose": given["pose"], "tangents": random.choice([None, "given"]) and spoilt(random, ends)}
         mesh = MESHES[random.integers(2)]
+        shapes = np.stack([robot] * 3, axis=-3)
+
+        def moving() -> Motion:
+            sections = np.abs(robot)
+            match random.integers(5):
+                case 0:
+                    return LinearMotion(**motion)
+                case 1:
+                    return RigidMotion(given["points"], given["radii"], spoilt(random, pose), pose)
+                case 2:
+                    return BendingMotion(spoilt(random, sections), spoilt(random, sections), 0.01, pose=given["pose"])
+                case 3:
+                    return MovingBase(BendingMotion(sections, sections, 0.01), spoilt(random, pose), pose)
+                case _:
+                    return MotionPath([LinearMotion(**motion), LinearMotion(robot, spoilt(random, robot), radii)])
+
         faces = mesh.faces.astype(float)
         ask = [
             lambda: mesh.distance(**given),
@@ -80,6 +115,14 @@ def test_five_thousand_inputs() -> None:
             lambda: mesh.tube_clears(margin=number, resolution=0.1, **tube),
             lambda: mesh.clears_motion(margin=number, resolution=0.1, **motion),
             lambda: mesh.time_of_contact(margin=number, resolution=0.1, **motion),
+            lambda: mesh.clears_motion_while(spoilt(random, mesh.vertices), margin=number, resolution=0.1, **motion),
+            lambda: mesh.clears_path(spoilt(random, shapes), given["radii"], max(number, 0), number, 0.1),
+            lambda: mesh.clears_motion(moving(), margin=number, resolution=0.1),
+            lambda: mesh.clearance_of_motion(moving(), tolerance=max(number, 1e-2)),
+            lambda: pair.per_link(given["points"], given["radii"], robot, 0.1, pose_a=given["pose"]),
+            lambda: pair.within(given["points"], given["radii"], robot, 0.1, number),
+            lambda: scene(mesh).contacts([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], number),
+            lambda: scene(mesh).per_structure([(given["points"], given["radii"]), (robot, 0.1)]),
             lambda: mesh.side(given["points"]),
             lambda: Mesh(mesh.vertices, mesh.faces).move(spoilt(random, mesh.vertices)),
             lambda: Mesh(mesh.vertices, spoilt(random, faces)),

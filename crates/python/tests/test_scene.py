@@ -61,6 +61,54 @@ def test_scenes(robot_margin: float | None) -> None:
         assert scene.clears([(A[k], 0.1, POSES[k]), (B[k], 0.1)]) is bool(found.slack[k] > 0)
 
 
+def test_per_structure() -> None:
+    scene = made()
+    found = scene.per_structure([(A, 0.1, POSES), (B, 0.1)])
+    back = np.linalg.inv(AWAY)
+    distances = np.stack(
+        [
+            [mesh.distance(A, 0.1, pose=pose @ POSES), mesh.distance(B, 0.1, pose=np.tile(pose, (60, 1, 1)))]
+            for mesh, pose in ((WALL, np.eye(4)), (VESSEL, np.eye(4)), (VESSEL, back))
+        ]
+    )  # (structure, robot, batch)
+    assert found.distance.shape == (60, 3) and found.on_mesh.shape == (60, 3, 3)
+    np.testing.assert_allclose(found.distance, distances.min(axis=1).T, atol=1e-12)
+    assert_array_equal(found.robot[distances.min(axis=1).T > 0], distances.argmin(axis=1).T[distances.min(axis=1).T > 0])
+    np.testing.assert_allclose(found.slack, found.distance - [0.5, np.nan, 2.0], atol=1e-15)
+    assert np.isnan(found.slack[:, 1]).all() and set(found.robot.ravel()) == {0, 1}
+    np.testing.assert_allclose(np.linalg.norm(found.on_robot - found.on_mesh, axis=-1), found.distance, atol=1e-12)
+    one = scene.per_structure([(A[7], 0.1, POSES[7]), (B[7], 0.1)])
+    for field, fields in zip(one, found):
+        assert_array_equal(field, fields[7])
+    assert Scene().per_structure([(A, 0.1)]).distance.shape == (60, 0)
+
+
+def test_contacts() -> None:
+    scene, back = made(), np.linalg.inv(AWAY)
+    found = scene.contacts([(A, 0.1, POSES), (B, 0.1)], 1.0)
+    count = 0
+    for structure, (mesh, pose) in enumerate([(WALL, np.eye(4)), (VESSEL, np.eye(4)), (VESSEL, back)]):
+        for robot, (points, poses_of) in enumerate([(A, POSES), (B, np.tile(np.eye(4), (60, 1, 1)))]):
+            for k in range(60):
+                own = mesh.within(points[k], 0.1, 1.0, pose=pose @ poses_of[k])
+                rows = np.arange(*found.offsets[k : k + 2])
+                rows = rows[(found.structure[rows] == structure) & (found.robot[rows] == robot)]
+                assert (found.batch[rows] == k).all()
+                # Of triangles that share the place, another one may be named in another frame.
+                assert_array_equal(found.segment[rows], own.segment)
+                assert ((found.triangle[rows] >= 0) & (found.triangle[rows] < len(mesh.faces))).all()
+                for name in ("distance", "depth", "fraction", "arc_length"):
+                    np.testing.assert_allclose(getattr(found, name)[rows], getattr(own, name), atol=1e-12)
+                there = np.linalg.inv(pose)
+                on_mesh = own.on_mesh @ there[:3, :3].T + there[:3, 3]
+                np.testing.assert_allclose(found.on_mesh[rows], on_mesh, atol=1e-12)
+                np.testing.assert_allclose(found.normal[rows], own.normal @ there[:3, :3].T, atol=1e-9)
+                count += len(rows)
+    assert count == len(found.distance) > 50 and set(found.structure) == {0, 1, 2}
+    one = scene.contacts([(A[7], 0.1, POSES[7]), (B[7], 0.1)], 1.0)
+    assert_array_equal(one.distance, found.distance[slice(*found.offsets[7:9])])
+
+
 def test_meshes_move() -> None:
     vertices, faces = sphere(12.0)
     mesh, scene = Mesh(vertices, faces), Scene()
@@ -98,6 +146,9 @@ def test_without_margins() -> None:
         (lambda: made().clears([(A, 0.1), (B[:5], 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0].T, 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0], -0.1)]), "bad_radius"),
+        (lambda: made().contacts([(A[0], 0.1)], -1.0), "negative"),
+        (lambda: made().contacts([(A[0], -0.1)], 1.0), "bad_radius"),
+        (lambda: made().per_structure([(A[0], 0.1, np.eye(3))]), "bad_shape"),
     ],
 )
 def test_refused(ask: object, kind: str) -> None:

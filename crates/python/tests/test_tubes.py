@@ -48,14 +48,43 @@ def test_measured_points() -> None:
     assert (batch.lower == one.lower).all() and (batch.upper == one.upper).all()
 
 
+def test_turns() -> None:
+    """Directions of measured points are known as far as somebody states them."""
+    points, _, true = arc(80)
+    unknown = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01)
+    assert unknown.upper - unknown.lower > 0.9 * RADIUS
+    last = 0.0
+    for turn in (0.01, 0.05, 0.2):
+        found = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01, turn=turn)
+        assert found.lower <= true <= found.upper
+        assert last < found.upper - found.lower < unknown.upper - unknown.lower
+        last = found.upper - found.lower
+    margin = true - 0.25 * RADIUS
+    assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, deviation=0.01) is Decision.UNDECIDED
+    assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, deviation=0.01, turn=0.05) is Decision.CLEAR
+    for turn in (-0.1, np.nan):
+        with pytest.raises(ContinuumError, match="`turn`"):
+            FLOOR.clearance(points, RADIUS, 0.1, turn=turn)
+
+
 def test_what_was_asked_before_does_not_count() -> None:
     """One engine, asked in all ways in turn."""
     points, tangents, _ = arc(40)
-    ways: list[dict[str, object]] = [{}, {"tangents": tangents}, {"deviation": 0.01}, {"tangents": tangents[[0, -1]]}]
+    ways: list[dict[str, object]] = [
+        {},
+        {"tangents": tangents},
+        {"deviation": 0.01},
+        {"tangents": tangents[[0, -1]], "turn": 0.1},
+        {"tangents": tangents[[0, -1]]},
+        {"deviation": 0.01, "turn": 0.05},
+        {"turn": 0.1},
+    ]
     fresh = [Mesh(FLOOR).clearance(points, RADIUS, 1e-3, **way) for way in ways]
-    for turn in range(12):
-        found = FLOOR.clearance(points, RADIUS, 1e-3, **ways[turn % 4])
-        assert (found.lower, found.upper) == (fresh[turn % 4].lower, fresh[turn % 4].upper)
+    for turn in range(21):
+        # In an order in which each comes after each.
+        way = turn * (1 + turn // 7) % 7
+        found = FLOOR.clearance(points, RADIUS, 1e-3, **ways[way])
+        assert (found.lower, found.upper) == (fresh[way].lower, fresh[way].upper)
 
 
 def test_decisions() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import ContinuumError, between, clears_between, self_clears, self_minimum
+from parry_continuum import ContinuumError, RobotPair, between, clears_between, self_clears, self_minimum
 from shapes import Array, poses, robots
 
 RADIUS = 0.2
@@ -95,9 +95,76 @@ def test_segments_are_the_inputs() -> None:
         assert_array_equal(found.segments, [segment, 0])
 
 
+def test_pairs_remember_and_answer_alike() -> None:
+    random = np.random.default_rng(43)
+    a, b, pose = robots(random, 30), robots(random, 30), poses(random, 30)
+    pair = RobotPair()
+    given = (a, RADIUS, b, 0.1)
+    for _ in range(2):
+        for field, expected in zip(pair.minimum(*given, pose_b=pose), between(*given, pose_b=pose)):
+            assert_array_equal(field, expected)
+        for k in range(30):
+            one = pair.minimum(a[k], RADIUS, b[k], 0.1, pose_b=pose[k])
+            assert one.distance == between(a[k], RADIUS, b[k], 0.1, pose_b=pose[k]).distance
+        margin = float(np.median(between(*given).distance))
+        assert_array_equal(pair.clears(*given, margin), clears_between(*given, margin))
+        assert_array_equal(pair.self_minimum(a, RADIUS).distance, self_minimum(a, RADIUS).distance)
+        assert_array_equal(pair.self_clears(a, RADIUS, 0.1), self_clears(a, RADIUS, 0.1))
+        pair.forget()
+
+
+def test_each_segment() -> None:
+    """That of the first robot by itself; without length it has none."""
+    random = np.random.default_rng(44)
+    a, b, pose = robots(random, 20, points=7), robots(random, 20, points=5), poses(random, 20)
+    a[::4, 3] = a[::4, 2]
+    found = RobotPair().per_link(a, RADIUS, b, RADIUS, pose_a=pose, caps="capsules")
+    assert found.distance.shape == (20, 6) and found.on_first.shape == (20, 6, 3) and found.segments.shape == (20, 6, 2)
+    for k in range(20):
+        for segment in range(6):
+            if k % 4 == 0 and segment == 2:
+                assert np.isnan(found.distance[k, segment]) and (found.segments[k, segment] == -1).all()
+                continue
+            alone = between(a[k, segment : segment + 2], RADIUS, b[k], RADIUS, pose_a=pose[k], caps="capsules")
+            assert abs(found.distance[k, segment] - alone.distance) < 1e-12
+            assert found.segments[k, segment].tolist() == [segment, alone.segments[1]] or alone.distance == 0
+    least = between(a, RADIUS, b, RADIUS, pose_a=pose, caps="capsules").distance
+    assert_array_equal(np.nanmin(found.distance, axis=1), least)
+    one = RobotPair().per_link(a[1], RADIUS, b[1], RADIUS, pose_a=pose[1], caps="capsules")
+    for field, fields in zip(one, found):
+        assert_array_equal(field, fields[1])
+
+
+def test_every_place() -> None:
+    """Pairs of segments of which no neighbours are closer, by all pairs of segments."""
+    random = np.random.default_rng(45)
+    a, b = np.cumsum(random.normal(size=(2, 20, 8, 3)), axis=2)
+    found, margin, several = RobotPair().within(a, 0.1, b, 0.1, 3.0, caps="capsules"), 3.0, 0
+    for k in range(20):
+        distance = np.array(
+            [[between(a[k, i : i + 2], 0.1, b[k, j : j + 2], 0.1, caps="capsules").distance for j in range(7)] for i in range(7)]
+        )
+        padded = np.pad(distance, 1, constant_values=np.inf)
+        around = np.stack([padded[1 + i : 8 + i, 1 + j : 8 + j] for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)])
+        rows = slice(*found.offsets[k : k + 2])
+        assert (found.pair[rows] == k).all()
+        places = {(int(i), int(j)) for i, j in found.segments[rows]}
+        # Where neighbours are as close, up to rounding, one stands for all.
+        strict = {(int(i), int(j)) for i, j in np.argwhere((distance < around.min(axis=0) - 1e-12) & (distance <= margin))}
+        loose = {(int(i), int(j)) for i, j in np.argwhere((distance <= around.min(axis=0) + 1e-12) & (distance <= margin))}
+        assert strict <= places <= loose and len(places) == len(found.segments[rows])
+        np.testing.assert_allclose(found.distance[rows], [distance[i, j] for i, j in found.segments[rows]], atol=1e-12)
+        assert bool(places) == (distance.min() <= margin)
+        several += len(places) > 1
+    assert several > 0 and 0 < len(found.distance)
+
+
 @pytest.mark.parametrize(
     ("ask", "kind", "text"),
     [
+        (lambda r: RobotPair().within(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
+        (lambda r: RobotPair().per_link(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),
+        (lambda r: RobotPair().minimum(r[0], -0.1, r[1], 0.1), "bad_radius", "radius 0"),
         (lambda r: between(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),
         (lambda r: between(r[0], 0.1, r[1].T, 0.1), "bad_shape", "`points_b`"),
         (lambda r: between(r[0], 0.1, r[1], 0.1, pose_b=np.diag([2, 2, 2, 1])), "scales", "scales by 2"),

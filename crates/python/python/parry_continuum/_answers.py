@@ -223,6 +223,77 @@ class RobotProximity(NamedTuple):
     """(2,): how far along the centreline of either from its base."""
 
 
+class RobotContacts(NamedTuple):
+    """Places where two robots are near one another, one in each row."""
+
+    distance: Floats
+    """(K,): the distance, 0 where they touch or overlap."""
+    on_first: Floats
+    """(K, 3): the closest point of the first."""
+    on_second: Floats
+    """(K, 3): the closest point of the second."""
+    segments: Ints
+    """(K, 2): the segment of the input of either."""
+    arc_lengths: Floats
+    """(K, 2): how far along the centreline of either from its base."""
+    pair: Ints
+    """(K,): the pair of the batch, 0 where there is one."""
+    offsets: Ints
+    """(B + 1,): the places of pair k are ``offsets[k]:offsets[k + 1]``."""
+
+
+class PerStructure(NamedTuple):
+    """Where robots are closest to each of M structures of a scene, in the scene's frame."""
+
+    distance: Floats
+    """(M,): the distances, 0 where they touch or overlap."""
+    slack: Floats
+    """(M,): the distance less the structure's margin, or NaN where it has none."""
+    on_robot: Floats
+    """(M, 3): the robots' closest points."""
+    on_mesh: Floats
+    """(M, 3): the structures' closest points."""
+    robot: Ints
+    """(M,): the robot of the list that is closest."""
+    segment: Ints
+    """(M,): its segment."""
+    arc_length: Floats
+    """(M,): how far along its centreline from the base."""
+    triangle: Ints
+    """(M,): the structure's closest triangle."""
+
+
+class SceneContacts(NamedTuple):
+    """Contacts of robots with the structures of a scene, one in each row, in the scene's frame."""
+
+    structure: Ints
+    """(K,): the structure."""
+    robot: Ints
+    """(K,): the robot of the list."""
+    segment: Ints
+    """(K,): the segment of the input."""
+    fraction: Floats
+    """(K,): where along the segment, from 0 to 1."""
+    arc_length: Floats
+    """(K,): how far along the centreline from the base."""
+    distance: Floats
+    """(K,): the distance, 0 where they touch or overlap."""
+    depth: Floats
+    """(K,): the distance with a sign: negative where they overlap."""
+    normal: Floats
+    """(K, 3): the unit vector from the wall to the robot, or NaN."""
+    on_robot: Floats
+    """(K, 3): the robot's closest point."""
+    on_mesh: Floats
+    """(K, 3): the structure's closest point."""
+    triangle: Ints
+    """(K,): the triangle."""
+    batch: Ints
+    """(K,): the set of robots of the batch, 0 where there is one."""
+    offsets: Ints
+    """(B + 1,): the contacts of set k are ``offsets[k]:offsets[k + 1]``."""
+
+
 class Tightest(NamedTuple):
     """Where the room in a scene is least."""
 

@@ -1,8 +1,9 @@
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any, Literal, final
+from typing import Any, Literal, final, overload
 
 from numpy.typing import ArrayLike
+from typing_extensions import disjoint_base
 
 from ._answers import (
     BoolOrBools,
@@ -19,13 +20,23 @@ from ._answers import (
     MotionAnswer,
     MotionClearance,
     PerLink,
+    PerStructure,
+    RobotContacts,
     RobotProximity,
+    SceneContacts,
     SideOrSides,
     Tightest,
 )
 
 __all__ = [
+    "BendingMotion",
+    "LinearMotion",
     "Mesh",
+    "Motion",
+    "MotionPath",
+    "MovingBase",
+    "RigidMotion",
+    "RobotPair",
     "Scene",
     "__version__",
     "between",
@@ -40,6 +51,55 @@ __all__ = [
 __version__: str
 
 _Caps = Literal["fitted", "capsules", "cylinders"]
+_MotionCaps = Literal["fitted", "capsules"]
+
+@disjoint_base
+class Motion:
+    @property
+    def count(self) -> int | None: ...
+
+@final
+class LinearMotion(Motion):
+    def __new__(
+        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, caps: _MotionCaps = "fitted"
+    ) -> LinearMotion: ...
+
+@final
+class RigidMotion(Motion):
+    def __new__(
+        cls,
+        points: ArrayLike,
+        radii: ArrayLike,
+        start_pose: ArrayLike,
+        end_pose: ArrayLike,
+        *,
+        caps: _Caps = "fitted",
+    ) -> RigidMotion: ...
+    @staticmethod
+    def of_curve(
+        points: ArrayLike,
+        radii: ArrayLike,
+        start_pose: ArrayLike,
+        end_pose: ArrayLike,
+        *,
+        tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
+        turn: float | None = None,
+    ) -> RigidMotion: ...
+
+@final
+class BendingMotion(Motion):
+    def __new__(
+        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None
+    ) -> BendingMotion: ...
+
+@final
+class MovingBase(Motion):
+    def __new__(cls, motion: Motion, start_pose: ArrayLike, end_pose: ArrayLike) -> MovingBase: ...
+
+@final
+class MotionPath(Motion):
+    def __new__(cls, motions: Sequence[Motion]) -> MotionPath: ...
 
 @final
 class Mesh:
@@ -97,6 +157,7 @@ class Mesh:
         *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
+        turn: float | None = None,
         pose: ArrayLike | None = None,
     ) -> Clearance: ...
     def tube_clears(
@@ -108,8 +169,10 @@ class Mesh:
         *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
+        turn: float | None = None,
         pose: ArrayLike | None = None,
     ) -> DecisionOrDecisions: ...
+    @overload
     def clears_motion(
         self,
         start: ArrayLike,
@@ -118,8 +181,11 @@ class Mesh:
         margin: float,
         resolution: float,
         *,
-        caps: Literal["fitted", "capsules"] = "fitted",
+        caps: _MotionCaps = "fitted",
     ) -> MotionAnswer: ...
+    @overload
+    def clears_motion(self, start: Motion, *, margin: float, resolution: float) -> MotionAnswer: ...
+    @overload
     def time_of_contact(
         self,
         start: ArrayLike,
@@ -128,8 +194,11 @@ class Mesh:
         margin: float,
         resolution: float,
         *,
-        caps: Literal["fitted", "capsules"] = "fitted",
+        caps: _MotionCaps = "fitted",
     ) -> MotionAnswer: ...
+    @overload
+    def time_of_contact(self, start: Motion, *, margin: float, resolution: float) -> MotionAnswer: ...
+    @overload
     def clearance_of_motion(
         self,
         start: ArrayLike,
@@ -137,8 +206,27 @@ class Mesh:
         radii: ArrayLike,
         tolerance: float,
         *,
-        caps: Literal["fitted", "capsules"] = "fitted",
+        caps: _MotionCaps = "fitted",
     ) -> MotionClearance: ...
+    @overload
+    def clearance_of_motion(self, start: Motion, *, tolerance: float) -> MotionClearance: ...
+    @overload
+    def clears_motion_while(
+        self,
+        to: ArrayLike,
+        start: ArrayLike,
+        end: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        caps: _MotionCaps = "fitted",
+    ) -> MotionAnswer: ...
+    @overload
+    def clears_motion_while(self, to: ArrayLike, start: Motion, *, margin: float, resolution: float) -> MotionAnswer: ...
+    def clears_path(
+        self, shapes: ArrayLike, radii: ArrayLike, deviation: float, margin: float, resolution: float
+    ) -> MotionAnswer: ...
     def certify(
         self,
         points: ArrayLike,
@@ -165,6 +253,63 @@ class Scene:
     def __len__(self) -> int: ...
     def clears(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> BoolOrBools: ...
     def tightest(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> Tightest: ...
+    def per_structure(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> PerStructure: ...
+    def contacts(self, robots: Sequence[_Robot], reach: float, *, caps: _Caps = "fitted") -> SceneContacts: ...
+
+@final
+class RobotPair:
+    def __new__(cls) -> RobotPair: ...
+    def forget(self) -> None: ...
+    def minimum(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> RobotProximity: ...
+    def per_link(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> RobotProximity: ...
+    def within(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        margin: float,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> RobotContacts: ...
+    def clears(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        margin: float,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> BoolOrBools: ...
+    def self_minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
+    def self_clears(
+        self, points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted"
+    ) -> BoolOrBools: ...
 
 def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...

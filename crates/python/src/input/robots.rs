@@ -1,9 +1,11 @@
 //! One robot or many, as arrays describe them.
 
 use super::numbers::{Numbers, shape_text};
+use super::poses::{Poses, pose_of};
 use crate::error::Refused;
+use crate::threads::Asked;
+use parry_continuum::RobotError;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::{RobotError, pose_from_matrix};
 use pyo3::prelude::*;
 use std::ops::Range;
 
@@ -11,7 +13,7 @@ use std::ops::Range;
 pub(crate) struct Robots<'py> {
     /// How many robots the batch has; none where one robot was given, without a first index.
     pub count: Option<usize>,
-    /// How many points each of them has.
+    /// How many points each of them has; of a path, each of its shapes.
     pub points_each: usize,
     points: Numbers<'py>,
     /// More points: where a motion ends, or the directions of a curve.
@@ -26,12 +28,6 @@ pub(crate) struct Robots<'py> {
 
 enum Radii<'py> {
     Number(f64),
-    Shared(Numbers<'py>),
-    Each(Numbers<'py>),
-}
-
-enum Poses<'py> {
-    Identity,
     Shared(Numbers<'py>),
     Each(Numbers<'py>),
 }
@@ -51,6 +47,7 @@ pub(crate) struct Block {
     first: usize,
     points_each: usize,
     more_each: usize,
+    segments_each: usize,
     points: Vec<Vector>,
     more: Vec<Vector>,
     radii: Vec<f64>,
@@ -104,6 +101,26 @@ impl<'py> Robots<'py> {
         let (points, count, points_each) = points(given, name)?;
         let radii = Radii::new(radii, count, points_each)?;
         let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
+        Ok(Self { count, points_each, points, more: None, radii, poses, is_one: false, others: None })
+    }
+
+    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path are those of its shapes, one
+    /// shape after the other.
+    pub(crate) fn paths(name: &str, given: &Bound<'py, PyAny>, radii: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let points = Numbers::new(given, name)?;
+        let (count, points_each) = match *points.shape() {
+            [_, each, 3] => (None, each),
+            [count, _, each, 3] => (Some(count), each),
+            ref shape => {
+                let text = format!(
+                    "`{name}` has the shape {}, not (S, N, 3) or (B, S, N, 3); give S shapes of N points each",
+                    shape_text(shape)
+                );
+                return Err(refuse(given.py(), text));
+            }
+        };
+        let radii = Radii::new(radii, count, points_each)?;
+        let poses = Poses::Identity;
         Ok(Self { count, points_each, points, more: None, radii, poses, is_one: false, others: None })
     }
 
@@ -169,23 +186,25 @@ impl<'py> Robots<'py> {
         }
     }
 
-    /// How many robots there are.
-    pub(crate) fn len(&self) -> usize {
-        self.count.unwrap_or(1)
-    }
-
     /// How many segments each of them has.
     pub(crate) fn segments_each(&self) -> usize {
         self.points_each.saturating_sub(1)
     }
+}
 
-    /// The shape of an array that has a number for each robot, and then what `last` says.
-    pub(crate) fn shape(&self, last: &[usize]) -> Vec<usize> {
-        self.count.iter().chain(last).copied().collect()
+impl<'py> Asked for Robots<'py> {
+    type Block = Block;
+    type One<'a> = Given<'a>;
+
+    fn count(&self) -> Option<usize> {
+        self.count
     }
 
-    /// Copies some of the robots.
-    pub(crate) fn copy(&self, robots: Range<usize>, block: &mut Block) {
+    fn one(block: &Block, place: usize) -> Given<'_> {
+        block.robot(place)
+    }
+
+    fn copy(&self, robots: Range<usize>, block: &mut Block) {
         block.first = robots.start;
         let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
             let each = from.points().len() / if self.is_one { 1 } else { self.len().max(1) };
@@ -195,7 +214,7 @@ impl<'py> Robots<'py> {
             each
         };
         block.points_each = copy_points(&self.points, &mut block.points);
-        block.more_each = 0;
+        (block.more_each, block.segments_each) = (0, self.segments_each());
         block.more.clear();
         if let Some(more) = &self.more {
             block.more_each = copy_points(more, &mut block.more);
@@ -210,18 +229,14 @@ impl<'py> Robots<'py> {
             }
         }
         block.matrices.clear();
-        match &self.poses {
-            Poses::Identity => {}
-            Poses::Shared(pose) => block.matrices.extend(pose.values().as_chunks::<16>().0),
-            Poses::Each(poses) => block.matrices.extend(&poses.values().as_chunks::<16>().0[robots.clone()]),
-        }
+        block.matrices.extend(self.poses.matrices(robots.clone()));
         if let Some(others) = &self.others {
             others.copy(robots, block.others.get_or_insert_default());
         }
         block.shared = Shared {
             points: self.is_one,
             radii: !matches!(self.radii, Radii::Each(_)),
-            pose: matches!(self.poses, Poses::Shared(_)),
+            pose: self.poses.is_one(),
         };
     }
 }
@@ -258,29 +273,11 @@ impl<'py> Radii<'py> {
     }
 }
 
-impl<'py> Poses<'py> {
-    fn new(given: &Bound<'py, PyAny>, count: Option<usize>) -> PyResult<Self> {
-        let numbers = Numbers::new(given, "pose")?;
-        match (numbers.shape(), count) {
-            ([4, 4], _) => Ok(Self::Shared(numbers)),
-            (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
-            (shape, _) => {
-                let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
-                let text = format!(
-                    "`pose` has the shape {}; give None, or the shape (4, 4){fit}",
-                    shape_text(shape)
-                );
-                Err(refuse(given.py(), text))
-            }
-        }
-    }
-}
-
 impl Block {
     /// The robot at this place in the block.
     pub(crate) fn robot(&self, place: usize) -> Given<'_> {
         let of = |each: usize| each * place..each * (place + 1);
-        let segments = of(self.points_each.saturating_sub(1));
+        let segments = of(self.segments_each);
         let of = |each: usize| if self.shared.points { 0..each } else { of(each) };
         Given {
             number: self.first + place,
@@ -301,8 +298,6 @@ impl<'a> Given<'a> {
 
     /// The robot's pose in the mesh's frame.
     pub(crate) fn pose(&self) -> Result<Pose, Refused> {
-        let Some(matrix) = self.matrix else { return Ok(Pose::IDENTITY) };
-        let row = |row: usize| std::array::from_fn(|column| matrix[4 * row + column]);
-        Ok(pose_from_matrix(std::array::from_fn(row))?)
+        self.matrix.map_or(Ok(Pose::IDENTITY), pose_of)
     }
 }

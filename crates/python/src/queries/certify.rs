@@ -5,7 +5,7 @@ use crate::error::Refused;
 use crate::input::{Caps, Given, Numbers, Robots, shape_text};
 use crate::mesh::Mesh;
 use crate::output::array;
-use crate::threads::{Session, ask_each};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::proximity::{Certificate, Proximity, ProximityError};
 use pyo3::prelude::*;
 

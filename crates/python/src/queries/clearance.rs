@@ -4,31 +4,57 @@ use crate::error::Refused;
 use crate::input::{Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, decision_value, flat, members};
-use crate::threads::{Session, ask_each};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Clearance;
 use pyo3::prelude::*;
 
+/// What is stated of points that are measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Stated {
+    pub deviation: f64,
+    pub turn: Option<f64>,
+}
+
+/// The directions at the two ends, where there are directions.
+fn ends(robot: &Given<'_>) -> Option<[Vector; 2]> {
+    match robot.more {
+        [first, .., last] => Some([*first, *last]),
+        _ => None,
+    }
+}
+
+/// Whether there is a direction for each point, and not for the two ends alone.
+fn has_frames(robot: &Given<'_>) -> bool {
+    robot.more.len() == robot.points.len() && robot.points.len() > 2
+}
+
+/// The tube of a robot.
+pub(crate) fn tube(robot: &Given<'_>, stated: Stated) -> Result<Tube, Refused> {
+    let (points, radii) = (robot.points, robot.radii);
+    let tube = match stated.deviation {
+        0.0 if has_frames(robot) => Tube::from_frames(points, robot.more, radii)?,
+        0.0 => Tube::from_samples(points, radii, ends(robot))?,
+        deviation => Tube::fit(points, radii, deviation)?,
+    };
+    Ok(match stated.turn {
+        Some(turn) => tube.with_turn(turn)?,
+        None => tube,
+    })
+}
+
 impl Session {
     /// Makes the session's tube that of a robot, in the memory that it has where the robot is given by samples alone.
-    fn set_tube(&mut self, robot: &Given<'_>, deviation: f64) -> Result<Pose, Refused> {
-        let (points, tangents, radii) = (robot.points, robot.more, robot.radii);
-        let ends = match tangents {
-            [first, .., last] => Some([*first, *last]),
-            _ => None,
-        };
-        let has_frames = tangents.len() == points.len() && points.len() > 2;
-        let has_samples = deviation == 0.0 && !has_frames;
+    fn set_tube(&mut self, robot: &Given<'_>, stated: Stated) -> Result<Pose, Refused> {
+        let has_samples = stated.deviation == 0.0 && stated.turn.is_none() && !has_frames(robot);
         match &mut self.tube {
-            Some(tube) if has_samples && self.has_samples => tube.set_samples(points, radii, ends)?,
-            tube => {
-                *tube = None;
-                *tube = Some(match deviation {
-                    0.0 if has_frames => Tube::from_frames(points, tangents, radii)?,
-                    0.0 => Tube::from_samples(points, radii, ends)?,
-                    _ => Tube::fit(points, radii, deviation)?,
-                });
+            Some(tube) if has_samples && self.has_samples => {
+                tube.set_samples(robot.points, robot.radii, ends(robot))?;
+            }
+            kept => {
+                *kept = None;
+                *kept = Some(tube(robot, stated)?);
             }
         }
         self.has_samples = has_samples;
@@ -37,13 +63,13 @@ impl Session {
 }
 
 /// Points that are off need no directions.
-fn tubes<'py>(
+pub(crate) fn tubes<'py>(
     robots: Robots<'py>,
     tangents: Option<&Bound<'py, PyAny>>,
-    deviation: f64,
+    stated: Stated,
 ) -> PyResult<Robots<'py>> {
     match tangents {
-        Some(tangents) if deviation != 0.0 => {
+        Some(tangents) if stated.deviation != 0.0 => {
             let text = "`tangents` and `deviation` are given; points that may be off are fitted without directions, so give one";
             Err(Refused::other("bad_type", text).raise(tangents.py(), None))
         }
@@ -79,6 +105,9 @@ impl Mesh {
     /// deviation : float
     ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
     ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.
+    /// turn : float, optional
+    ///     How far the robot's direction may be, in rad, from the curve's near its flat ends: at its two ends, and at steps in
+    ///     radius. With a ``deviation`` nothing is known of that otherwise, and the bounds are a radius apart at flat ends.
     ///
     /// Returns
     /// -------
@@ -89,7 +118,7 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one robot: its points turn too sharply for a tube, or as for `distance`.
+    ///     The tolerance is negative or NaN. Of one robot: the turn is negative or not finite, its points turn too sharply for a tube, or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -101,7 +130,7 @@ impl Mesh {
     /// >>> found = floor.clearance(arc, 0.5, tolerance=0.01)
     /// >>> bool(found.resolved), bool(found.lower <= found.upper <= found.lower + 0.01)
     /// (True, True)
-    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, deviation = 0.0, pose = None))]
+    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clearance<'py>(
         &self,
@@ -111,9 +140,11 @@ impl Mesh {
         tolerance: f64,
         tangents: Option<&Bound<'py, PyAny>>,
         deviation: f64,
+        turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, deviation)?;
+        let stated = Stated { deviation, turn };
+        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, stated)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -126,7 +157,7 @@ impl Mesh {
         let mut status = Vec::with_capacity(robots.len());
         let ask =
             |session: &mut Session, robot: &Given<'_>, row: &mut [(Option<Clearance>, &'static str)]| {
-                let pose = session.set_tube(robot, deviation);
+                let pose = session.set_tube(robot, stated);
                 let found = pose.and_then(|pose| {
                     let tube = session.tube.as_ref().ok_or_else(no_tube)?;
                     Ok(session.search.clearance(tube, &pose, tolerance)?)
@@ -177,7 +208,7 @@ impl Mesh {
     ///
     /// Parameters
     /// ----------
-    /// points, radii, tangents, deviation, pose
+    /// points, radii, tangents, deviation, turn, pose
     ///     As for `clearance`.
     /// margin : float
     ///     A length, at least 0.
@@ -194,7 +225,7 @@ impl Mesh {
     /// ContinuumError
     ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
     ///     what can be had. Of a batch, ``robot`` is the first that is refused.
-    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, pose = None))]
+    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn tube_clears<'py>(
         &self,
@@ -205,12 +236,14 @@ impl Mesh {
         resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
         deviation: f64,
+        turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, deviation)?;
+        let stated = Stated { deviation, turn };
+        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, stated)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            let pose = session.set_tube(robot, deviation)?;
+            let pose = session.set_tube(robot, stated)?;
             let tube = session.tube.as_ref().ok_or_else(no_tube)?;
             row[0] = decision_value(session.search.tube_clears(tube, &pose, margin, resolution)?);
             Ok(())

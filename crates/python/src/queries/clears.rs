@@ -4,7 +4,7 @@ use super::distance::no_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, members, side_value};
-use crate::threads::{Session, ask_each};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 

@@ -4,7 +4,7 @@ use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
-use crate::threads::{Session, ask_each};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{LinkProximity, Proximity};

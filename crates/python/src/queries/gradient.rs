@@ -10,7 +10,7 @@ use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number};
-use crate::threads::{Session, ask_each};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;

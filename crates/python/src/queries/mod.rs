@@ -1,13 +1,17 @@
 //! The questions that a mesh is asked, a file for each.
 
 mod certify;
-mod clearance;
+pub(crate) mod clearance;
 mod clears;
 pub(crate) mod distance;
 mod gradient;
 mod motion;
+mod motion_answer;
 mod motion_clearance;
+mod motion_while;
+mod path;
 mod per_link;
 mod side;
 pub(crate) mod two_robots;
+mod way;
 mod within;

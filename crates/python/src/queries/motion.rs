@@ -1,43 +1,52 @@
-//! Whether a robot keeps a margin on all of its way.
+//! Whether a robot keeps a margin on all of its way, and until when.
 
-use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use super::motion_answer::motion_answer;
+use super::way::{Arguments, Question, Way, needed};
+use crate::input::Caps;
 use crate::mesh::Mesh;
-use crate::output::{answer, array, array_or_number, decision_value, flat, members};
-use crate::threads::{Session, ask_each};
-use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{BvhSearch, MotionAnswer, ProximityError, ShapeInContact};
-use parry_continuum::{LinearMotion, RobotError};
+use crate::threads::Session;
+use parry_continuum::Motion;
+use parry_continuum::proximity::{MotionAnswer, ProximityError};
 use pyo3::prelude::*;
 
-/// A question about a motion: the margin and the resolution come last.
-type Question = fn(&mut BvhSearch, &LinearMotion, f64, f64) -> Result<MotionAnswer, ProximityError>;
+struct Clears {
+    margin: f64,
+    resolution: f64,
+}
 
-/// What makes a motion of two shapes and radii.
-type Maker = fn(&[Vector], &[Vector], &[f64]) -> Result<LinearMotion, RobotError>;
+impl Question<MotionAnswer> for Clears {
+    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<MotionAnswer, ProximityError> {
+        session.search.clears_motion(motion, self.margin, self.resolution)
+    }
+}
 
-pub(super) fn maker(py: Python<'_>, caps: Caps) -> PyResult<Maker> {
-    match caps {
-        Caps::Fitted => Ok(LinearMotion::chain),
-        Caps::Capsules => Ok(LinearMotion::capsules),
-        Caps::Cylinders => {
-            let text = "`caps` is 'cylinders'; motions take 'fitted' or 'capsules'";
-            Err(Refused::other("bad_caps", text).raise(py, None))
-        }
+struct FirstContact {
+    margin: f64,
+    resolution: f64,
+}
+
+impl Question<MotionAnswer> for FirstContact {
+    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<MotionAnswer, ProximityError> {
+        session.search.time_of_contact(motion, self.margin, self.resolution)
     }
 }
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away on all of their way from one shape to another.
+    /// Whether robots keep more than a margin away on all of their way.
     ///
-    /// Every point of the centreline moves straight and evenly, from `start` at the time 0 to `end` at 1, in the mesh's frame.
+    /// ``clears_motion(start, end, radii, margin, resolution)``: every point of the centreline moves straight and evenly, from
+    /// `start` at the time 0 to `end` at 1, in the mesh's frame. ``clears_motion(motion, margin=..., resolution=...)`` asks about any
+    /// other `Motion`, such as a `RigidMotion`, a `BendingMotion` or one of these on a `MovingBase`.
+    ///
     /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin wall between two steps.
     ///
     /// Parameters
     /// ----------
     /// start, end : (N, 3) or (B, N, 3) arrays of one shape
+    ///     Or a `Motion`, or a batch of them, as `start` alone.
     /// radii : float, (N - 1,) or (B, N - 1) array
+    ///     One radius for each segment.
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
@@ -64,29 +73,27 @@ impl Mesh {
     /// >>> below = above - [0, 0, 4]
     /// >>> floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3).decision is Decision.CONTACT
     /// True
-    #[pyo3(signature = (start, end, radii, margin, resolution, *, caps = Caps::Fitted), text_signature = "($self, start, end, radii, margin, resolution, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_motion<'py>(
         &self,
         py: Python<'py>,
         start: &Bound<'py, PyAny>,
-        end: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
-        caps: Caps,
+        end: Option<&Bound<'py, PyAny>>,
+        radii: Option<&Bound<'py, PyAny>>,
+        margin: Option<f64>,
+        resolution: Option<f64>,
+        caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.ask_motion(
-            py,
-            [start, end],
-            radii,
-            [margin, resolution],
-            caps,
-            |search, motion, margin, resolution| search.clears_motion(motion, margin, resolution),
-        )
+        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let question = Clears {
+            margin: needed(py, "margin", margin)?,
+            resolution: needed(py, "resolution", resolution)?,
+        };
+        motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 
-    /// When robots first come as close to the mesh as a margin, on their way from one shape to another.
+    /// When robots first come as close to the mesh as a margin, on their way.
     ///
     /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``. Between the two the place
     /// that touches moves by no more than the resolution.
@@ -115,76 +122,23 @@ impl Mesh {
     /// >>> found = floor.time_of_contact(above, above - [0, 0, 4], 0.5, margin=0, resolution=1e-3)
     /// >>> bool(found.interval[0] <= 0.375 <= found.interval[1] + 1e-3) # after 1.5 of 4
     /// True
-    #[pyo3(signature = (start, end, radii, margin, resolution, *, caps = Caps::Fitted), text_signature = "($self, start, end, radii, margin, resolution, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn time_of_contact<'py>(
         &self,
         py: Python<'py>,
         start: &Bound<'py, PyAny>,
-        end: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
-        caps: Caps,
+        end: Option<&Bound<'py, PyAny>>,
+        radii: Option<&Bound<'py, PyAny>>,
+        margin: Option<f64>,
+        resolution: Option<f64>,
+        caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.ask_motion(
-            py,
-            [start, end],
-            radii,
-            [margin, resolution],
-            caps,
-            |search, motion, margin, resolution| search.time_of_contact(motion, margin, resolution),
-        )
-    }
-}
-
-impl Mesh {
-    fn ask_motion<'py>(
-        &self,
-        py: Python<'py>,
-        [start, end]: [&Bound<'py, PyAny>; 2],
-        radii: &Bound<'py, PyAny>,
-        [margin, resolution]: [f64; 2],
-        caps: Caps,
-        question: Question,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let make = maker(py, caps)?;
-        let robots = Robots::new("start", start, radii, None)?.with_as_many("end", end, "start")?;
-        let mut all: Vec<MotionAnswer> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<MotionAnswer>]| {
-            let motion = make(robot.points, robot.more, robot.radii)?;
-            row[0] = Some(question(&mut session.search, &motion, margin, resolution)?);
-            Ok(())
+        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let question = FirstContact {
+            margin: needed(py, "margin", margin)?,
+            resolution: needed(py, "resolution", resolution)?,
         };
-        ask_each(py, &self.engine(py), &robots, (None, 1), ask, |_, found| {
-            all.extend(found.iter().flatten())
-        })?;
-        let shape = || robots.shape(&[]);
-        let numbers = |of: fn(&ShapeInContact) -> f64| {
-            let numbers = all.iter().map(|it| it.contact.as_ref().map_or(f64::NAN, of));
-            array_or_number(py, shape(), numbers.collect())
-        };
-        let places = |of: fn(&ShapeInContact) -> u32| {
-            let places = all.iter().map(|it| it.contact.as_ref().map_or(-1, |it| of(it).into()));
-            array_or_number(py, shape(), places.collect::<Vec<i64>>())
-        };
-        let points = |of: fn(&ShapeInContact) -> Vector| {
-            let points = all.iter().map(|it| it.contact.as_ref().map_or(Vector::NAN, of));
-            array(py, robots.shape(&[3]), flat(points))
-        };
-        let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
-        let intervals = all.iter().flat_map(|it| it.interval).collect();
-        let values = (
-            members(py, "Decision", shape(), decisions)?,
-            array(py, robots.shape(&[2]), intervals)?,
-            numbers(|shape| shape.t)?,
-            numbers(|shape| shape.upper)?,
-            points(|shape| shape.on_robot)?,
-            points(|shape| shape.on_mesh)?,
-            places(|shape| shape.segment)?,
-            numbers(|shape| shape.arc_length)?,
-            places(|shape| shape.triangle)?,
-        );
-        answer(py, "MotionAnswer", values)
+        motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 }

@@ -1,17 +1,30 @@
 //! How near a robot comes on its way.
 
-use super::motion::maker;
-use crate::input::{Caps, Given, Robots};
+use super::way::{Arguments, Question, Way, needed};
+use crate::input::Caps;
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, flat};
-use crate::threads::{Session, ask_each};
+use crate::threads::Session;
+use parry_continuum::Motion;
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::MotionClearance;
+use parry_continuum::proximity::{MotionClearance, ProximityError};
 use pyo3::prelude::*;
+
+struct Least {
+    tolerance: f64,
+}
+
+impl Question<MotionClearance> for Least {
+    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<MotionClearance, ProximityError> {
+        session.search.clearance_of_motion(motion, self.tolerance)
+    }
+}
 
 #[pymethods]
 impl Mesh {
-    /// How near robots come to the mesh on their way from one shape to another, between proven bounds, and when.
+    /// How near robots come to the mesh on their way, between proven bounds, and when.
+    ///
+    /// As for `clears_motion`, a `Motion` may take the place of `start`, `end` and `radii`.
     ///
     /// Parameters
     /// ----------
@@ -39,39 +52,29 @@ impl Mesh {
     /// >>> found = floor.clearance_of_motion(high, high - [0, 0, 2], 0.5, tolerance=0.01)
     /// >>> bool(found.lower <= 1.5 <= found.upper), bool(found.t > 0.99)
     /// (True, True)
-    #[pyo3(signature = (start, end, radii, tolerance, *, caps = Caps::Fitted), text_signature = "($self, start, end, radii, tolerance, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, tolerance = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, tolerance=None, *, caps=\"fitted\")")]
     fn clearance_of_motion<'py>(
         &self,
         py: Python<'py>,
         start: &Bound<'py, PyAny>,
-        end: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        tolerance: f64,
-        caps: Caps,
+        end: Option<&Bound<'py, PyAny>>,
+        radii: Option<&Bound<'py, PyAny>>,
+        tolerance: Option<f64>,
+        caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let make = maker(py, caps)?;
-        let robots = Robots::new("start", start, radii, None)?.with_as_many("end", end, "start")?;
-        let mut all: Vec<MotionClearance> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<MotionClearance>]| {
-            let motion = make(robot.points, robot.more, robot.radii)?;
-            row[0] = Some(session.search.clearance_of_motion(&motion, tolerance)?);
-            Ok(())
-        };
-        ask_each(py, &self.engine(py), &robots, (None, 1), ask, |_, found| {
-            all.extend(found.iter().flatten())
-        })?;
-        let shape = || robots.shape(&[]);
+        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let all = way.ask(py, &self.engine(py), &Least { tolerance: needed(py, "tolerance", tolerance)? })?;
+        let shape = |last: &[usize]| way.count().iter().chain(last).copied().collect::<Vec<_>>();
         let numbers =
-            |of: fn(&MotionClearance) -> f64| array_or_number(py, shape(), all.iter().map(of).collect());
+            |of: fn(&MotionClearance) -> f64| array_or_number(py, shape(&[]), all.iter().map(of).collect());
         let places = |of: fn(&MotionClearance) -> u32| {
-            array_or_number(py, shape(), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
+            array_or_number(py, shape(&[]), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
         };
-        let points =
-            |of: fn(&MotionClearance) -> Vector| array(py, robots.shape(&[3]), flat(all.iter().map(of)));
+        let points = |of: fn(&MotionClearance) -> Vector| array(py, shape(&[3]), flat(all.iter().map(of)));
         let values = (
             numbers(|found| found.lower)?,
             numbers(|found| found.upper)?,
-            array_or_number(py, shape(), all.iter().map(|found| found.resolved).collect())?,
+            array_or_number(py, shape(&[]), all.iter().map(|found| found.resolved).collect())?,
             numbers(|found| found.uncertainty)?,
             numbers(|found| found.t)?,
             points(|found| found.on_robot)?,

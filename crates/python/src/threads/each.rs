@@ -3,8 +3,8 @@
 use super::compute::compute;
 use super::pool::pool;
 use crate::error::Refused;
-use crate::input::{Block, Given, Robots};
 use pyo3::prelude::*;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -19,6 +19,33 @@ const CHUNK: Duration = Duration::from_millis(50);
 
 /// The robots of a chunk are copied, so that there are no more of them than this.
 const LARGEST_CHUNK: usize = 1 << 16;
+
+/// What is asked about: one, or a batch of them.
+pub(crate) trait Asked {
+    /// A copy of some of them, which needs no GIL. It is filled again and again.
+    type Block: Default + Sync;
+    /// One of a block.
+    type One<'a>;
+
+    /// How many the batch has; none where one was given by itself.
+    fn count(&self) -> Option<usize>;
+
+    /// Copies some of them.
+    fn copy(&self, range: Range<usize>, block: &mut Self::Block);
+
+    /// The one at this place in a block.
+    fn one(block: &Self::Block, place: usize) -> Self::One<'_>;
+
+    /// How many there are.
+    fn len(&self) -> usize {
+        self.count().unwrap_or(1)
+    }
+
+    /// The shape of an array that has a number for each, and then what `last` says.
+    fn shape(&self, last: &[usize]) -> Vec<usize> {
+        self.count().iter().chain(last).copied().collect()
+    }
+}
 
 /// Who lends what one thread needs to ask.
 pub(crate) trait Lender {
@@ -43,28 +70,28 @@ impl<L: Lender> Lender for Arc<L> {
     }
 }
 
-/// Answers about each robot, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with the place
-/// of the first of them.
+/// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with
+/// the place of the first of them.
 ///
-/// The first robot that is refused ends it. All robots are asked about the same mesh, whatever moves meanwhile.
-pub(crate) fn ask_each<T: Clone + Send, L: Lender>(
+/// The first robot that is refused ends it. All are asked about the same mesh, whatever moves meanwhile.
+pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     py: Python<'_>,
     lender: &L,
-    robots: &Robots<'_>,
+    asked: &Q,
     (empty, width): (T, usize),
-    answer: impl Fn(&mut L::Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    answer: impl Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     mut take: impl FnMut(usize, &[T]),
 ) -> PyResult<()> {
-    let of_batch = |robot: usize| robots.count.map(|_| robot);
-    let (count, mut block, mut answers) = (robots.len(), Block::default(), Vec::new());
+    let of_batch = |robot: usize| asked.count().map(|_| robot);
+    let (count, mut block, mut answers) = (asked.len(), Q::Block::default(), Vec::new());
     let (mut start, mut chunk) = (0, 4 * FEW);
     while start < count {
         let end = count.min(start + chunk);
         let begin = Instant::now();
         answers.clear();
         answers.resize((end - start) * width, empty.clone());
-        robots.copy(start..end, &mut block);
-        let rows = Rows { block: &block, width, answer: &answer };
+        asked.copy(start..end, &mut block);
+        let rows = Rows::<Q, _> { block: &block, width, answer: &answer };
         let refused = if count < FEW {
             alone(py, lender, |session| rows.ask(session, 0, &mut answers))?
         } else {
@@ -74,7 +101,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender>(
             return Err(refused.raise(py, of_batch(start + place)));
         }
         take(start, &answers);
-        if robots.count.is_some() {
+        if asked.count().is_some() {
             py.check_signals()?;
         }
         let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
@@ -98,20 +125,20 @@ pub(crate) fn alone<T: Send, L: Lender>(
 }
 
 /// The robots of a chunk, and what is asked of each.
-struct Rows<'a, A> {
-    block: &'a Block,
+struct Rows<'a, Q: Asked, A> {
+    block: &'a Q::Block,
     width: usize,
     answer: &'a A,
 }
 
-impl<A> Rows<'_, A> {
+impl<Q: Asked, A> Rows<'_, Q, A> {
     /// Asks about the robots from the place `first` on, one for each row of answers. Returns the first that is refused.
     fn ask<S, T>(&self, session: &mut S, first: usize, answers: &mut [T]) -> Option<(usize, Refused)>
     where
-        A: Fn(&mut S, &Given<'_>, &mut [T]) -> Result<(), Refused>,
+        A: Fn(&mut S, &Q::One<'_>, &mut [T]) -> Result<(), Refused>,
     {
         answers.chunks_mut(self.width).zip(first..).find_map(|(row, place)| {
-            (self.answer)(session, &self.block.robot(place), row).err().map(|refused| (place, refused))
+            (self.answer)(session, &Q::one(self.block, place), row).err().map(|refused| (place, refused))
         })
     }
 
@@ -123,7 +150,7 @@ impl<A> Rows<'_, A> {
         answers: &mut [T],
     ) -> PyResult<Option<(usize, Refused)>>
     where
-        A: Fn(&mut L::Session, &Given<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+        A: Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     {
         let pool = pool(py)?;
         let (threads, count) = (pool.current_num_threads(), answers.len() / self.width);

@@ -16,7 +16,7 @@ mod points;
 mod pool;
 
 pub(crate) use compute::compute;
-pub(crate) use each::{Lender, alone, ask_each};
+pub(crate) use each::{Asked, Lender, alone, ask_each};
 pub(crate) use engine::{Engine, Session};
 pub(crate) use fork::watch_forks;
 pub(crate) use held::Held;

@@ -1,16 +1,19 @@
 //! The class `Scene`: several meshes with margins, and several robots.
 
+mod answers;
+mod robots;
+
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, Robots, shape_text};
+use crate::input::{Caps, Given, Numbers, pose_of, shape_text};
 use crate::mesh::Mesh;
-use crate::output::{answer, array, array_or_number, flat};
-use crate::queries::distance::{no_chain, set_chain};
-use crate::queries::two_robots::segment_of;
-use crate::threads::{self, Engine, Held, Lender, ask_each};
-use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{self, Between, Tightest};
-use parry_continuum::{Chain, pose_from_matrix};
+use crate::output::array_or_number;
+use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
+use answers::{NOTHING, Row, contacts, per_structure, tightest};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::Pose;
+use parry_continuum::proximity::{self, SceneContact, StructureProximity};
 use pyo3::prelude::*;
+use robots::place;
 use std::sync::Arc;
 
 /// Several meshes, the structures, each with a margin of its own or none, and robots among them.
@@ -94,122 +97,6 @@ impl Lender for Snapshot {
     }
 }
 
-/// A robot, its pose, and the points that it was made of.
-type Placed<'a> = (&'a Chain, Pose, &'a [Vector]);
-
-/// The robots of a question, as the session's chains, with their poses and points.
-fn place<'a>(
-    chains: &'a mut Vec<Option<Chain>>,
-    robot: &Given<'a>,
-    caps: Caps,
-) -> Result<Vec<Placed<'a>>, Refused> {
-    set_chain_at(chains, 0, robot, caps)?;
-    let mut placed = vec![(robot.points, robot.pose()?)];
-    let mut other = robot.other();
-    while let Some(robot) = other {
-        set_chain_at(chains, placed.len(), &robot, caps)?;
-        placed.push((robot.points, robot.pose()?));
-        other = robot.other();
-    }
-    let chains = chains.iter().map(|chain| chain.as_ref().ok_or_else(no_chain));
-    placed.into_iter().zip(chains).map(|((points, pose), chain)| Ok((chain?, pose, points))).collect()
-}
-
-fn set_chain_at(
-    chains: &mut Vec<Option<Chain>>,
-    place: usize,
-    robot: &Given<'_>,
-    caps: Caps,
-) -> Result<(), Refused> {
-    if chains.len() <= place {
-        chains.resize_with(place + 1, || None);
-    }
-    set_chain(&mut chains[place], robot, caps)
-}
-
-/// Each robot of a list holds the next one.
-const MOST_ROBOTS: usize = 1000;
-
-/// The list of robots that a function was given.
-fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
-    let refuse = |text: &str| Refused::other("bad_type", text).raise(py, None);
-    let one = |given: &Bound<'py, PyAny>| {
-        if let Ok((points, radii)) = given.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>() {
-            return Robots::new("points", &points, &radii, None);
-        }
-        let three = given.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>, Option<Bound<'py, PyAny>>)>();
-        let (points, radii, pose) = three.map_err(|_| {
-            refuse("`robots` has an entry that is no tuple (points, radii) or (points, radii, pose)")
-        })?;
-        Robots::new("points", &points, &radii, pose.as_ref())
-    };
-    if given.len() > MOST_ROBOTS {
-        let text = format!(
-            "`robots` lists {} robots of one scene, more than {MOST_ROBOTS}; give many shapes of one robot as a batch, (B, N, 3)",
-            given.len()
-        );
-        return Err(refuse(&text));
-    }
-    let mut all = given.iter().rev();
-    let last = all.next().ok_or_else(|| refuse("`robots` is empty; give a list of at least one robot"))?;
-    all.try_fold(one(last)?, |others, given| one(given)?.with_others(py, others))
-}
-
-/// What there is of the tightest place.
-#[derive(Clone, Copy)]
-struct Row {
-    slack: f64,
-    distance: f64,
-    structure: i64,
-    robots: [i64; 2],
-    segments: [i64; 2],
-    triangle: i64,
-    on_first: Vector,
-    on_second: Vector,
-}
-
-const NOTHING: Row = Row {
-    slack: f64::INFINITY,
-    distance: f64::INFINITY,
-    structure: -1,
-    robots: [-1; 2],
-    segments: [-1; 2],
-    triangle: -1,
-    on_first: Vector::NAN,
-    on_second: Vector::NAN,
-};
-
-impl Row {
-    fn new(found: &Tightest, placed: &[Placed<'_>]) -> Self {
-        let slack = found.slack;
-        match &found.between {
-            Between::Structure(it) => Self {
-                slack,
-                distance: it.nearest.distance,
-                structure: it.structure.into(),
-                robots: [it.robot.into(), -1],
-                segments: [it.nearest.segment.into(), -1],
-                triangle: it.nearest.triangle.into(),
-                on_first: it.nearest.on_robot,
-                on_second: it.nearest.on_mesh,
-            },
-            Between::Robots { robots, nearest } => Self {
-                slack,
-                distance: nearest.distance,
-                robots: robots.map(i64::from),
-                segments: std::array::from_fn(|k| {
-                    let (chain, _, points) = placed[robots[k] as usize];
-                    segment_of(chain, points, nearest.links[k] as usize)
-                }),
-                on_first: nearest.on_first,
-                on_second: nearest.on_second,
-                ..NOTHING
-            },
-            _ => Self { slack, ..NOTHING },
-        }
-    }
-}
-
 impl Scene {
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
         let structures = self.structures.with(py, |structures| {
@@ -280,9 +167,7 @@ impl Scene {
                     );
                     return Err(Refused::other("bad_shape", text).raise(py, None));
                 };
-                let row = |row: usize| std::array::from_fn(|column| matrix[4 * row + column]);
-                pose_from_matrix(std::array::from_fn(row))
-                    .map_err(|error| Refused::from(error).raise(py, None))?
+                pose_of(matrix).map_err(|refused| refused.raise(py, None))?
             }
         };
         let structure = Structure { name, mesh, margin, pose };
@@ -319,7 +204,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self::robots(py, robots)?;
+        let robots = robots::robots(py, robots)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -354,7 +239,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self::robots(py, robots)?;
+        let robots = robots::robots(py, robots)?;
         let mut all: Vec<Row> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -363,17 +248,86 @@ impl Scene {
             Ok(())
         };
         ask_each(py, &self.snapshot(py), &robots, (NOTHING, 1), ask, |_, found| all.extend(found))?;
-        let shape = || robots.shape(&[]);
-        let values = (
-            array_or_number(py, shape(), all.iter().map(|row| row.slack).collect())?,
-            array_or_number(py, shape(), all.iter().map(|row| row.distance).collect())?,
-            array_or_number(py, shape(), all.iter().map(|row| row.structure).collect())?,
-            array(py, robots.shape(&[2]), all.iter().flat_map(|row| row.robots).collect())?,
-            array(py, robots.shape(&[2]), all.iter().flat_map(|row| row.segments).collect())?,
-            array_or_number(py, shape(), all.iter().map(|row| row.triangle).collect())?,
-            array(py, robots.shape(&[3]), flat(all.iter().map(|row| row.on_first)))?,
-            array(py, robots.shape(&[3]), flat(all.iter().map(|row| row.on_second)))?,
-        );
-        answer(py, "Tightest", values)
+        tightest(py, &robots, &all)
+    }
+
+    /// Of each structure, where the robots are closest to it, whether it has a margin or not.
+    ///
+    /// Parameters
+    /// ----------
+    /// robots, caps
+    ///     As for `clears`.
+    ///
+    /// Returns
+    /// -------
+    /// PerStructure
+    ///     Arrays with an entry for each structure, (M, ...), or (B, M, ...) of a batch.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `clears`.
+    #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
+    fn per_structure<'py>(
+        &self,
+        py: Python<'py>,
+        robots: Vec<Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (robots, snapshot) = (robots::robots(py, robots)?, self.snapshot(py));
+        let mut all: Vec<StructureProximity> = Vec::with_capacity(robots.len() * snapshot.structures.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<StructureProximity>]| {
+            let placed = place(&mut session.chains, robot, caps)?;
+            let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
+            Ok(session.scene.per_structure(&placed, &mut row[0])?)
+        };
+        ask_each(py, &snapshot, &robots, (Vec::new(), 1), ask, |_, found| {
+            all.extend(found.iter().flatten())
+        })?;
+        per_structure(py, &robots.shape(&[snapshot.structures.len()]), &all)
+    }
+
+    /// Every contact of every robot with every structure that is at most `reach` away, whether that has a margin or not, structure
+    /// by structure and robot by robot: `Mesh.within` of all of them.
+    ///
+    /// Parameters
+    /// ----------
+    /// robots, caps
+    ///     As for `clears`.
+    /// reach : float
+    ///     A length, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// SceneContacts
+    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are ``offsets[k]:offsets[k + 1]``.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The reach is negative or NaN, or as for `clears`.
+    #[pyo3(signature = (robots, reach, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, *, caps=\"fitted\")")]
+    fn contacts<'py>(
+        &self,
+        py: Python<'py>,
+        robots: Vec<Bound<'py, PyAny>>,
+        reach: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check(py, "reach", Some(reach))?;
+        let robots = robots::robots(py, robots)?;
+        let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
+            let placed = place(&mut session.chains, robot, caps)?;
+            let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
+            Ok(session.scene.contacts(&placed, reach, &mut row[0])?)
+        };
+        ask_each(py, &self.snapshot(py), &robots, (Vec::new(), 1), ask, |_, found| {
+            for found in found {
+                all.extend(found);
+                offsets.push(all.len() as i64);
+            }
+        })?;
+        contacts(py, &all, offsets)
     }
 }

@@ -1,0 +1,67 @@
+//! Poses, as matrices describe them.
+
+use super::numbers::{Numbers, shape_text};
+use crate::error::Refused;
+use parry_continuum::parry::math::Pose;
+use parry_continuum::pose_from_matrix;
+use pyo3::prelude::*;
+use std::ops::Range;
+
+/// The poses of a batch.
+pub(crate) enum Poses<'py> {
+    Identity,
+    Shared(Numbers<'py>),
+    Each(Numbers<'py>),
+}
+
+impl<'py> Poses<'py> {
+    /// The parameter `pose`: one for all, (4, 4), or one for each of a batch.
+    pub(crate) fn new(given: &Bound<'py, PyAny>, count: Option<usize>) -> PyResult<Self> {
+        let numbers = Numbers::new(given, "pose")?;
+        match (numbers.shape(), count) {
+            ([4, 4], _) => Ok(Self::Shared(numbers)),
+            (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
+            (shape, _) => {
+                let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
+                let text = format!(
+                    "`pose` has the shape {}; give None, or the shape (4, 4){fit}",
+                    shape_text(shape)
+                );
+                Err(Refused::other("bad_shape", text).raise(given.py(), None))
+            }
+        }
+    }
+
+    /// One pose, or many, and how many of those.
+    pub(crate) fn batch(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Self, Option<usize>)> {
+        let numbers = Numbers::new(given, name)?;
+        match *numbers.shape() {
+            [4, 4] => Ok((Self::Shared(numbers), None)),
+            [count, 4, 4] => Ok((Self::Each(numbers), Some(count))),
+            ref shape => {
+                let text = format!("`{name}` has the shape {}; give (4, 4) or (B, 4, 4)", shape_text(shape));
+                Err(Refused::other("bad_shape", text).raise(given.py(), None))
+            }
+        }
+    }
+
+    /// Whether one stands for all.
+    pub(crate) fn is_one(&self) -> bool {
+        matches!(self, Self::Shared(_))
+    }
+
+    /// The matrices of some of the batch: one where one stands for all, and none where all are the identity.
+    pub(crate) fn matrices(&self, range: Range<usize>) -> &[[f64; 16]] {
+        match self {
+            Self::Identity => &[],
+            Self::Shared(pose) => pose.values().as_chunks().0,
+            Self::Each(poses) => &poses.values().as_chunks().0[range],
+        }
+    }
+}
+
+/// The pose that a matrix is.
+pub(crate) fn pose_of(matrix: &[f64; 16]) -> Result<Pose, Refused> {
+    let row = |row: usize| std::array::from_fn(|column| matrix[4 * row + column]);
+    Ok(pose_from_matrix(std::array::from_fn(row))?)
+}

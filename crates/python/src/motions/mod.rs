@@ -1,0 +1,139 @@
+//! Motions as objects: a class for each kind, and what all of them are.
+
+mod bending;
+mod linear;
+mod motion_path;
+mod moving;
+mod moving_base;
+mod rigid;
+mod way;
+
+pub(crate) use bending::BendingMotion;
+pub(crate) use linear::{LinearMotion, Maker, maker};
+pub(crate) use motion_path::MotionPath;
+pub(crate) use moving::Moving;
+pub(crate) use moving_base::MovingBase;
+pub(crate) use rigid::RigidMotion;
+
+use crate::error::Refused;
+use crate::threads::{Asked, compute};
+use pyo3::PyClass;
+use pyo3::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A robot that changes with time, from 0 to 1; or a batch of such.
+///
+/// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of any of them, and `MotionPath` puts
+/// them one after another. `Mesh.clears_motion`, `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of
+/// them. A motion has copied what it was made of, and never changes.
+#[pyclass(frozen, subclass, module = "parry_continuum")]
+pub(crate) struct Motion {
+    motions: Arc<Vec<Moving>>,
+    /// How many there are; none where one motion was given, without a first index.
+    count: Option<usize>,
+}
+
+#[pymethods]
+impl Motion {
+    /// How many motions there are; None of one that is no batch.
+    #[getter]
+    fn count(&self) -> Option<usize> {
+        self.count
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let name = slf.get_type().name()?;
+        Ok(match slf.get().count {
+            Some(count) => format!("<{name}: a batch of {count}>"),
+            None => format!("<{name}>"),
+        })
+    }
+}
+
+impl Motion {
+    /// The motion of one, or of each of a batch. `make` runs without the GIL.
+    pub(crate) fn new(
+        py: Python<'_>,
+        count: Option<usize>,
+        make: impl Fn(usize) -> Result<Moving, Refused> + Sync,
+    ) -> PyResult<Self> {
+        /// Signals are looked at after so many.
+        const CHUNK: usize = 1024;
+        let all = count.unwrap_or(1);
+        let mut motions = Vec::with_capacity(all);
+        for start in (0..all).step_by(CHUNK) {
+            let range = start..all.min(start + CHUNK);
+            let refused = compute(py, || {
+                range.clone().find_map(|place| match make(place) {
+                    Ok(motion) => {
+                        motions.push(motion);
+                        None
+                    }
+                    Err(refused) => Some((place, refused)),
+                })
+            })?;
+            if let Some((place, refused)) = refused {
+                return Err(refused.raise(py, count.map(|_| place)));
+            }
+            py.check_signals()?;
+        }
+        Ok(Self { motions: Arc::new(motions), count })
+    }
+
+    /// An object of a class of motions.
+    fn into_class<C: PyClass<BaseType = Self>>(self, class: C) -> PyClassInitializer<C> {
+        PyClassInitializer::from(self).add_subclass(class)
+    }
+
+    /// How many motions there are, and those: one stands for all of a batch.
+    fn parts(&self) -> (Option<usize>, Arc<Vec<Moving>>) {
+        (self.count, Arc::clone(&self.motions))
+    }
+}
+
+/// The motion at a place of a batch, of which there may be one for all.
+fn at(motions: &[Moving], place: usize) -> &Moving {
+    &motions[if motions.len() == 1 { 0 } else { place }]
+}
+
+/// How many there are of a batch, of parts each of which is one for all or as many as there are.
+fn together(
+    py: Python<'_>,
+    parts: impl IntoIterator<Item = (&'static str, Option<usize>)>,
+) -> PyResult<Option<usize>> {
+    let mut parts = parts.into_iter().filter_map(|(name, count)| Some((name, count?)));
+    let Some((first, count)) = parts.next() else { return Ok(None) };
+    match parts.find(|(_, other)| *other != count) {
+        None => Ok(Some(count)),
+        Some((name, other)) => {
+            let text =
+                format!("`{first}` has {count} and `{name}` {other}; give as many of both, or one of either");
+            Err(Refused::other("bad_shape", text).raise(py, None))
+        }
+    }
+}
+
+/// Some motions of a batch, which share its memory.
+#[derive(Default)]
+pub(crate) struct SomeMotions {
+    first: usize,
+    motions: Arc<Vec<Moving>>,
+}
+
+impl Asked for Motion {
+    type Block = SomeMotions;
+    type One<'a> = &'a Moving;
+
+    fn count(&self) -> Option<usize> {
+        self.count
+    }
+
+    fn copy(&self, range: Range<usize>, block: &mut SomeMotions) {
+        (block.first, block.motions) = (range.start, Arc::clone(&self.motions));
+    }
+
+    fn one(block: &SomeMotions, place: usize) -> &Moving {
+        &block.motions[block.first + place]
+    }
+}

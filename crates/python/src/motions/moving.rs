@@ -1,0 +1,48 @@
+//! Any of the library's motions.
+
+use parry_continuum::parry::math::Pose;
+use parry_continuum::{
+    BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
+};
+
+/// One motion of a batch, of whatever kind.
+#[derive(Clone, Debug)]
+pub(crate) enum Moving {
+    Linear(LinearMotion),
+    Rigid(Box<RigidMotion>),
+    Bending(BendingMotion),
+    OnBase(Box<MovingBase<Moving>>),
+    Path(MotionPath<Moving>),
+}
+
+impl Motion for Moving {
+    fn shape(&self, t: f64, tube: &mut Tube) -> Result<Pose, RobotError> {
+        match self {
+            Self::Linear(motion) => motion.shape(t, tube),
+            Self::Rigid(motion) => motion.shape(t, tube),
+            Self::Bending(motion) => motion.shape(t, tube),
+            Self::OnBase(motion) => motion.shape(t, tube),
+            Self::Path(motion) => motion.shape(t, tube),
+        }
+    }
+
+    fn speed(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Speed {
+        match self {
+            Self::Linear(motion) => motion.speed(section, shares, times),
+            Self::Rigid(motion) => motion.speed(section, shares, times),
+            Self::Bending(motion) => motion.speed(section, shares, times),
+            Self::OnBase(motion) => motion.speed(section, shares, times),
+            Self::Path(motion) => motion.speed(section, shares, times),
+        }
+    }
+
+    fn legs(&self) -> usize {
+        match self {
+            Self::Linear(motion) => motion.legs(),
+            Self::Rigid(motion) => motion.legs(),
+            Self::Bending(motion) => motion.legs(),
+            Self::OnBase(motion) => motion.legs(),
+            Self::Path(motion) => motion.legs(),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Whether a robot keeps a margin from a mesh that moves meanwhile.
+
+use super::motion_answer::motion_answer;
+use super::way::{Arguments, Question, Way, needed};
+use crate::input::{Caps, vectors};
+use crate::mesh::{Mesh, rows};
+use crate::threads::Session;
+use parry_continuum::Motion;
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{MotionAnswer, ProximityError};
+use pyo3::prelude::*;
+
+struct While {
+    to: Vec<Vector>,
+    margin: f64,
+    resolution: f64,
+}
+
+impl Question<MotionAnswer> for While {
+    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<MotionAnswer, ProximityError> {
+        session.search.clears_motion_while(&self.to, motion, self.margin, self.resolution)
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    /// Whether robots keep more than a margin away from the mesh on their way, while each vertex moves straight and evenly to another
+    /// place in the same time: an organ that breathes, a registration that is corrected, a step of a simulation of tissue.
+    ///
+    /// ``clears_motion_while(to, start, end, radii, margin, resolution)`` asks about points that move straight and evenly, and
+    /// ``clears_motion_while(to, motion, margin=..., resolution=...)`` about any motion. A robot at rest is a `RigidMotion` from a pose
+    /// to the same pose. The mesh stays where it was; `move` moves it. Each motion goes once through all triangles.
+    ///
+    /// Parameters
+    /// ----------
+    /// to : (V, 3) array of any number type
+    ///     Where the vertices are at the time 1.
+    /// start, end, radii, margin, resolution, caps
+    ///     As for `clears_motion`.
+    ///
+    /// Returns
+    /// -------
+    /// MotionAnswer
+    ///     Of one motion, or arrays with one entry for each motion. Points are those of robot and mesh at that time.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     There are more or fewer vertices than the mesh has, one is not finite or out of range, or as for `clears_motion`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import Decision, Mesh, RigidMotion
+    /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
+    /// >>> at_rest = RigidMotion([[0, 0, 5], [4, 0, 5]], 0.5, np.eye(4), np.eye(4))
+    /// >>> risen = floor.vertices + [0, 0, 3]
+    /// >>> floor.clears_motion_while(risen, at_rest, margin=1, resolution=1e-3).decision is Decision.CLEAR
+    /// True
+    /// >>> floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3).decision is Decision.CONTACT
+    /// True
+    #[pyo3(signature = (to, start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, to, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn clears_motion_while<'py>(
+        &self,
+        py: Python<'py>,
+        to: &Bound<'py, PyAny>,
+        start: &Bound<'py, PyAny>,
+        end: Option<&Bound<'py, PyAny>>,
+        radii: Option<&Bound<'py, PyAny>>,
+        margin: Option<f64>,
+        resolution: Option<f64>,
+        caps: Option<Caps>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let question = While {
+            to: vectors(rows(to, "to")?.points()),
+            margin: needed(py, "margin", margin)?,
+            resolution: needed(py, "resolution", resolution)?,
+        };
+        motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
+    }
+}

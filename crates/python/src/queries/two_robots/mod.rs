@@ -1,0 +1,196 @@
+//! A robot against another, and against itself.
+
+mod answers;
+mod functions;
+mod robot_pair;
+
+pub(crate) use answers::segment_of;
+pub(crate) use functions::{between, clears_between, self_clears, self_minimum};
+pub(crate) use robot_pair::RobotPair;
+
+use super::distance::{no_chain, set_chain};
+use crate::error::Refused;
+use crate::input::{Caps, Given, Robots};
+use crate::output::array_or_number;
+use crate::threads::{Asked, Held, Lender, ask_each};
+use answers::{Row, proximities, proximities_of_segments, proximities_within};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::Pose;
+use parry_continuum::proximity::{self, RobotProximity};
+use pyo3::prelude::*;
+
+/// Sessions that nobody uses. Needs no mesh.
+#[derive(Default)]
+struct Pairs(Held<Vec<Session>>);
+
+#[derive(Default)]
+struct Session {
+    pair: proximity::RobotPair,
+    chains: [Option<Chain>; 2],
+    found: Vec<RobotProximity>,
+}
+
+impl Lender for Pairs {
+    type Session = Session;
+
+    fn lend(&self, py: Python<'_>) -> PyResult<Session> {
+        Ok(self.0.with(py, Vec::pop).unwrap_or_default())
+    }
+
+    fn take_back(&self, py: Python<'_>, _: usize, sessions: impl IntoIterator<Item = Session>) {
+        self.0.with(py, |free| free.extend(sessions));
+    }
+}
+
+impl Session {
+    fn place(&mut self, robot: &Given<'_>, caps: Caps) -> Result<[Pose; 2], Refused> {
+        let other = robot.other().ok_or_else(no_chain)?;
+        let [first, second] = &mut self.chains;
+        set_chain(first, robot, caps)?;
+        set_chain(second, &other, caps)?;
+        Ok([robot.pose()?, other.pose()?])
+    }
+
+    fn parts(&mut self) -> Result<Parts<'_>, Refused> {
+        let Self { pair, chains, found } = self;
+        match chains {
+            [Some(first), Some(second)] => Ok((pair, [first, second], found)),
+            [Some(first), None] => Ok((pair, [first, first], found)),
+            _ => Err(no_chain()),
+        }
+    }
+}
+
+/// Who is asked, about which chains, and memory for the answers.
+type Parts<'a> = (&'a mut proximity::RobotPair, [&'a Chain; 2], &'a mut Vec<RobotProximity>);
+
+/// Two robots or two batches, or one robot and a batch.
+fn pairs<'py>(
+    [points_a, radii_a, points_b, radii_b]: [&Bound<'py, PyAny>; 4],
+    [pose_a, pose_b]: [Option<&Bound<'py, PyAny>>; 2],
+) -> PyResult<Robots<'py>> {
+    let others = Robots::new("points_b", points_b, radii_b, pose_b)?;
+    Robots::new("points_a", points_a, radii_a, pose_a)?.with_others(points_a.py(), others)
+}
+
+impl Pairs {
+    fn minimum<'py>(&self, py: Python<'py>, robots: &Robots<'py>, caps: Caps) -> PyResult<Bound<'py, PyAny>> {
+        let mut rows = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
+            let poses = session.place(robot, caps)?;
+            let other = robot.other().ok_or_else(no_chain)?;
+            let (pair, chains, _) = session.parts()?;
+            let found = pair.minimum(chains[0], &poses[0], chains[1], &poses[1])?;
+            row[0] = Some(Row::new(found, chains, [robot.points, other.points]));
+            Ok(())
+        };
+        ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;
+        proximities(py, robots, &rows)
+    }
+
+    fn per_link<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let segments = robots.segments_each();
+        let mut rows = Vec::with_capacity(robots.len() * segments);
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
+            let poses = session.place(robot, caps)?;
+            let other = robot.other().ok_or_else(no_chain)?;
+            let (pair, chains, found) = session.parts()?;
+            pair.per_link(chains[0], &poses[0], chains[1], &poses[1], found)?;
+            for found in found.iter() {
+                let found = Row::new(*found, chains, [robot.points, other.points]);
+                if let Some(row) =
+                    usize::try_from(found.segments[0]).ok().and_then(|place| row.get_mut(place))
+                {
+                    *row = Some(found);
+                }
+            }
+            Ok(())
+        };
+        ask_each(py, self, robots, (None, segments.max(1)), ask, |_, found| rows.extend_from_slice(found))?;
+        proximities_of_segments(py, robots, &rows)
+    }
+
+    fn within<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        margin: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (mut rows, mut offsets) = (Vec::new(), vec![0_i64]);
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<Row>]| {
+            let poses = session.place(robot, caps)?;
+            let other = robot.other().ok_or_else(no_chain)?;
+            let (pair, chains, found) = session.parts()?;
+            pair.within(chains[0], &poses[0], chains[1], &poses[1], margin, found)?;
+            row[0] =
+                found.iter().map(|found| Row::new(*found, chains, [robot.points, other.points])).collect();
+            Ok(())
+        };
+        ask_each(py, self, robots, (Vec::new(), 1), ask, |_, found| {
+            for found in found {
+                rows.extend_from_slice(found);
+                offsets.push(rows.len() as i64);
+            }
+        })?;
+        proximities_within(py, &rows, offsets)
+    }
+
+    fn clears<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        margin: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
+            let poses = session.place(robot, caps)?;
+            let (pair, chains, _) = session.parts()?;
+            row[0] = pair.clears(chains[0], &poses[0], chains[1], &poses[1], margin)?;
+            Ok(())
+        };
+        ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;
+        array_or_number(py, robots.shape(&[]), all)
+    }
+
+    fn self_minimum<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut rows = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
+            set_chain(&mut session.chains[0], robot, caps)?;
+            let (pair, [chain, _], _) = session.parts()?;
+            row[0] = pair.self_minimum(chain)?.map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
+            Ok(())
+        };
+        ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;
+        proximities(py, robots, &rows)
+    }
+
+    fn self_clears<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        margin: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
+            set_chain(&mut session.chains[0], robot, caps)?;
+            let (pair, [chain, _], _) = session.parts()?;
+            row[0] = pair.self_clears(chain, margin)?;
+            Ok(())
+        };
+        ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;
+        array_or_number(py, robots.shape(&[]), all)
+    }
+}

@@ -1,0 +1,106 @@
+//! What a question about a motion was given: two shapes and radii, or a motion.
+
+use crate::error::Refused;
+use crate::input::{Caps, Given, Robots};
+use crate::motions::{Maker, Motion, Moving, maker};
+use crate::threads::{Asked, Engine, Session, ask_each};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// The arguments of a question about a motion, of which a motion stands for the first three.
+pub(super) struct Arguments<'a, 'py> {
+    pub start: &'a Bound<'py, PyAny>,
+    pub end: Option<&'a Bound<'py, PyAny>>,
+    pub radii: Option<&'a Bound<'py, PyAny>>,
+    pub caps: Option<Caps>,
+}
+
+/// What is asked about.
+pub(super) enum Way<'a, 'py> {
+    Motion(&'a Bound<'py, Motion>),
+    /// Each motion is made when it is asked about.
+    Linear(Robots<'py>, Maker),
+}
+
+/// A question about any motion of the library's.
+pub(super) trait Question<A>: Sync {
+    fn ask(
+        &self,
+        session: &mut Session,
+        motion: &impl parry_continuum::Motion,
+    ) -> Result<A, parry_continuum::proximity::ProximityError>;
+}
+
+/// The value of a parameter that has to be there.
+pub(super) fn needed<T>(py: Python<'_>, parameter: &str, given: Option<T>) -> PyResult<T> {
+    given.ok_or_else(|| {
+        let text = format!(
+            "`{parameter}` is missing; give `start`, `end`, `radii` and numbers, or a motion, and the numbers by name"
+        );
+        Refused::other("bad_type", text).raise(py, None)
+    })
+}
+
+impl<'a, 'py> Way<'a, 'py> {
+    pub(super) fn new(given: &Arguments<'a, 'py>) -> PyResult<Self> {
+        let py = given.start.py();
+        if let Ok(motion) = given.start.cast::<Motion>() {
+            let besides = [
+                ("end", given.end.is_some()),
+                ("radii", given.radii.is_some()),
+                ("caps", given.caps.is_some()),
+            ];
+            return match besides.into_iter().find(|(_, is_given)| *is_given) {
+                None => Ok(Self::Motion(motion)),
+                Some((name, _)) => {
+                    let text = format!(
+                        "`{name}` is given beside a motion, which has its own; give `margin` and the like by name"
+                    );
+                    Err(Refused::other("bad_type", text).raise(py, None))
+                }
+            };
+        }
+        let end = needed(py, "end", given.end)?;
+        let radii = needed(py, "radii", given.radii)?;
+        let make = maker(py, given.caps.unwrap_or(Caps::Fitted))?;
+        let robots = Robots::new("start", given.start, radii, None)?.with_as_many("end", end, "start")?;
+        Ok(Self::Linear(robots, make))
+    }
+
+    /// How many motions there are; none where there is one by itself.
+    pub(super) fn count(&self) -> Option<usize> {
+        match self {
+            Self::Motion(motion) => Asked::count(motion.get()),
+            Self::Linear(robots, _) => robots.count,
+        }
+    }
+
+    /// The answer about each.
+    pub(super) fn ask<A: Clone + Send>(
+        &self,
+        py: Python<'py>,
+        engine: &Arc<Engine>,
+        question: &impl Question<A>,
+    ) -> PyResult<Vec<A>> {
+        let mut all = Vec::with_capacity(self.count().unwrap_or(1));
+        let take = |_: usize, found: &[Option<A>]| all.extend(found.iter().flatten().cloned());
+        match self {
+            Self::Motion(motion) => {
+                let ask = |session: &mut Session, motion: &&Moving, row: &mut [Option<A>]| {
+                    row[0] = Some(question.ask(session, *motion)?);
+                    Ok(())
+                };
+                ask_each(py, engine, motion.get(), (None, 1), ask, take)?;
+            }
+            Self::Linear(robots, make) => {
+                let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<A>]| {
+                    let motion = make(robot.points, robot.more, robot.radii)?;
+                    row[0] = Some(question.ask(session, &motion)?);
+                    Ok(())
+                };
+                ask_each(py, engine, robots, (None, 1), ask, take)?;
+            }
+        }
+        Ok(all)
+    }
+}
