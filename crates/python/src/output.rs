@@ -21,10 +21,12 @@ pub(crate) fn array<'py, T: Element + Copy>(
     if numbers.len() > FEW || numbers.len() != shape.iter().product::<usize>() {
         return PyArray1::from_vec(py, numbers).reshape(shape);
     }
-    let array = PyArrayDyn::zeros(py, shape, false);
-    // SAFETY: the array is new, so that nobody else has it.
-    unsafe { array.as_slice_mut() }?.copy_from_slice(&numbers);
-    Ok(array)
+    // SAFETY: the array is new, so that nobody else has it, and contiguous. All of it is written, with numbers that need no drop.
+    unsafe {
+        let array = PyArrayDyn::new(py, shape, false);
+        std::ptr::copy_nonoverlapping(numbers.as_ptr(), array.data(), numbers.len());
+        Ok(array)
+    }
 }
 
 /// An array of this shape, or the number itself where the shape is that of one.
@@ -47,19 +49,35 @@ pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().flat_map(|point| point.to_array()).collect()
 }
 
-/// An answer of the package's Python half: the tuple with names of that class, of these values.
+/// An answer of the package's Python half: the tuple with names of that class, of these values. `answer!` is the same with a place
+/// of its own to keep the class.
 ///
 /// The class's own `__new__` is Python code, whose work this does: `tuple.__new__` with as many values as the class has names.
-pub(crate) fn answer<'py, V>(py: Python<'py>, class: &str, values: V) -> PyResult<Bound<'py, PyAny>>
+pub(crate) fn named<'py, V>(
+    py: Python<'py>,
+    kept: &'static PyOnceLock<Py<PyAny>>,
+    class: &str,
+    values: V,
+) -> PyResult<Bound<'py, PyAny>>
 where
     V: IntoPyObject<'py, Target = PyTuple>,
     PyErr: From<V::Error>,
 {
     static NEW: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let find = || Ok::<_, PyErr>(py.get_type::<PyTuple>().getattr("__new__")?.unbind());
+    let new = || Ok::<_, PyErr>(py.get_type::<PyTuple>().getattr("__new__")?.unbind());
+    let find = || Ok::<_, PyErr>(answers(py)?.getattr(class)?.unbind());
     let values = values.into_pyobject(py)?.into_bound();
-    NEW.get_or_try_init(py, find)?.bind(py).call1((answers(py)?.getattr(class)?, values))
+    NEW.get_or_try_init(py, new)?.bind(py).call1((kept.get_or_try_init(py, find)?.bind(py), values))
 }
+
+/// The tuple with names of a class of `_answers.py`.
+macro_rules! answer {
+    ($py:expr, $class:literal, $values:expr) => {{
+        static KEPT: ::pyo3::sync::PyOnceLock<::pyo3::Py<::pyo3::PyAny>> = ::pyo3::sync::PyOnceLock::new();
+        $crate::output::named($py, &KEPT, $class, $values)
+    }};
+}
+pub(crate) use answer;
 
 fn answers(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static ANSWERS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();

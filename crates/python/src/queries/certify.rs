@@ -95,6 +95,6 @@ impl Mesh {
         })?;
         let lower = array(py, shape.clone(), bounds.iter().map(|it| it[0]).collect())?;
         let upper = array(py, shape, bounds.iter().map(|it| it[1]).collect())?;
-        crate::output::answer(py, "Certificate", (lower, upper))
+        crate::output::answer!(py, "Certificate", (lower, upper))
     }
 }

@@ -201,7 +201,7 @@ impl Mesh {
             places(|found| found.triangle)?,
             status,
         );
-        answer(py, "Clearance", values)
+        answer!(py, "Clearance", values)
     }
 
     /// Whether curved tubes keep more than a margin away.

@@ -101,6 +101,6 @@ impl Mesh {
             bases.extend(found.iter().map(|found| found.1));
         })?;
         let clears = array_or_number(py, robots.shape(&[]), clears)?;
-        answer(py, "InsideAnswer", (clears, members(py, "Side", robots.shape(&[]), bases)?))
+        answer!(py, "InsideAnswer", (clears, members(py, "Side", robots.shape(&[]), bases)?))
     }
 }

@@ -156,6 +156,6 @@ impl Mesh {
             array_or_number(py, shape(), all.iter().map(|found| found.arc_length).collect())?,
             array_or_number(py, shape(), all.iter().map(|found| i64::from(found.triangle)).collect())?,
         );
-        answer(py, "Minimum", values)
+        answer!(py, "Minimum", values)
     }
 }

@@ -129,6 +129,6 @@ impl Mesh {
             array(py, robots.shape(&[4, 4]), poses)?,
             array_or_number(py, robots.shape(&[]), kinks)?,
         );
-        answer(py, "Gradient", found)
+        answer!(py, "Gradient", found)
     }
 }

@@ -37,5 +37,5 @@ pub(super) fn motion_answer<'py>(
         numbers(|shape| shape.arc_length)?,
         places(|shape| shape.triangle)?,
     );
-    answer(py, "MotionAnswer", values)
+    answer!(py, "MotionAnswer", values)
 }

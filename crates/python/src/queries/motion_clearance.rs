@@ -83,6 +83,6 @@ impl Mesh {
             numbers(|found| found.arc_length)?,
             places(|found| found.triangle)?,
         );
-        answer(py, "MotionClearance", values)
+        answer!(py, "MotionClearance", values)
     }
 }

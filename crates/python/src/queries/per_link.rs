@@ -101,6 +101,6 @@ impl Mesh {
             array(py, shape(), arc_length)?,
             array(py, shape(), triangle)?,
         );
-        answer(py, "PerLink", values)
+        answer!(py, "PerLink", values)
     }
 }

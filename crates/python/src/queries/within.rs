@@ -96,6 +96,6 @@ impl Mesh {
             array(py, count(), robot_of)?,
             array(py, vec![offsets.len()], offsets.clone())?,
         );
-        answer(py, "Contacts", values)
+        answer!(py, "Contacts", values)
     }
 }

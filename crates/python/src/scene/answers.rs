@@ -81,7 +81,7 @@ pub(super) fn tightest<'py>(
         array(py, robots.shape(&[3]), flat(all.iter().map(|row| row.on_first)))?,
         array(py, robots.shape(&[3]), flat(all.iter().map(|row| row.on_second)))?,
     );
-    answer(py, "Tightest", values)
+    answer!(py, "Tightest", values)
 }
 
 /// Of `shape` many structures, and before that of a batch.
@@ -108,7 +108,7 @@ pub(super) fn per_structure<'py>(
         numbers(|it| it.nearest.arc_length)?,
         places(|it| it.nearest.triangle)?,
     );
-    answer(py, "PerStructure", values)
+    answer!(py, "PerStructure", values)
 }
 
 /// Those of set k of a batch are between two offsets.
@@ -142,5 +142,5 @@ pub(super) fn contacts<'py>(
         array(py, count(), set_of.collect())?.into_any(),
         array(py, vec![offsets.len()], offsets.clone())?.into_any(),
     ];
-    answer(py, "SceneContacts", PyTuple::new(py, values)?)
+    answer!(py, "SceneContacts", PyTuple::new(py, values)?)
 }

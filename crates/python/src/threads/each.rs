@@ -104,6 +104,9 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
         if asked.count().is_some() {
             py.check_signals()?;
         }
+        if end == count {
+            break;
+        }
         let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
         chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(FEW, LARGEST_CHUNK);
         start = end;

@@ -70,7 +70,7 @@ fn tuple<'py>(
         array(py, of(2), segments)?,
         array(py, of(2), lengths)?,
     );
-    answer(py, "RobotProximity", values)
+    answer!(py, "RobotProximity", values)
 }
 
 /// Rows of a batch, those of pair k between two offsets.
@@ -94,5 +94,5 @@ pub(super) fn proximities_within<'py>(
         array(py, vec![count], pair_of.collect())?,
         array(py, vec![offsets.len()], offsets.clone())?,
     );
-    answer(py, "RobotContacts", values)
+    answer!(py, "RobotContacts", values)
 }
