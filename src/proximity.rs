@@ -56,6 +56,8 @@
 //! | do two robots keep a margin? | [`clears_between`], [`RobotPair::clears`] |
 //! | of each link, the closest of the other robot | [`RobotPair::per_link`] |
 //! | every place where two robots are near | [`RobotPair::within`] |
+//! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
+//! | do two tubes keep a margin? | [`RobotPair::tubes_clear`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
 //!
@@ -105,8 +107,8 @@ pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof,
-    ProximityError, RobotProximity, SceneContact, SceneError, ShapeInContact, Side, StructureProximity,
-    Tightest, TriangleFeature, TubePiece, Witness, Work,
+    ProximityError, RobotClearance, RobotProximity, SceneContact, SceneError, ShapeInContact, Side,
+    StructureProximity, Tightest, TriangleFeature, TubePiece, Witness, Work,
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,

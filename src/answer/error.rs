@@ -229,6 +229,12 @@ pub enum PlacementFault {
         /// The largest magnitude accepted.
         limit: Real,
     },
+    /// The pose carries a tube beyond that range.
+    #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
+    TubeOutOfRange {
+        /// The largest magnitude accepted.
+        limit: Real,
+    },
 }
 
 impl PlacementFault {
@@ -252,6 +258,7 @@ impl ProximityError {
             Self::PoseNotFinite => PlacementFault::PoseNotFinite,
             Self::PoseNotRigid { length } => PlacementFault::PoseNotRigid { length },
             Self::OutOfRange { link, limit } => PlacementFault::OutOfRange { link, limit },
+            Self::TubeOutOfRange { limit } => PlacementFault::TubeOutOfRange { limit },
             other => return other,
         };
         Self::Placement { parameter, fault }

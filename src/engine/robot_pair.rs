@@ -1,9 +1,11 @@
 //! Two robots beside one another.
 
-use crate::answer::{ProximityError, RobotProximity};
-use crate::query::check_margin;
-use crate::query::robots::{OneRobot, OwnMemory, PairMemory, TwoRobots};
-use crate::robot::Chain;
+use crate::answer::{Decision, ProximityError, RobotClearance, RobotProximity};
+use crate::query::robots::{
+    OneRobot, OwnMemory, PairMemory, TubesMemory, TwoRobots, clearance_between, place_tubes, tubes_clear,
+};
+use crate::query::{check_decision, check_margin, check_not_negative};
+use crate::robot::{Chain, Tube};
 use parry3d_f64::math::{Pose, Real};
 
 /// Questions about two robots, exactly: which links are closest, and whether all keep a margin.
@@ -35,6 +37,7 @@ use parry3d_f64::math::{Pose, Real};
 pub struct RobotPair {
     memory: PairMemory,
     own: OwnMemory,
+    tubes: TubesMemory,
 }
 
 /// What the parameters are called.
@@ -50,6 +53,7 @@ impl RobotPair {
     pub fn forget(&mut self) {
         self.memory.forget();
         self.own.forget();
+        self.tubes.forget();
     }
 
     /// The two links that are closest. Of equal distances the lowest link of `a` counts, then the lowest of `b`.
@@ -120,6 +124,65 @@ impl RobotPair {
         check_margin(margin)?;
         TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.within(margin, &mut self.memory, out);
         Ok(())
+    }
+
+    /// How near two tubes are, between bounds that are at most `tolerance` apart where the tubes allow that.
+    ///
+    /// The bounds hold for the tubes as they were given, all rounding included: `lower` <= clearance <= `upper`, and `upper` is
+    /// realised by the points of the answer. There are always bounds, and [`resolved`](RobotClearance::resolved) says whether they
+    /// are as close as was asked for, as of [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance). What both tubes
+    /// state as their own errors is in both bounds.
+    ///
+    /// The work grows with the pieces near one another, about the root of 1 / tolerance where the tubes cross, and with the
+    /// number of sections of the one times that of the other.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, proximity::RobotPair};
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    ///
+    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let tube = Tube::from_samples(&arc, &[1.0; 60], Some([Vector::Z, Vector::new(-1.0_f64.sin(), 0.0, 1.0_f64.cos())]))?;
+    /// // The same tube turned around its base, whose tip bends to the other side.
+    /// let turned = Pose::new(Vector::X * 65.0, Vector::Z * std::f64::consts::PI);
+    /// let found = RobotPair::new().clearance(&tube, &Pose::IDENTITY, &tube, &turned, 0.01)?;
+    /// assert!(found.resolved && found.lower <= 3.0 && 3.0 <= found.upper && found.upper - found.lower <= 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The tolerance is negative or NaN; the curve of a tube is not finite somewhere; or a pose is not finite or not rigid, or
+    /// moves its tube out of range.
+    pub fn clearance(
+        &mut self,
+        a: &Tube,
+        pose_a: &Pose,
+        b: &Tube,
+        pose_b: &Pose,
+        tolerance: Real,
+    ) -> Result<RobotClearance, ProximityError> {
+        check_not_negative("tolerance", tolerance)?;
+        let mut tubes = place_tubes([a, b], [pose_a, pose_b], POSES)?;
+        clearance_between(&mut tubes, &mut self.tubes, tolerance)
+    }
+
+    /// Whether two tubes keep more than `margin`. `Clear` and `Contact` are proven; `Undecided` is the answer only where the
+    /// clearance is within `resolution` of the margin.
+    ///
+    /// # Errors
+    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
+    /// [`clearance`](Self::clearance).
+    pub fn tubes_clear(
+        &mut self,
+        a: &Tube,
+        pose_a: &Pose,
+        b: &Tube,
+        pose_b: &Pose,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        check_decision(margin, resolution)?;
+        let mut tubes = place_tubes([a, b], [pose_a, pose_b], POSES)?;
+        tubes_clear(&mut tubes, &mut self.tubes, margin, resolution)
     }
 
     /// As [`self_minimum`], with a memory.

@@ -63,6 +63,14 @@ impl PlacedLink {
         Some(self.measure_link(other)).filter(|nearest| nearest.distance <= bound)
     }
 
+    /// Where the axes of two links are nearest, and how far they are apart there.
+    pub(crate) fn nearest_on_axes(&self, other: &Self) -> ([Vector; 2], Real) {
+        let (pair, unit) = self.with_link(other);
+        let axes = pair.axes();
+        let feet = [self.start() + self.along() * axes.s, other.start() + other.along() * axes.t];
+        (feet, axes.gap.norm() * unit)
+    }
+
     /// Both in coordinates of their own, and what 1 is there.
     fn with_link(&self, other: &Self) -> (TwoLinks<Real>, Real) {
         let [start, end] = [other.start(), other.end()].map(|point| point - self.start());

@@ -1,5 +1,6 @@
 //! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
 
+mod divided;
 mod on_loose_tube;
 mod on_tube;
 mod outer;
@@ -9,9 +10,12 @@ mod refine;
 #[cfg(test)]
 mod tests;
 mod tube_in_mesh;
+mod two_tubes;
 
+pub(crate) use divided::{Body, Bound, Divided};
 pub(crate) use outer::Outer;
 pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;
 pub(crate) use refine::{Look, Near, Part, Question, Verdict, refine};
 pub(crate) use tube_in_mesh::{Found, TubeInMesh};
+pub(crate) use two_tubes::{Beginning, FoundBetween, PiecePair, TwoTubes};

@@ -34,9 +34,10 @@
 //! centreline's points are off, which turns the chord by up to 2 error / |chord|. Where directions may be off by a stated
 //! turn, w reaches as much farther along d.
 
+use super::divided::Body;
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
-use crate::answer::TubePiece;
+use crate::answer::{ProximityError, TubePiece};
 use crate::pair::PlacedLink;
 use crate::robot::{Cap, CurveBound, ModifiedCylinder, Section};
 use parry3d_f64::math::{Real, Vector};
@@ -60,6 +61,16 @@ impl Outer {
     }
 }
 
+impl Body for Outer {
+    fn over(&self) -> Real {
+        self.over
+    }
+
+    fn aside(&self) -> Real {
+        self.aside
+    }
+}
+
 impl PlacedTube<'_> {
     /// A piece with its finite body, which is at least `lower` away from the mesh.
     pub(crate) fn report(&self, piece: &Piece, outer: &Outer, lower: Real) -> TubePiece {
@@ -69,6 +80,17 @@ impl PlacedTube<'_> {
         // checked for.
         let body = ModifiedCylinder::unchecked(body.start(), body.end(), body.radius(), caps);
         TubePiece { section: piece.section, arc_lengths: self.arcs(piece), body, lower }
+    }
+
+    /// # Errors
+    /// The curve is not finite there.
+    pub(crate) fn finite_outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
+        let outer = self.outer(piece);
+        if outer.body.is_finite() {
+            Ok(outer)
+        } else {
+            Err(ProximityError::CurveNotFinite { arc_length: self.arcs(piece)[0] })
+        }
     }
 
     /// A body that holds the piece.

@@ -44,7 +44,7 @@ impl<'a> PlacedTube<'a> {
     /// The tube has no section, or the pose is not finite or not rigid, or moves it out of range.
     pub(crate) fn new(tube: &'a Tube, pose: &Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
         let pose = rigid_pose(pose)?;
-        let radius = tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
+        let radius = tube.sections().iter().fold(0.0, |most: Real, section| most.max(section.radius));
         // A rotation keeps lengths, and a length is at most twice the largest coordinate.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
         if reach > COORDINATE_LIMIT {
@@ -63,6 +63,11 @@ impl<'a> PlacedTube<'a> {
         if least < 0.5 * self.slack {
             self.slack = self.slack.min(slack_for(2.0 * self.reach + away + longest_edge()));
         }
+    }
+
+    /// Counts another tube as what it is near to.
+    pub(super) fn beside(&mut self, other: &Self) {
+        self.slack = slack_for(self.reach + other.reach);
     }
 
     /// The same shape as a moment of a motion, to which bodies at flat ends have to be prepared.
@@ -144,6 +149,19 @@ impl<'a> PlacedTube<'a> {
     pub(crate) fn place_at(&self, section: u32, arc: Real) -> Vector {
         let section = self.section(section);
         self.point(section, self.tube.tick(section, arc))
+    }
+
+    pub(super) fn longest_section(&self) -> u32 {
+        let length = |number: &u32| {
+            let section = self.section(*number);
+            section.end - section.start
+        };
+        (0..self.sections().len() as u32).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0)
+    }
+
+    /// The largest radius of its sections.
+    pub(super) fn widest(&self) -> Real {
+        self.sections().iter().fold(0.0, |most: Real, section| most.max(section.radius))
     }
 
     /// The line between the ends of a section, and their arc lengths.

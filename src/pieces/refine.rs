@@ -6,31 +6,17 @@
 //! it the curve is resolved as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies
 //! are the links themselves.
 
-use super::outer::Outer;
-use super::piece::Piece;
-use super::placed_tube::PlacedTube;
-use super::tube_in_mesh::{Found, TubeInMesh};
+use super::divided::Divided;
 use crate::answer::ProximityError;
-use crate::pair::{Best, Nearest};
 use parry3d_f64::math::Real;
 
 /// What waits for its turn: a piece, or what is one in the present shape of a tube that moves.
-pub(crate) trait Part: Copy {
+pub(crate) trait Part<T: Divided>: Copy {
     /// The piece that holds it.
-    fn piece(&self, tube: &PlacedTube) -> Piece;
+    fn piece(&self, tube: &T) -> T::Piece;
 
     /// Its halves, as the piece that holds it is halved.
-    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2];
-}
-
-impl Part for Piece {
-    fn piece(&self, _: &PlacedTube) -> Piece {
-        *self
-    }
-
-    fn halves(self, _: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
-        halves
-    }
+    fn halves(self, tube: &T, halves: [T::Piece; 2]) -> [Self; 2];
 }
 
 /// How a question looks at a body.
@@ -46,14 +32,14 @@ pub(crate) struct Look {
 }
 
 /// A part with its body, and what was found near it.
-pub(crate) struct Near<'a, P> {
+pub(crate) struct Near<'a, T: Divided, P> {
     pub part: &'a P,
-    pub piece: &'a Piece,
-    pub outer: &'a Outer,
-    /// The triangle nearest to the body, at a distance that bounds the clearance of the part from below.
-    pub nearest: &'a Nearest,
+    pub piece: &'a T::Piece,
+    pub outer: &'a T::Body,
+    /// What is nearest to the body, at a distance that bounds the clearance of the part from below.
+    pub nearest: &'a T::Nearest,
     /// What bounds it from above.
-    pub found: &'a Found,
+    pub found: &'a T::Found,
 }
 
 /// What becomes of a part that something is near to.
@@ -67,7 +53,7 @@ pub(crate) enum Verdict {
 }
 
 /// What is asked of a tube.
-pub(crate) trait Question<P> {
+pub(crate) trait Question<T: Divided, P> {
     /// Whether the half that is nearer to what was found comes first.
     const NEARER_FIRST: bool;
 
@@ -76,34 +62,29 @@ pub(crate) trait Question<P> {
 
     /// # Errors
     /// The part cannot be judged.
-    fn look(
-        &mut self,
-        tube: &PlacedTube,
-        part: &P,
-        piece: &Piece,
-        outer: &Outer,
-    ) -> Result<Look, ProximityError>;
+    fn look(&mut self, tube: &T, part: &P, piece: &T::Piece, outer: &T::Body)
+    -> Result<Look, ProximityError>;
 
     /// The body of a part is farther away than the bound of its look.
-    fn keeps_away(&mut self, piece: &Piece, outer: &Outer, bound: Real);
+    fn keeps_away(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real);
 
     /// # Errors
     /// The part cannot be judged.
-    fn judge(&mut self, tube: &TubeInMesh, near: &Near<P>) -> Result<Verdict, ProximityError>;
+    fn judge(&mut self, tube: &T, near: &Near<T, P>) -> Result<Verdict, ProximityError>;
 
     /// A part whose halves were wanted has none.
     ///
     /// # Errors
     /// It cannot be judged without.
-    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<P>) -> Result<(), ProximityError>;
+    fn judge_whole(&mut self, tube: &T, near: &Near<T, P>) -> Result<(), ProximityError>;
 }
 
 /// Asks a question of all parts, the last one first. Those that were not needed for the answer are left in `parts`.
 ///
 /// # Errors
 /// The curve of the tube is not finite, or a part cannot be judged.
-pub(crate) fn refine<P: Part, Q: Question<P>>(
-    tube: &mut TubeInMesh,
+pub(crate) fn refine<T: Divided, P: Part<T>, Q: Question<T, P>>(
+    tube: &mut T,
     parts: &mut Vec<P>,
     question: &mut Q,
 ) -> Result<(), ProximityError> {
@@ -112,19 +93,18 @@ pub(crate) fn refine<P: Part, Q: Question<P>>(
             parts.push(part);
             return Ok(());
         }
-        let piece = part.piece(&tube.tube);
-        let outer = tube.outer(&piece)?;
-        let Look { bound, is_wide, aim, start } = question.look(&tube.tube, &part, &piece, &outer)?;
+        let piece = part.piece(tube);
+        let outer = tube.body(&piece)?;
+        let Look { bound, is_wide, aim, start } = question.look(tube, &part, &piece, &outer)?;
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
-            if tube.search.may_meet(&outer.body, bound) {
-                parts.extend(part.halves(&tube.tube, halves));
+            if tube.may_meet(&outer, bound) {
+                parts.extend(part.halves(tube, halves));
             } else {
                 question.keeps_away(&piece, &outer, bound);
             }
             continue;
         }
-        let nearest = tube.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest();
-        let Some(nearest) = nearest else {
+        let Some(nearest) = tube.nearest(&outer, bound, start) else {
             question.keeps_away(&piece, &outer, bound);
             continue;
         };
@@ -135,8 +115,8 @@ pub(crate) fn refine<P: Part, Q: Question<P>>(
             Verdict::Answered => return Ok(()),
             Verdict::Halve(aim) => match tube.halves(&piece, &outer, aim) {
                 Some(halves) => {
-                    let is_in_first = found.witness.arc_length < tube.tube.arcs(&halves[0])[1];
-                    let [first, second] = part.halves(&tube.tube, halves);
+                    let is_in_first = tube.is_in_first(&found, &halves);
+                    let [first, second] = part.halves(tube, halves);
                     let swap = Q::NEARER_FIRST && is_in_first;
                     parts.extend(if swap { [second, first] } else { [first, second] });
                 }

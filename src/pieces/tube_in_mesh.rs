@@ -1,9 +1,11 @@
 //! A tube on its way through a mesh: bodies around its pieces, and what is found near them.
 
+use super::divided::{Bound, Divided};
 use super::on_tube::OnTube;
 use super::outer::Outer;
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
+use super::refine::Part;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
 use crate::search::hierarchy::MeshSearch;
@@ -23,61 +25,54 @@ pub(crate) struct Found {
     pub witness: Witness,
 }
 
-impl TubeInMesh<'_> {
-    /// # Errors
-    /// The curve is not finite there.
-    pub(crate) fn outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
-        let outer = self.tube.outer(piece);
-        if outer.body.is_finite() {
-            Ok(outer)
-        } else {
-            Err(ProximityError::CurveNotFinite { arc_length: self.tube.arcs(piece)[0] })
-        }
+impl Bound for Found {
+    fn upper(&self) -> Real {
+        self.upper
     }
 
-    /// The halves of a piece whose body can become narrower.
-    pub(super) fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
+    fn triangle(&self) -> Option<u32> {
+        Some(self.witness.triangle)
+    }
+}
+
+impl Part<TubeInMesh<'_>> for Piece {
+    fn piece(&self, _: &TubeInMesh) -> Piece {
+        *self
+    }
+
+    fn halves(self, _: &TubeInMesh, halves: [Piece; 2]) -> [Self; 2] {
+        halves
+    }
+}
+
+impl Divided for TubeInMesh<'_> {
+    type Piece = Piece;
+    type Body = Outer;
+    type Nearest = Nearest;
+    type Found = Found;
+
+    fn body(&self, piece: &Piece) -> Result<Outer, ProximityError> {
+        self.tube.finite_outer(piece)
+    }
+
+    fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
         if outer.narrows > 0.5 * self.tube.slack() { self.tube.halves(piece, aim) } else { None }
     }
 
-    /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
-    /// the radius where that is less.
-    pub(crate) fn begin(&self, scale: Real, pieces: &mut Vec<Piece>) {
-        let radius =
-            self.tube.sections().iter().fold(0.0, |radius: Real, section| radius.max(section.radius));
-        self.tube.begin(scale.max(0.25 * radius), pieces);
+    fn may_meet(&mut self, outer: &Outer, bound: Real) -> bool {
+        self.search.may_meet(&outer.body, bound)
     }
 
-    /// Takes less for rounding if only triangles matter that are at most so far away. Whether it is less by far.
-    pub(crate) fn sharpen(&mut self, away: Real) -> bool {
-        let before = self.tube.slack();
-        self.tube.sharpen(away, || self.search.hierarchy.longest());
-        self.tube.slack() < 0.5 * before
+    fn nearest(&mut self, outer: &Outer, bound: Real, start: Option<u32>) -> Option<Nearest> {
+        self.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest()
     }
 
-    /// A first upper bound: from the triangle nearest to the longest section's chord.
-    pub(crate) fn first_bound(&mut self) -> Found {
-        let sections = self.tube.sections();
-        let length = |number: &u32| {
-            let section = &sections[*number as usize];
-            section.end - section.start
-        };
-        let longest = (0..sections.len() as u32).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0);
-        let (chord, arcs) = self.tube.chord(longest);
-        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
-        let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
-        let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
-        self.found_at(longest, arc, &nearest)
-    }
-
-    /// The upper bound that a triangle gives at a place of the tube.
-    pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> Found {
-        let place = self.tube.place_at(section, arc);
-        self.found_at(section, arc, &self.nearest_to(place, triangle))
+    fn distance(nearest: &Nearest) -> Real {
+        nearest.distance
     }
 
     /// The upper bound that the triangle nearest to a piece's body gives.
-    pub(super) fn found(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
+    fn found(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         let found = self.found_at(piece.section, arc, nearest);
@@ -92,6 +87,57 @@ impl TubeInMesh<'_> {
         if deeper.upper < found.upper { deeper } else { found }
     }
 
+    fn is_in_first(&self, found: &Found, halves: &[Piece; 2]) -> bool {
+        found.witness.arc_length < self.tube.arcs(&halves[0])[1]
+    }
+
+    fn radius(&self, piece: &Piece) -> Real {
+        self.tube.radius(piece)
+    }
+
+    fn doubt(&self, piece: &Piece) -> Real {
+        self.tube.doubt(piece)
+    }
+
+    fn uncertainty(&self) -> Real {
+        self.tube.uncertainty()
+    }
+
+    fn slack(&self) -> Real {
+        self.tube.slack()
+    }
+}
+
+impl TubeInMesh<'_> {
+    /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
+    /// the radius where that is less.
+    pub(crate) fn begin(&self, scale: Real, pieces: &mut Vec<Piece>) {
+        self.tube.begin(scale.max(0.25 * self.tube.widest()), pieces);
+    }
+
+    /// Takes less for rounding if only triangles matter that are at most so far away. Whether it is less by far.
+    pub(crate) fn sharpen(&mut self, away: Real) -> bool {
+        let before = self.tube.slack();
+        self.tube.sharpen(away, || self.search.hierarchy.longest());
+        self.tube.slack() < 0.5 * before
+    }
+
+    /// A first upper bound: from the triangle nearest to the longest section's chord.
+    pub(crate) fn first_bound(&mut self) -> Found {
+        let longest = self.tube.longest_section();
+        let (chord, arcs) = self.tube.chord(longest);
+        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
+        let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
+        let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
+        self.found_at(longest, arc, &nearest)
+    }
+
+    /// The upper bound that a triangle gives at a place of the tube.
+    pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> Found {
+        let place = self.tube.place_at(section, arc);
+        self.found_at(section, arc, &self.nearest_to(place, triangle))
+    }
+
     /// The point of a triangle nearest to a point.
     fn nearest_to(&self, point: Vector, triangle: u32) -> Nearest {
         let corners = self.search.corners(triangle);
@@ -104,16 +150,5 @@ impl TubeInMesh<'_> {
         let segment = self.tube.segment(section, arc);
         let witness = Witness { on_robot: point, on_mesh, triangle, arc_length: arc, segment };
         Found { upper, section, witness }
-    }
-
-    /// # Errors
-    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no more.
-    pub(crate) fn check_resolved(&self, possible: Real, resolution: Real) -> Result<(), ProximityError> {
-        // Written so that NaN is an error.
-        if possible <= resolution + 16.0 * self.tube.slack() {
-            Ok(())
-        } else {
-            Err(ProximityError::ToleranceTooFine { parameter: "resolution", tolerance: resolution, possible })
-        }
     }
 }

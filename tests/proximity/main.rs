@@ -32,4 +32,5 @@ mod threads;
 mod ties;
 mod tube;
 mod tube_jumps;
+mod two_tubes;
 mod visits;

@@ -12,7 +12,7 @@ use parry_continuum::{Cap, Chain, ModifiedCylinder};
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 /// A robot of up to `most` links that wanders, on a lattice every other time.
-fn robot(random: &mut Random, most: u32) -> Chain {
+pub(super) fn robot(random: &mut Random, most: u32) -> Chain {
     let lattice = random.below(2) == 0;
     let count = 1 + random.below(most);
     let step = if lattice { 1.5 } else { random.between(0.2, 1.5) };
@@ -43,7 +43,7 @@ fn robot(random: &mut Random, most: u32) -> Chain {
 }
 
 /// A pose that brings a link of the second robot to one of the first, but for up to `off`.
-fn beside(random: &mut Random, a: &Chain, pose_a: &Pose, b: &Chain, off: f64) -> Pose {
+pub(super) fn beside(random: &mut Random, a: &Chain, pose_a: &Pose, b: &Chain, off: f64) -> Pose {
     let mut some = |robot: &Chain| robot.links()[random.below(robot.links().len() as u32) as usize].start();
     let (to, from) = (pose_a * some(a), some(b));
     let turn = random.pose(0.0);

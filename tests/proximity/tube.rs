@@ -32,11 +32,11 @@ fn concentric(robot: &Robot, random: &mut Random) -> Arcs {
 }
 
 /// The model of a chain: Algorithm 1, or cylinders.
-type Model = fn(&[Vector], &[f64]) -> Result<Chain, RobotError>;
+pub(super) type Model = fn(&[Vector], &[f64]) -> Result<Chain, RobotError>;
 
 /// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become shorter by halves: the rim of
 /// a tilted one would stick out.
-fn fine(arcs: &Arcs, model: Model) -> Chain {
+pub(super) fn fine(arcs: &Arcs, model: Model) -> Chain {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let spacing = (40e-6 / sharpest).sqrt();
     let at_ends: Vec<_> = (1..20).map(|k| spacing * 0.5_f64.powi(k)).filter(|off| *off > 1e-6).collect();
@@ -50,7 +50,7 @@ fn sections(arcs: &Arcs) -> Vec<TubeSection> {
     arcs.stretches.iter().map(section).collect()
 }
 
-fn from_function(arcs: &Arc<Arcs>) -> Tube {
+pub(super) fn from_function(arcs: &Arc<Arcs>) -> Tube {
     let curve = Arc::clone(arcs);
     let tube = Tube::from_function(&sections(arcs), move |s| curve.at(s)).unwrap();
     tube.verify(50).unwrap();

@@ -181,7 +181,7 @@ impl<'a> Context<'a> {
             out.push(placed.report(piece, outer, lower));
         })?;
         while let Some(piece) = memory.pieces.pop() {
-            let outer = tube.outer(&piece)?;
+            let outer = placed.finite_outer(&piece)?;
             out.push(placed.report(&piece, &outer, 0.0));
         }
         out.sort_unstable_by(|a, b| {

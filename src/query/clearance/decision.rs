@@ -1,8 +1,8 @@
 //! Whether a tube keeps a margin.
 
-use super::memory::{Start, TubeMemory};
+use super::memory::TubeMemory;
 use crate::answer::{Decision, ProximityError};
-use crate::pieces::{Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict, refine};
+use crate::pieces::{Body, Bound, Divided, Look, Near, Part, Question, TubeInMesh, Verdict, refine};
 use parry3d_f64::math::Real;
 
 /// Whether the tube keeps more than the margin away.
@@ -18,20 +18,40 @@ pub(crate) fn tube_clears(
     // Nothing matters that is farther away than the margin.
     tube.sharpen(margin);
     tube.begin(margin.max(resolution), &mut memory.pieces);
-    let mut question = Keeps { margin, resolution, decision: Decision::Clear, last: &mut memory.last };
-    refine(tube, &mut memory.pieces, &mut question)?;
-    Ok(question.decision)
+    let (decision, found) =
+        keeps(tube, &mut memory.pieces, margin, resolution, memory.last.map(|last| last.triangle))?;
+    if let Some(found) = &found {
+        memory.last = Some(found.into());
+    }
+    Ok(decision)
 }
 
-struct Keeps<'a> {
+/// Whether all pieces keep more than the margin away; and where they do not. `start` is a triangle that is likely to be near.
+///
+/// # Errors
+/// The curve is not finite, or its samples do not allow a decision at that resolution.
+pub(crate) fn keeps<T: Divided<Piece: Part<T>>>(
+    tube: &mut T,
+    pieces: &mut Vec<T::Piece>,
+    margin: Real,
+    resolution: Real,
+    start: Option<u32>,
+) -> Result<(Decision, Option<T::Found>), ProximityError> {
+    let mut question = Keeps { margin, resolution, decision: Decision::Clear, start, contact: None };
+    refine(tube, pieces, &mut question)?;
+    Ok((question.decision, question.contact))
+}
+
+struct Keeps<F> {
     margin: Real,
     resolution: Real,
     decision: Decision,
-    /// Where the last query ended; where this one does if the margin is not kept.
-    last: &'a mut Option<Start>,
+    start: Option<u32>,
+    /// Where the margin is not kept.
+    contact: Option<F>,
 }
 
-impl Question<Piece> for Keeps<'_> {
+impl<T: Divided> Question<T, T::Piece> for Keeps<T::Found> {
     const NEARER_FIRST: bool = true;
 
     fn is_answered(&self) -> bool {
@@ -40,36 +60,35 @@ impl Question<Piece> for Keeps<'_> {
 
     fn look(
         &mut self,
-        tube: &PlacedTube,
-        _: &Piece,
-        piece: &Piece,
-        outer: &Outer,
+        tube: &T,
+        _: &T::Piece,
+        piece: &T::Piece,
+        outer: &T::Body,
     ) -> Result<Look, ProximityError> {
-        let Self { margin, resolution, .. } = *self;
-        let is_wide = outer.over > 2.0 * resolution && outer.over > 0.5 * tube.radius(piece).max(margin);
-        let start = self.last.map(|last| last.triangle);
+        let Self { margin, resolution, start, .. } = *self;
+        let is_wide = outer.over() > 2.0 * resolution && outer.over() > 0.5 * tube.radius(piece).max(margin);
         Ok(Look { bound: margin, is_wide, aim: resolution, start })
     }
 
-    fn keeps_away(&mut self, _: &Piece, _: &Outer, _: Real) {}
+    fn keeps_away(&mut self, _: &T::Piece, _: &T::Body, _: Real) {}
 
-    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Piece>) -> Result<Verdict, ProximityError> {
-        let upper = near.found.upper;
+    fn judge(&mut self, tube: &T, near: &Near<T, T::Piece>) -> Result<Verdict, ProximityError> {
+        let upper = near.found.upper();
         if upper <= self.margin {
             self.decision = Decision::Contact;
-            *self.last = Some(near.found.into());
+            self.contact = Some(*near.found);
             return Ok(Verdict::Answered);
         }
-        if upper - near.nearest.distance <= self.resolution + tube.tube.stated(near.piece) {
+        if upper - T::distance(near.nearest) <= self.resolution + tube.stated(near.piece) {
             self.decision = Decision::Undecided;
             return Ok(Verdict::Settled);
         }
-        Ok(Verdict::Halve(0.25 * near.outer.over))
+        Ok(Verdict::Halve(0.25 * near.outer.over()))
     }
 
-    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Piece>) -> Result<(), ProximityError> {
-        let stated = tube.tube.stated(near.piece);
-        tube.check_resolved(near.found.upper - near.nearest.distance - stated, self.resolution)?;
+    fn judge_whole(&mut self, tube: &T, near: &Near<T, T::Piece>) -> Result<(), ProximityError> {
+        let apart = near.found.upper() - T::distance(near.nearest);
+        tube.check_resolved(apart - tube.stated(near.piece), self.resolution)?;
         self.decision = Decision::Undecided;
         Ok(())
     }

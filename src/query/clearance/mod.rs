@@ -4,6 +4,6 @@ mod bounds;
 mod decision;
 mod memory;
 
-pub(crate) use bounds::clearance;
-pub(crate) use decision::tube_clears;
+pub(crate) use bounds::{BetweenBounds, between_bounds, clearance};
+pub(crate) use decision::{keeps, tube_clears};
 pub(crate) use memory::TubeMemory;

@@ -163,7 +163,7 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
     }
 
     /// Takes note of a piece that has to be looked at at other times.
-    fn fail(&mut self, near: &Near<Waiting>, tube: &PlacedTube) {
+    fn fail(&mut self, near: &Near<TubeInMesh, Waiting>, tube: &PlacedTube) {
         let wanted = self.wanted();
         self.nearest = self.nearest.min(self.at_least(near.nearest.distance, tube));
         // As long as it is still, it comes no nearer than that.
@@ -172,7 +172,7 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
     }
 }
 
-impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
+impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Approach<'_, '_, M> {
     const NEARER_FIRST: bool = true;
 
     /// Nothing below 0 is left to be found.
@@ -182,18 +182,18 @@ impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
 
     fn look(
         &mut self,
-        tube: &PlacedTube,
+        tube: &TubeInMesh<'m>,
         part: &Waiting,
         piece: &Piece,
         outer: &Outer,
     ) -> Result<Look, ProximityError> {
         self.left = self.left.saturating_sub(1);
-        self.moving.turn_to(part, piece, outer, tube)?;
+        self.moving.turn_to(part, piece, outer, &tube.tube)?;
         let (reach, upper) = (self.moving.reach(), self.known.upper());
         let is_wide = self.left > 0
             && outer.over > 2.0 * self.aim.max(reach)
             && (outer.is_flat() || outer.over > 0.25 * upper);
-        let bound = self.wanted() + reach + tube.slack();
+        let bound = self.wanted() + reach + tube.tube.slack();
         Ok(Look { bound, is_wide, aim: self.aim.max(reach), start: *self.moving.last })
     }
 
@@ -201,7 +201,11 @@ impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
         self.settle(self.wanted());
     }
 
-    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<Verdict, ProximityError> {
+    fn judge(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &Near<TubeInMesh<'m>, Waiting>,
+    ) -> Result<Verdict, ProximityError> {
         *self.moving.last = Some(near.nearest.triangle);
         self.known.take(*near.found, self.t);
         if self.is_answered() {
@@ -227,7 +231,11 @@ impl<M: Motion> Question<Waiting> for Approach<'_, '_, M> {
         Ok(Verdict::Halve(self.aim.max(0.25 * near.outer.over)))
     }
 
-    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
+    fn judge_whole(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &Near<TubeInMesh<'m>, Waiting>,
+    ) -> Result<(), ProximityError> {
         let reach = self.moving.reach();
         let is_fine = if tube.tube.may_open(near.piece) {
             reach.max(self.moving.opening) <= self.aim / 128.0

@@ -3,7 +3,7 @@
 use super::moving::Moving;
 use super::waiting::Waiting;
 use crate::answer::ProximityError;
-use crate::pieces::{Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict};
+use crate::pieces::{Divided, Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict};
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
@@ -40,7 +40,7 @@ pub(crate) struct Moment<'a, M> {
     pub seen: Seen,
 }
 
-impl<M: Motion> Question<Waiting> for Moment<'_, M> {
+impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Moment<'_, M> {
     const NEARER_FIRST: bool = false;
 
     fn is_answered(&self) -> bool {
@@ -49,22 +49,26 @@ impl<M: Motion> Question<Waiting> for Moment<'_, M> {
 
     fn look(
         &mut self,
-        tube: &PlacedTube,
+        tube: &TubeInMesh<'m>,
         part: &Waiting,
         piece: &Piece,
         outer: &Outer,
     ) -> Result<Look, ProximityError> {
-        self.moving.turn_to(part, piece, outer, tube)?;
+        self.moving.turn_to(part, piece, outer, &tube.tube)?;
         let (reach, Wanted { margin, resolution }) = (self.moving.reach(), self.wanted);
-        let is_wide =
-            outer.over > 2.0 * reach.max(resolution) && outer.over > 0.5 * tube.radius(piece).max(margin);
+        let is_wide = outer.over > 2.0 * reach.max(resolution)
+            && outer.over > 0.5 * tube.tube.radius(piece).max(margin);
         let aim = reach.max(0.5 * resolution);
-        Ok(Look { bound: self.bound(tube), is_wide, aim, start: *self.moving.last })
+        Ok(Look { bound: self.bound(&tube.tube), is_wide, aim, start: *self.moving.last })
     }
 
     fn keeps_away(&mut self, _: &Piece, _: &Outer, _: Real) {}
 
-    fn judge(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<Verdict, ProximityError> {
+    fn judge(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &Near<TubeInMesh<'m>, Waiting>,
+    ) -> Result<Verdict, ProximityError> {
         *self.moving.last = Some(near.nearest.triangle);
         let upper = near.found.upper;
         if upper <= self.wanted.margin {
@@ -87,7 +91,11 @@ impl<M: Motion> Question<Waiting> for Moment<'_, M> {
         Ok(Verdict::Halve(0.25 * near.outer.over))
     }
 
-    fn judge_whole(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
+    fn judge_whole(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &Near<TubeInMesh<'m>, Waiting>,
+    ) -> Result<(), ProximityError> {
         let (may_open, resolution) = (tube.tube.may_open(near.piece), self.wanted.resolution);
         if self.is_fine() && !may_open {
             let stated = tube.tube.stated(near.piece);
@@ -114,7 +122,7 @@ impl<M: Motion> Moment<'_, M> {
     }
 
     /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.
-    fn fail(&mut self, tube: &TubeInMesh, near: &Near<Waiting>) -> Result<(), ProximityError> {
+    fn fail(&mut self, tube: &TubeInMesh, near: &Near<TubeInMesh, Waiting>) -> Result<(), ProximityError> {
         let (speed, Wanted { margin, resolution }) = (self.moving.speed, self.wanted);
         if speed > MOST_INTERVALS * resolution {
             return Err(ProximityError::TooFast { section: near.part.section as usize, speed, resolution });

@@ -20,7 +20,7 @@ use super::moving::Moving;
 use super::waiting::Waiting;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
-use crate::pieces::{Found, Piece, PlacedTube, TubeInMesh, refine};
+use crate::pieces::{Divided, Found, Piece, PlacedTube, TubeInMesh, refine};
 use crate::robot::{Motion, Sections, Tube};
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
 use parry3d_f64::math::{Pose, Real, Vector};

@@ -8,7 +8,7 @@
 
 use super::waiting::Waiting;
 use crate::distance::Scalar;
-use crate::pieces::{Near, Outer, Piece, PlacedTube};
+use crate::pieces::{Near, Outer, Piece, PlacedTube, TubeInMesh};
 use crate::robot::{Motion, RobotError};
 use parry3d_f64::math::Real;
 
@@ -65,7 +65,7 @@ impl<M: Motion> Moving<'_, M> {
 
     /// Takes note of a piece that is decided for a while before and after the middle shape: as long as it has not come nearer
     /// by `room`.
-    pub(crate) fn fail(&mut self, near: &Near<Waiting>, room: Real) {
+    pub(crate) fn fail(&mut self, near: &Near<TubeInMesh, Waiting>, room: Real) {
         self.still = self.still.min(still(room, self.speed));
         self.failed.push(*near.part);
     }

@@ -1,6 +1,6 @@
 //! What waits for its turn: a piece of the robot, whatever its shape.
 
-use crate::pieces::{Part, Piece, PlacedTube};
+use crate::pieces::{Part, Piece, PlacedTube, TubeInMesh};
 use parry3d_f64::math::Real;
 
 /// What is between two shares of a section.
@@ -17,13 +17,13 @@ impl Waiting {
     }
 }
 
-impl Part for Waiting {
-    fn piece(&self, tube: &PlacedTube) -> Piece {
-        tube.between(self.section, self.shares)
+impl Part<TubeInMesh<'_>> for Waiting {
+    fn piece(&self, tube: &TubeInMesh) -> Piece {
+        tube.tube.between(self.section, self.shares)
     }
 
-    fn halves(self, tube: &PlacedTube, halves: [Piece; 2]) -> [Self; 2] {
-        let [_, between] = tube.shares(&halves[0]);
+    fn halves(self, tube: &TubeInMesh, halves: [Piece; 2]) -> [Self; 2] {
+        let [_, between] = tube.tube.shares(&halves[0]);
         let [from, to] = self.shares;
         [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
     }

@@ -4,7 +4,9 @@ mod descent;
 mod local_minima;
 mod one_robot;
 mod outlines;
+mod tubes;
 mod two_robots;
 
 pub(crate) use one_robot::{OneRobot, OwnMemory};
+pub(crate) use tubes::{TubesMemory, clearance_between, place_tubes, tubes_clear};
 pub(crate) use two_robots::{PairMemory, TwoRobots};

@@ -1,0 +1,85 @@
+//! What a question divides: a tube on its way through a mesh, or two tubes beside one another.
+
+use crate::answer::ProximityError;
+use parry3d_f64::math::Real;
+
+/// What can be divided into pieces, each in a convex body, and is the nearer to something else the better it is known.
+pub(crate) trait Divided {
+    /// A piece: of one tube, or one of each.
+    type Piece: Copy;
+    /// What holds a piece.
+    type Body: Body;
+    /// What is nearest to a body.
+    type Nearest;
+    /// An upper bound on the clearance, and what realises it.
+    type Found: Bound;
+
+    /// # Errors
+    /// The curve is not finite there.
+    fn body(&self, piece: &Self::Piece) -> Result<Self::Body, ProximityError>;
+
+    /// The halves of a piece whose body can become narrower, and at a face as near to the tube as `aim`.
+    fn halves(&self, piece: &Self::Piece, body: &Self::Body, aim: Real) -> Option<[Self::Piece; 2]>;
+
+    /// Whether anything may be at most `bound` away from a body.
+    fn may_meet(&mut self, body: &Self::Body, bound: Real) -> bool;
+
+    /// What is nearest to a body, if it is at most `bound` away; `start` is a triangle that is likely to be near, where there
+    /// are triangles.
+    fn nearest(&mut self, body: &Self::Body, bound: Real, start: Option<u32>) -> Option<Self::Nearest>;
+
+    /// How far away that is, which bounds the clearance of the piece from below.
+    fn distance(nearest: &Self::Nearest) -> Real;
+
+    /// What bounds the clearance from above, as seen from there.
+    fn found(&self, piece: &Self::Piece, body: &Self::Body, nearest: &Self::Nearest) -> Self::Found;
+
+    /// Whether that is in the first of two halves.
+    fn is_in_first(&self, found: &Self::Found, halves: &[Self::Piece; 2]) -> bool;
+
+    /// The larger radius of a piece.
+    fn radius(&self, piece: &Self::Piece) -> Real;
+
+    /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
+    /// not.
+    fn doubt(&self, piece: &Self::Piece) -> Real;
+
+    /// What stated errors cost a clearance: they count in both bounds.
+    fn uncertainty(&self) -> Real;
+
+    /// What rounding can do to any length.
+    fn slack(&self) -> Real;
+
+    /// How far apart the bounds of a piece have to be because of all that was stated, or was not.
+    fn stated(&self, piece: &Self::Piece) -> Real {
+        self.uncertainty() + self.doubt(piece)
+    }
+
+    /// # Errors
+    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no more.
+    fn check_resolved(&self, possible: Real, resolution: Real) -> Result<(), ProximityError> {
+        // Written so that NaN is an error.
+        if possible <= resolution + 16.0 * self.slack() {
+            Ok(())
+        } else {
+            Err(ProximityError::ToleranceTooFine { parameter: "resolution", tolerance: resolution, possible })
+        }
+    }
+}
+
+/// What holds a piece, seen as what it holds too much.
+pub(crate) trait Body {
+    /// By how much, about, it is larger than the piece.
+    fn over(&self) -> Real;
+
+    /// By how much it is wider, apart from how far it reaches ahead of its flat ends.
+    fn aside(&self) -> Real;
+}
+
+/// An upper bound on a clearance.
+pub(crate) trait Bound: Copy {
+    fn upper(&self) -> Real;
+
+    /// The triangle that realises it, if one does.
+    fn triangle(&self) -> Option<u32>;
+}

@@ -1,0 +1,289 @@
+//! Two tubes beside one another: a piece of each, and what is found between them.
+//!
+//! The bodies around two pieces are as far apart as two links, which bounds the clearance of the pieces from below. From above
+//! any point y of space does: the way from one tube to y and on to the other is no shorter than the clearance, and how far y
+//! is from a tube at most is known from any place of its centreline nearby ([`PlacedTube::near`]). It is the less the nearer
+//! y is to the shortest way between the tubes; where they overlap, a y that is in both shows it. So y begins between the
+//! bodies, and moves to the middle between the two points of the tubes that are found from there.
+//!
+//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first upper bound is none to
+//! begin with, since it cannot change either bound of the answer.
+
+use super::divided::{Body, Bound, Divided};
+use super::outer::Outer;
+use super::piece::Piece;
+use super::placed_tube::PlacedTube;
+use super::refine::Part;
+use crate::answer::ProximityError;
+use crate::pair::{NearestOfLinks, PlacedLink};
+use parry3d_f64::math::{Real, Vector};
+
+/// How often y moves at most.
+const MOST_MOVES: u32 = 4;
+
+/// By how much farther than to its surface y moves into a tube.
+const INTO: Real = 1.125;
+
+/// Two tubes in one frame.
+#[derive(Clone, Copy)]
+pub(crate) struct TwoTubes<'a> {
+    tubes: [PlacedTube<'a>; 2],
+}
+
+/// A piece of each tube, with its body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PiecePair {
+    pieces: [Piece; 2],
+    outers: [Outer; 2],
+}
+
+impl Body for [Outer; 2] {
+    fn over(&self) -> Real {
+        self[0].over + self[1].over
+    }
+
+    fn aside(&self) -> Real {
+        self[0].aside + self[1].aside
+    }
+}
+
+/// An upper bound on how far two tubes are apart, and what realises it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FoundBetween {
+    pub upper: Real,
+    pub sections: [u32; 2],
+    pub arcs: [Real; 2],
+    pub points: [Vector; 2],
+}
+
+impl Bound for FoundBetween {
+    fn upper(&self) -> Real {
+        self.upper
+    }
+
+    fn triangle(&self) -> Option<u32> {
+        None
+    }
+}
+
+impl Part<TwoTubes<'_>> for PiecePair {
+    fn piece(&self, _: &TwoTubes) -> PiecePair {
+        *self
+    }
+
+    fn halves(self, _: &TwoTubes, halves: [PiecePair; 2]) -> [Self; 2] {
+        halves
+    }
+}
+
+/// What two tubes are divided into to begin with, in memory that is used again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Beginning {
+    pieces: Vec<Piece>,
+    bodies: [Vec<(Piece, Outer)>; 2],
+    order: Vec<(Real, [u32; 2])>,
+}
+
+impl<'a> TwoTubes<'a> {
+    pub(crate) fn new(mut tubes: [PlacedTube<'a>; 2]) -> Self {
+        let [first, second] = tubes;
+        tubes[0].beside(&second);
+        tubes[1].beside(&first);
+        Self { tubes }
+    }
+
+    /// Whether both have the sections.
+    pub(crate) fn have(&self, sections: [u32; 2]) -> bool {
+        sections.iter().zip(&self.tubes).all(|(&section, tube)| (section as usize) < tube.sections().len())
+    }
+
+    /// A first upper bound: from where the chords of the longest sections are nearest.
+    pub(crate) fn first_bound(&self) -> FoundBetween {
+        let sections = self.tubes.map(|tube| tube.longest_section());
+        let [first, second] = [0, 1].map(|k: usize| self.tubes[k].chord(sections[k]));
+        let (feet, _) = first.0.nearest_on_axes(&second.0);
+        let arc = |(chord, [start, end]): (PlacedLink, [Real; 2]), foot| {
+            start + (end - start) * chord.share_of(foot)
+        };
+        self.bound_at(sections, [arc(first, feet[0]), arc(second, feet[1])])
+    }
+
+    /// The upper bound as seen from two places of the tubes.
+    pub(crate) fn bound_at(&self, sections: [u32; 2], arcs: [Real; 2]) -> FoundBetween {
+        let places = [0, 1].map(|k: usize| self.tubes[k].place_at(sections[k], arcs[k]));
+        let radii = [0, 1].map(|k: usize| self.tubes[k].section(sections[k]).radius);
+        self.found_from(sections, arcs, half_way(places, radii))
+    }
+
+    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`.
+    ///
+    /// # Errors
+    /// A curve is not finite.
+    pub(crate) fn begin(
+        &self,
+        scale: Real,
+        upper: Real,
+        beginning: &mut Beginning,
+        pairs: &mut Vec<PiecePair>,
+    ) -> Result<(), ProximityError> {
+        let Beginning { pieces, bodies, order } = beginning;
+        for (tube, bodies) in self.tubes.iter().zip(&mut *bodies) {
+            tube.begin(scale.max(0.25 * tube.widest()), pieces);
+            bodies.clear();
+            for piece in pieces.iter() {
+                bodies.push((*piece, tube.finite_outer(piece)?));
+            }
+        }
+        order.clear();
+        let [first, second] = &*bodies;
+        for (i, (_, one)) in first.iter().enumerate() {
+            for (j, (_, two)) in second.iter().enumerate() {
+                let at_least = self.at_least(&[*one, *two]);
+                if at_least <= upper {
+                    order.push((at_least, [i as u32, j as u32]));
+                }
+            }
+        }
+        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        pairs.clear();
+        pairs.extend(order.iter().map(|&(_, [i, j])| {
+            let ((one, outer), (two, beside)) = (first[i as usize], second[j as usize]);
+            PiecePair { pieces: [one, two], outers: [outer, beside] }
+        }));
+        Ok(())
+    }
+
+    /// How far two bodies are apart at least: as far as the capsules around them, less what rounding does to that.
+    fn at_least(&self, [one, two]: &[Outer; 2]) -> Real {
+        let (_, apart) = one.body.nearest_on_axes(&two.body);
+        apart - one.body.radius() - two.body.radius() - self.slack()
+    }
+
+    /// The upper bound as seen from a point, and from where it moves to.
+    fn found_from(&self, sections: [u32; 2], arcs: [Real; 2], from: Vector) -> FoundBetween {
+        let seen = |arcs: [Real; 2], from: Vector| {
+            [0, 1].map(|k: usize| self.tubes[k].near(sections[k], arcs[k], from))
+        };
+        let (mut best, mut place) = (seen(arcs, from), from);
+        for _ in 0..MOST_MOVES {
+            let [one, two] = best;
+            place = match [one.upper > 0.0, two.upper > 0.0] {
+                [true, true] => (one.point + two.point) * 0.5,
+                // From within one tube to the other, and a little into it.
+                [true, false] => place + (one.point - place) * INTO,
+                [false, true] => place + (two.point - place) * INTO,
+                [false, false] => break,
+            };
+            let next = seen([one.arc, two.arc], place);
+            // Written so that NaN ends it.
+            if next[0].upper + next[1].upper >= one.upper + two.upper || !place.is_finite() {
+                break;
+            }
+            best = next;
+        }
+        let [one, two] = best;
+        FoundBetween {
+            upper: one.upper + two.upper,
+            sections,
+            arcs: [one.arc, two.arc],
+            points: [one.point, two.point],
+        }
+    }
+}
+
+impl Divided for TwoTubes<'_> {
+    type Piece = PiecePair;
+    type Body = [Outer; 2];
+    type Nearest = NearestOfLinks;
+    type Found = FoundBetween;
+
+    fn body(&self, pair: &PiecePair) -> Result<[Outer; 2], ProximityError> {
+        for (k, outer) in pair.outers.iter().enumerate() {
+            if !outer.body.is_finite() {
+                let arc_length = self.tubes[k].arcs(&pair.pieces[k])[0];
+                return Err(ProximityError::CurveNotFinite { arc_length });
+            }
+        }
+        Ok(pair.outers)
+    }
+
+    fn halves(&self, pair: &PiecePair, bodies: &[Outer; 2], aim: Real) -> Option<[PiecePair; 2]> {
+        let gains = |k: usize| bodies[k].narrows > 0.5 * self.tubes[k].slack();
+        let halves = |k: usize| {
+            let tube = &self.tubes[k];
+            let halves = if gains(k) { tube.halves(&pair.pieces[k], aim) } else { None }?;
+            Some(halves.map(|half| {
+                let mut pair = *pair;
+                (pair.pieces[k], pair.outers[k]) = (half, tube.outer(&half));
+                pair
+            }))
+        };
+        let first = usize::from(bodies[1].narrows > bodies[0].narrows);
+        halves(first).or_else(|| halves(1 - first))
+    }
+
+    fn may_meet(&mut self, bodies: &[Outer; 2], bound: Real) -> bool {
+        self.at_least(bodies) <= bound
+    }
+
+    fn nearest(&mut self, bodies: &[Outer; 2], bound: Real, _: Option<u32>) -> Option<NearestOfLinks> {
+        bodies[0].body.measure_link_within(bound, &bodies[1].body)
+    }
+
+    fn distance(nearest: &NearestOfLinks) -> Real {
+        nearest.distance
+    }
+
+    fn found(&self, pair: &PiecePair, bodies: &[Outer; 2], nearest: &NearestOfLinks) -> FoundBetween {
+        let links = [&bodies[0].body, &bodies[1].body];
+        let sections = pair.pieces.map(|piece| piece.section);
+        let arcs_at = |points: [Vector; 2]| {
+            [0, 1].map(|k: usize| {
+                let [start, end] = self.tubes[k].arcs(&pair.pieces[k]);
+                start + (end - start) * links[k].share_of(points[k])
+            })
+        };
+        let points = [nearest.on_first, nearest.on_second];
+        let found = self.found_from(sections, arcs_at(points), (points[0] + points[1]) * 0.5);
+        if nearest.distance > 0.0 || found.upper <= 0.0 {
+            return found;
+        }
+        // A common point of the bodies may be outside of both tubes; half way between the axes it is not.
+        let (feet, _) = links[0].nearest_on_axes(links[1]);
+        let deeper = self.found_from(sections, arcs_at(feet), half_way(feet, links.map(PlacedLink::radius)));
+        if deeper.upper < found.upper { deeper } else { found }
+    }
+
+    fn is_in_first(&self, found: &FoundBetween, halves: &[PiecePair; 2]) -> bool {
+        let [low, high] = halves;
+        let k = usize::from(low.pieces[0].to == high.pieces[0].to);
+        found.arcs[k] < self.tubes[k].arcs(&low.pieces[k])[1]
+    }
+
+    fn radius(&self, pair: &PiecePair) -> Real {
+        let [first, second] = [0, 1].map(|k: usize| self.tubes[k].radius(&pair.pieces[k]));
+        first.max(second)
+    }
+
+    fn doubt(&self, pair: &PiecePair) -> Real {
+        [0, 1].map(|k: usize| self.tubes[k].doubt(&pair.pieces[k])).iter().sum()
+    }
+
+    fn uncertainty(&self) -> Real {
+        self.tubes.iter().map(PlacedTube::uncertainty).sum()
+    }
+
+    fn slack(&self) -> Real {
+        self.tubes.iter().map(PlacedTube::slack).sum()
+    }
+}
+
+/// Where balls of two radii around two points have the same way to go, or overlap by as much.
+fn half_way(places: [Vector; 2], radii: [Real; 2]) -> Vector {
+    let way = places[1] - places[0];
+    let away = way.length();
+    let share = 0.5 + 0.5 * (radii[0] - radii[1]) / away;
+    // Written so that NaN, where both are one, is the first.
+    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+    places[0] + way * share
+}

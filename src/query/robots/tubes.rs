@@ -1,0 +1,86 @@
+//! The questions about two tubes: how near they are, between bounds, and whether they keep a margin.
+
+use crate::answer::{Decision, ProximityError, RobotClearance};
+use crate::pieces::{Beginning, FoundBetween, PiecePair, PlacedTube, TwoTubes};
+use crate::query::clearance::{BetweenBounds, between_bounds, keeps};
+use crate::robot::Tube;
+use parry3d_f64::math::{Pose, Real};
+
+/// What one query leaves for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TubesMemory {
+    beginning: Beginning,
+    pairs: Vec<PiecePair>,
+    /// The sections and arc lengths where a query ended.
+    last: Option<([u32; 2], [Real; 2])>,
+}
+
+impl TubesMemory {
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+}
+
+/// Both tubes in one frame.
+///
+/// # Errors
+/// A tube has no section, or its pose is not finite or not rigid or moves it out of range; the poses are called `names`.
+pub(crate) fn place_tubes<'a>(
+    tubes: [&'a Tube; 2],
+    poses: [&Pose; 2],
+    names: [&'static str; 2],
+) -> Result<TwoTubes<'a>, ProximityError> {
+    let placed =
+        |k: usize| PlacedTube::new(tubes[k], poses[k], 0.0).map_err(|error| error.of_robot(names[k]));
+    Ok(TwoTubes::new([placed(0)?, placed(1)?]))
+}
+
+/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow that.
+///
+/// # Errors
+/// A curve is not finite.
+pub(crate) fn clearance_between(
+    tubes: &mut TwoTubes,
+    memory: &mut TubesMemory,
+    tolerance: Real,
+) -> Result<RobotClearance, ProximityError> {
+    let TubesMemory { beginning, pairs, last } = memory;
+    let best = match last.filter(|(sections, _)| tubes.have(*sections)) {
+        Some((sections, arcs)) => tubes.bound_at(sections, arcs),
+        None => tubes.first_bound(),
+    };
+    tubes.begin(best.upper.max(tolerance), best.upper, beginning, pairs)?;
+    let found = between_bounds(tubes, pairs, best, tolerance, |_, _, _| ())?;
+    let BetweenBounds { lower, resolved, uncertainty, best } = found;
+    let FoundBetween { upper, sections, arcs, points: [on_first, on_second] } = best;
+    *last = Some((sections, arcs));
+    Ok(RobotClearance {
+        lower,
+        upper,
+        resolved,
+        uncertainty,
+        sections,
+        on_first,
+        on_second,
+        arc_lengths: arcs,
+    })
+}
+
+/// Whether two tubes keep more than the margin.
+///
+/// # Errors
+/// A curve is not finite, or samples do not allow a decision at that resolution.
+pub(crate) fn tubes_clear(
+    tubes: &mut TwoTubes,
+    memory: &mut TubesMemory,
+    margin: Real,
+    resolution: Real,
+) -> Result<Decision, ProximityError> {
+    let TubesMemory { beginning, pairs, last } = memory;
+    tubes.begin(margin.max(resolution), margin, beginning, pairs)?;
+    let (decision, found) = keeps(tubes, pairs, margin, resolution, None)?;
+    if let Some(FoundBetween { sections, arcs, .. }) = found {
+        *last = Some((sections, arcs));
+    }
+    Ok(decision)
+}
