@@ -49,7 +49,7 @@
 
 use super::curve::CurveBound;
 use super::laid::NextPoint;
-use super::samples::Segment;
+use super::segment::Segment;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Rotation, Vector};
 use std::f64::consts::TAU;

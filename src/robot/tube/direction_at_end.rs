@@ -39,7 +39,7 @@
 //! so there k is taken q^2 / 8 larger, q being the difference between the bends at the first two samples as a share
 //! of k.
 
-use super::samples::Segment;
+use super::segment::Segment;
 use parry3d_f64::math::{Real, Vector};
 
 /// The direction out of a section at its first sample and how far off it may be; `sample` counts from there.

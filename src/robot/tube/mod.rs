@@ -1,6 +1,7 @@
 //! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
 
 mod arch;
+mod crowds;
 mod curve;
 mod direction_at_end;
 mod faces;
@@ -10,9 +11,11 @@ mod from_chain;
 mod function;
 mod laid;
 mod lasting;
+mod open_section;
 mod own_samples;
 mod samples;
 mod section;
+mod segment;
 mod smoothing_spline;
 mod stated;
 #[cfg(test)]
@@ -26,6 +29,7 @@ pub(crate) use section::{Face, Section};
 
 use super::chain::radius_for_all;
 use super::{Cap, RobotError};
+use crowds::Crowd;
 pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
@@ -82,6 +86,8 @@ pub struct Tube {
     merged: Real,
     /// The largest coordinate of the centreline, or its length, or more.
     reach: Real,
+    /// Memory for samples that crowd.
+    crowds: Vec<Crowd>,
     /// Memory for the next links: their ends and caps.
     ends: Vec<Vector>,
     caps: Vec<[Cap; 2]>,
@@ -122,6 +128,10 @@ impl Tube {
     /// Points at one place, but for the rounding of coordinates so large (2^-48 of the largest), are one, as where the points
     /// of one section end and those of the next begin; the radius of the segment between them is dropped. Radii that differ by
     /// less than 2^-32 of a section's first are one section, with the largest of them. What that changes counts in all bounds.
+    ///
+    /// Where a sample was taken twice, a little apart, the two may show a bend that no smooth curve has. If they are 32 times
+    /// nearer to each other than to the samples before and behind them, they are one too: the curve passes the first of them as
+    /// closely as the other one does, which counts in all bounds and in the `uncertainty` of answers.
     ///
     /// # Errors
     /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tangent that is zero or not finite; samples so far
@@ -252,6 +262,7 @@ impl Tube {
             deviation: 0.0,
             merged: 0.0,
             reach: 0.0,
+            crowds: Vec::new(),
             ends: Vec::new(),
             caps: Vec::new(),
         }

@@ -17,13 +17,17 @@
 //! usual distance (the geometric mean) behind the one before it counts only for its own two segments. What the others show
 //! counts for all.
 
+use super::crowds::{Crowd, bend_at, gap_at};
 use super::curve::CurveBound;
-use super::samples::{Segment, curvature_between, curvature_from};
+use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::RobotError;
 use parry3d_f64::math::{Real, Vector};
 
 /// Samples closer than this share of the usual distance to the one before count only for their own segments.
 const CLOSE: Real = 0.25;
+
+/// What a sample shows more than others counts where it turns a segment by more than this.
+const SHARPER: Real = 1.0 / 64.0;
 
 /// The samples of one section.
 pub(super) struct OwnSamples<'a> {
@@ -33,6 +37,9 @@ pub(super) struct OwnSamples<'a> {
     pub tangents: [Option<Vector>; 2],
     /// What rounding can do to a point.
     pub rounding: Real,
+    /// The number of the first of them among all samples, and those that crowd.
+    pub first: usize,
+    pub crowds: &'a [Crowd],
     /// Samples closer than this to the one before are left out.
     pub shortest: Real,
 }
@@ -72,7 +79,22 @@ impl OwnSamples<'_> {
     }
 
     fn segment(&self, from: usize, to: usize) -> Option<Segment> {
-        Segment::between(self.points[from], self.points[to], self.rounding)
+        let gap = |sample: usize| gap_at(self.crowds, self.first + sample);
+        let segment = Segment::between(self.points[from], self.points[to], self.rounding)?;
+        Some(segment.with_gap(gap(from) + gap(to)))
+    }
+
+    /// By how much the bend that a sample shows may be off because samples crowd.
+    fn doubt(&self, sample: usize) -> Real {
+        if self.crowds.is_empty() {
+            return 0.0;
+        }
+        let before = self.before(sample).and_then(|before| self.segment(before, sample));
+        let behind = self.behind(sample).and_then(|behind| self.segment(sample, behind));
+        let bend = self.bend(sample).map_or(0.0, |bend| bend.length());
+        let sum = |of: fn(&Segment) -> Real| before.iter().chain(&behind).map(of).sum::<Real>();
+        let gap = sum(|segment| segment.length - segment.least);
+        (2.0 * sum(|segment| segment.noise) + bend * gap) / sum(|segment| segment.least)
     }
 
     /// The bend that a sample shows, as a vector; none at an end whose direction is not given.
@@ -101,15 +123,21 @@ impl OwnSamples<'_> {
     /// The curvature between samples, if the largest bend that they show is `most`, at the sample `at`.
     pub(super) fn between_samples(&self, at: usize, most: Real) -> Real {
         let mut curvature = most;
+        let doubt = self.doubt(at);
         if let Some(here) = self.bend(at) {
             // By how much bends fall towards an end, and by how much they turn.
             let side = |end: usize| {
                 let next = self.next(at, end)?;
                 let bend = self.bend(next)?;
-                let fall = (here.length() - bend.length()).abs();
-                let beyond = self.next(next, end).and_then(|beyond| self.bend(beyond));
-                let next_fall = beyond.map_or(0.0, |beyond| (bend.length() - beyond.length()).abs());
-                Some([fall.max(next_fall), (bend - here).length_squared()])
+                let own = self.doubt(next);
+                let fall = (here.length() - bend.length()).abs() + doubt + own;
+                let next_fall = self.next(next, end).and_then(|beyond| {
+                    let fall = (bend.length() - self.bend(beyond)?.length()).abs();
+                    Some(fall + own + self.doubt(beyond))
+                });
+                let (apart, more) = (bend - here, doubt + own);
+                let turned = apart.length_squared() + more * (2.0 * apart.length() + more);
+                Some([next_fall.map_or(fall, |next_fall| fall.max(next_fall)), turned])
             };
             let [peak, turned] = match [side(0), side(1)] {
                 [Some(one), Some(other)] => [one[0].min(other[0]), one[1].min(other[1])],
@@ -117,12 +145,27 @@ impl OwnSamples<'_> {
                 [Some(one), None] | [None, Some(one)] => [0.0, one[1]],
                 [None, None] => [0.0; 2],
             };
-            let size = here.length();
+            let [least, size] = [here.length() - doubt, here.length() + doubt];
             if size > 0.0 {
-                curvature += (2.0 * peak).min(0.25 * most) + turned.min(size * size) / (8.0 * size);
+                let hidden = if least > 0.0 { turned.min(size * least) / least } else { size };
+                curvature += (2.0 * peak).min(0.25 * most) + hidden / 8.0;
             }
         }
         self.at_end(0).max(self.at_end(1)).max(curvature)
+    }
+
+    /// The same; where samples crowd, of every sample, as that which hides most need not be the one that shows most.
+    pub(super) fn between_all(&self, at: usize, most: Real) -> Real {
+        let mut curvature = self.between_samples(at, most);
+        if !self.crowds.is_empty() {
+            for sample in (0..=self.last()).filter(|&sample| self.is_kept(sample)) {
+                if let Some(bend) = self.bend(sample) {
+                    let most = bend.length() + self.doubt(sample);
+                    curvature = curvature.max(self.between_samples(sample, most));
+                }
+            }
+        }
+        curvature
     }
 
     /// The curvature at an end, if it goes on changing as it does next to it.
@@ -138,7 +181,7 @@ impl OwnSamples<'_> {
         let (Some(bend), Some(next)) = (self.bend(first), second.and_then(|second| self.bend(second))) else {
             return 0.0;
         };
-        let size = bend.length();
+        let size = bend.length() + self.doubt(first);
         let length = |from: Option<usize>, to: Option<usize>| match (from, to) {
             (Some(from), Some(to)) => (self.points[to] - self.points[from]).length(),
             _ => 0.0,
@@ -148,26 +191,34 @@ impl OwnSamples<'_> {
         // Of the centres of two hats, and from the first of them to the end.
         let apart = (outer + between + beyond) / 3.0;
         let to_end = if outer > 0.0 { (2.0 * outer + between) / 3.0 } else { between / 3.0 };
-        let growth = (size - next.length()) * (to_end / apart);
+        let fall = size - next.length() + second.map_or(0.0, |second| self.doubt(second));
+        let growth = fall * (to_end / apart);
         // Written so that NaN is no growth.
         if growth > 0.0 { size + growth.min(0.5 * size) } else { size }
     }
 
     /// Adds bounds of all segments. The sample at which the curve may turn too much between it and a neighbour is
-    /// returned, if there is one. It bends by `least` at least.
-    pub(super) fn bound_unevenly(mut self, least: Real, bounds: &mut Vec<CurveBound>) -> Option<Bend> {
+    /// returned, if there is one; and one that shows more than others because another one is very near. The curve bends
+    /// by `least` at least.
+    pub(super) fn bound_unevenly(
+        mut self,
+        least: Real,
+        bounds: &mut Vec<CurveBound>,
+    ) -> (Option<Bend>, Option<usize>) {
         let last = self.last();
         let logarithms: Real = self.arcs.windows(2).map(|arcs| libm::log2(arcs[1] - arcs[0])).sum();
         self.shortest = CLOSE * libm::exp2(logarithms / last as Real);
         let (mut most, mut at) = (0.0, 0);
         for sample in (0..=last).filter(|&sample| self.is_kept(sample)) {
             let noise = 2.0 * self.rounding / self.shortest;
-            let bend = self.bend(sample).map_or(0.0, |bend| bend.length() + noise / self.shortest);
+            let bend = self.bend(sample).map_or(0.0, |bend| bend.length() + noise / self.shortest)
+                + self.doubt(sample);
             if bend > most {
                 (most, at) = (bend, sample);
             }
         }
-        let most = self.between_samples(at, most).max(least);
+        let shown = most;
+        let most = self.between_all(at, most).max(least);
         let segment = |from: usize| self.segment(from, from + 1);
         let own = |sample: usize| match sample {
             0 => self.tangents[0]
@@ -180,19 +231,41 @@ impl OwnSamples<'_> {
                 .zip(segment(sample))
                 .map_or(0.0, |(before, behind)| curvature_between(&before, &behind)),
         };
-        let mut sharpest = None;
+        let longest_beside = |sample: usize| {
+            let behind =
+                if sample < last { segment(sample).map_or(0.0, |segment| segment.length) } else { 0.0 };
+            sample.checked_sub(2).and_then(segment).map_or(behind, |before| before.length.max(behind))
+        };
+        let (mut sharpest, mut crowded) = (None, None);
         let mut before = own(0);
         for from in 0..last {
             let behind = own(from + 1);
             let curvature = most.max(before).max(behind);
+            // Of a curve that bends by more than 1 rad there nothing is said.
+            let through = bend_at(self.crowds, self.first + from, 1).max(bend_at(
+                self.crowds,
+                self.first + from + 1,
+                0,
+            ));
+            let is_possible = through * (self.arcs[from + 1] - self.arcs[from]) <= 1.0;
+            let curvature = if is_possible { curvature.max(through) } else { curvature };
             bounds.push(CurveBound { curvature, off: 0.0 });
-            let turn = curvature * (self.arcs[from + 1] - self.arcs[from]);
+            let longest = segment(from).map_or(0.0, |segment| 2.0 * segment.length - segment.least);
+            let turn = curvature * longest;
             if turn > 1.0 && sharpest.is_none() {
                 let sample = if before.max(behind) < most { at } else { from + usize::from(behind > before) };
                 sharpest = Some(Bend { at: sample, from, turn });
             }
             before = behind;
+            let crowding =
+                if self.is_kept(from + 1) { None } else { Some((own(from).max(behind), from + 1)) };
+            if let Some((bend, sample)) = crowding
+                && crowded.is_none()
+                && (bend - 1.25 * shown) * longest_beside(sample) > SHARPER
+            {
+                crowded = Some(sample);
+            }
         }
-        sharpest
+        (sharpest, crowded)
     }
 }

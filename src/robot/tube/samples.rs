@@ -14,192 +14,31 @@
 //! - it leaves the chord by at most k l^2 / 8, where l is its length.
 //!
 //! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on from within the gap: the
-//! directions on either side are unknown by the gap over the length, and every point by the gap.
+//! directions on either side are unknown by the gap over the length, and every point by the gap. Samples that are not quite at one
+//! place, where a sample was taken twice, are told of in `crowds`.
 //!
 //! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost everywhere. Which way a
 //! face stands is told in `direction_at_end`.
 
 use super::Tube;
+use super::crowds::{self, Crowd};
 use super::curve::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
 use super::lasting::Lasting;
-use super::own_samples::{Bend, OwnSamples};
-use super::section::{Face, Section, stretch};
+use super::open_section::{Open, SoFar};
+use super::section::{Face, Section};
+use super::segment::{Segment, curvature_between};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
-use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
-/// A segment between two samples.
-#[derive(Clone, Copy)]
-pub(super) struct Segment {
-    pub direction: Vector,
-    pub length: Real,
-    /// What the rounding of the samples can do to the direction.
-    pub noise: Real,
-}
+/// How often samples that crowd are looked for.
+const MOST_TRIED: u32 = 16;
 
-impl Segment {
-    /// None without a length.
-    #[inline(always)]
-    pub(super) fn between(from: Vector, to: Vector, rounding: Real) -> Option<Self> {
-        let along = to - from;
-        let length = along.length();
-        if length > 0.0 {
-            let inverse = 1.0 / length;
-            Some(Self { direction: along * inverse, length, noise: rounding * inverse })
-        } else {
-            None
-        }
-    }
-}
-
-/// The curvature that the turn from one segment to the next shows.
-pub(super) fn curvature_between(before: &Segment, segment: &Segment) -> Real {
-    let turn = (segment.direction - before.direction).length() + segment.noise + before.noise;
-    turn / (0.5 * (segment.length + before.length))
-}
-
-/// The curvature that the turn from the direction at an end to the segment next to it shows.
-pub(super) fn curvature_from(direction: Vector, segment: &Segment) -> Real {
-    let turn = (segment.direction - direction).length() + segment.noise;
-    turn / (0.5 * segment.length)
-}
-
-/// Samples of a section are uneven where a segment is so many times as long as its neighbour.
-const UNEVEN: Real = 4.0;
-
-/// A section on its way.
-struct Open {
-    section: Section,
-    longest: Real,
-    /// The sample before its longest segment.
-    longest_from: usize,
-    /// The sample where it turns most.
-    sharpest: usize,
-    /// Whether one of two neighbouring segments is more than four times as long as the other.
-    is_uneven: bool,
-    /// How many turns it has inside.
-    turns: usize,
-    /// The curvature that the turns at steps in radius show.
-    at_ends: Real,
-    /// The directions of the curve at its ends, where they are given.
-    tangents: [Option<Vector>; 2],
-    /// The radii of its first and of its thinnest segment.
-    first_radius: Real,
-    least_radius: Real,
-}
-
-impl Open {
-    fn new(first: usize, start: Real, radius: Real) -> Self {
-        let section = Section::beginning(first, start, radius);
-        let [first_radius, least_radius] = [radius; 2];
-        Self {
-            section,
-            longest: 0.0,
-            longest_from: first,
-            sharpest: first,
-            is_uneven: false,
-            turns: 0,
-            at_ends: 0.0,
-            tangents: [None; 2],
-            first_radius,
-            least_radius,
-        }
-    }
-
-    /// Whether a segment with this radius belongs to it; then takes note of the radius.
-    #[inline(always)]
-    fn takes(&mut self, radius: Real) -> bool {
-        if radius == self.first_radius {
-            return true;
-        }
-        let is_same = is_same(self.first_radius, radius);
-        if is_same {
-            self.section.radius = self.section.radius.max(radius);
-            self.least_radius = self.least_radius.min(radius);
-        }
-        is_same
-    }
-
-    /// Takes note of the turn at a sample from one segment to the next.
-    #[inline(always)]
-    fn bend(&mut self, at: usize, before: &Segment, segment: &Segment) {
-        self.turns += 1;
-        self.is_uneven |= before.length > UNEVEN * segment.length || segment.length > UNEVEN * before.length;
-        let squared = (segment.direction - before.direction).length_squared();
-        let noise = segment.noise + before.noise;
-        // Most turns are no larger than the largest so far, which is seen without a root and a division.
-        let known = self.section.curvature * (0.5 * (segment.length + before.length)) - noise;
-        if known < 0.0 || squared > known * known {
-            self.raise(at, curvature_between(before, segment));
-        }
-    }
-
-    /// Takes note of the direction at an end.
-    fn bend_from(&mut self, at: usize, end: usize, tangent: Vector, segment: &Segment) {
-        self.tangents[end] = Some(tangent);
-        self.raise(at, curvature_from(tangent, segment));
-    }
-
-    fn raise(&mut self, at: usize, curvature: Real) {
-        if curvature > self.section.curvature {
-            (self.section.curvature, self.sharpest) = (curvature, at);
-        }
-    }
-
-    /// Ends it at a sample. `points` and `arcs` are all samples so far; `bounds` are those of the segments, if any.
-    fn close(
-        mut self,
-        last: usize,
-        rounding: Real,
-        points: &[Vector],
-        arcs: &[Real],
-        bounds: &mut Vec<CurveBound>,
-    ) -> Result<Section, Bend> {
-        let first = self.section.first as usize;
-        (self.section.last, self.section.end) = (last as u32, arcs[last]);
-        let own = OwnSamples {
-            points: &points[first..=last],
-            arcs: &arcs[first..=last],
-            tangents: self.tangents,
-            rounding,
-            shortest: 0.0,
-        };
-        let mut sharpest = None;
-        if self.is_uneven {
-            bounds.resize(first, CurveBound::default());
-            sharpest = own.bound_unevenly(if self.turns < 2 { self.at_ends } else { 0.0 }, bounds);
-            self.section.bound_by(&bounds[first..], &arcs[first..=last]);
-        } else {
-            let shown = if self.turns > 0 {
-                own.between_samples(self.sharpest - first, self.section.curvature)
-            } else {
-                0.0
-            };
-            let section = &mut self.section;
-            section.shown_at = [section.curvature; 2];
-            section.curvature = section.curvature.max(shown);
-            if self.turns < 2 {
-                section.curvature = section.curvature.max(self.at_ends);
-            }
-            let bend = section.curvature * self.longest;
-            section.mean_curvature = section.curvature;
-            section.curvature_at = [section.curvature; 2];
-            section.stretch = stretch(bend);
-            if bend > 1.0 {
-                sharpest =
-                    Some(Bend { at: self.sharpest - first, from: self.longest_from - first, turn: bend });
-            }
-        }
-        match sharpest {
-            Some(Bend { at, from, turn }) => Err(Bend { at: first + at, from: first + from, turn }),
-            None => Ok(self.section),
-        }
-    }
-}
+/// A face's direction is told from so many samples behind it.
+const FACE_SAMPLES: usize = 3;
 
 impl Tube {
     /// Fills the tube; see [`Tube::set_samples`].
@@ -224,7 +63,42 @@ impl Tube {
         }
         let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
+        // Coordinates that were computed in two ways may differ by so much.
+        let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
+        let mut crowds = std::mem::take(&mut self.crowds);
+        crowds.clear();
+        let mut result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+        for _ in 0..MOST_TRIED {
+            let crowding = match result {
+                Ok(Some(index)) | Err(RobotError::TurnsTooSharply { index, .. }) => index,
+                _ => break,
+            };
+            let is_good = result.is_ok();
+            if !crowds::find(samples, radii, crowding, one_place, &mut crowds) {
+                break;
+            }
+            result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+            if is_good && result.is_err() {
+                crowds.clear();
+                result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+                break;
+            }
+        }
+        self.crowds = crowds;
+        result.map(|_| ())
+    }
 
+    /// Fills the tube with good samples, of which those that crowd are one. A sample is returned around which there may be more
+    /// that do.
+    fn lay_samples(
+        &mut self,
+        samples: &[Vector],
+        radii: &[Real],
+        tangents: Option<[Vector; 2]>,
+        reach: Real,
+        one_place: Real,
+        crowds: &mut [Crowd],
+    ) -> Result<Option<usize>, RobotError> {
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -236,14 +110,23 @@ impl Tube {
         segments.resize(samples.len(), 0);
         self.sections.clear();
         let rounding = 4.0 * Real::UNIT_ROUNDOFF * reach;
-        // Coordinates that were computed in two ways may differ by so much.
-        let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
         let (mut gap, mut widest_gap): (Real, Real) = (0.0, 0.0);
         self.merged = 0.0;
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
         let mut open = Open::new(0, 0.0, radii[0]);
-        let mut result = Ok(());
+        // The next crowd, and how far the curve may be from the last point.
+        let (mut number, mut off) =
+            (0, crowds.first().filter(|crowd| crowd.first == 0).map_or(0.0, |crowd| crowd.gap));
+        let (mut result, mut crowding) = (Ok(()), None);
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
+            let mut off_here = 0.0;
+            if let Some(crowd) = crowds.get(number) {
+                if crowd.first < k + 1 && k < crowd.last {
+                    number += usize::from(crowd.last == k + 1);
+                    continue;
+                }
+                off_here = if crowd.first == k + 1 { crowd.gap } else { 0.0 };
+            }
             // What is left out of the curve before it is unknown of its direction.
             let Some(segment) = Segment::between(points[last], sample, rounding + gap) else { continue };
             if segment.length <= one_place {
@@ -251,6 +134,7 @@ impl Tube {
                 widest_gap = widest_gap.max(gap);
                 continue;
             }
+            let segment = segment.with_gap(off + off_here);
             gap = 0.0;
             if let Some(before) = &before {
                 if open.takes(radius) {
@@ -258,11 +142,14 @@ impl Tube {
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
-                    let next = Open { at_ends: turn, ..Open::new(last, arc, radius) };
-                    let done = std::mem::replace(&mut open, next);
+                    let done = std::mem::replace(&mut open, Open::behind_step(last, arc, radius, turn));
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
-                    match done.close(last, rounding + widest_gap, &points, &arcs, &mut bounds) {
-                        Ok(section) => self.sections.push(section),
+                    let so_far = SoFar { points: &points, arcs: &arcs, crowds };
+                    match done.close(last, rounding + widest_gap, &so_far, &mut bounds) {
+                        Ok((section, near)) => {
+                            self.sections.push(section);
+                            crowding = crowding.or(near);
+                        }
                         Err(bend) => result = result.and(Err(bend.error(&segments))),
                     }
                 }
@@ -278,10 +165,12 @@ impl Tube {
             last += 1;
             points[last] = sample;
             arcs[last] = arc;
-            if segment.length > open.longest {
-                (open.longest, open.longest_from) = (segment.length, last - 1);
-            }
+            open.extend(last, &segment);
             before = Some(segment);
+            off = off_here;
+            if off > 0.0 {
+                crowds[number].point = last;
+            }
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
             open.bend_from(last, 1, tangent, &segment);
@@ -290,8 +179,13 @@ impl Tube {
         arcs.truncate(last + 1);
         segments.truncate(last + 1);
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
-        match open.close(last, rounding + widest_gap, &points, &arcs, &mut bounds) {
-            Ok(section) => self.sections.push(section),
+        self.merged += crowds.iter().fold(0.0, |widest: Real, crowd| widest.max(crowd.gap));
+        let so_far = SoFar { points: &points, arcs: &arcs, crowds };
+        match open.close(last, rounding + widest_gap, &so_far, &mut bounds) {
+            Ok((section, near)) => {
+                self.sections.push(section);
+                crowding = crowding.or(near);
+            }
             Err(bend) => result = result.and(Err(bend.error(&segments))),
         }
         if !bounds.is_empty() {
@@ -303,10 +197,15 @@ impl Tube {
             result = Err(RobotError::AllPointsEqual);
         }
         if result.is_ok() {
-            result = self.stand_faces(&points, &bounds, tangents, rounding + widest_gap, one_place, samples);
+            let unknown = rounding + widest_gap;
+            let given = Given { samples, one_place, crowds };
+            result = self.stand_faces(&points, &bounds, tangents, unknown, &given);
         }
+        // The number of the sample in the input.
+        let crowding =
+            crowding.map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
-        result
+        result.map(|()| crowding)
     }
 
     /// Finds the flat ends of the sections and their directions. `points` are the samples without those repeated.
@@ -316,8 +215,7 @@ impl Tube {
         bounds: &[CurveBound],
         tangents: Option<[Vector; 2]>,
         rounding: Real,
-        one_place: Real,
-        samples: &[Vector],
+        given: &Given,
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
         for end in [0, 1] {
@@ -329,16 +227,23 @@ impl Tube {
                 if !tube.is_flat(end, number, limit, centre) {
                     return;
                 }
-                let given = match (end, tangents) {
+                let stated = match (end, tangents) {
                     (0, Some([tangent, _])) if number == 0 => Some(-tangent),
                     (1, Some([_, tangent])) if number == last => Some(tangent),
                     _ => None,
                 };
-                let (outward, tilt) = match given {
+                let (outward, tilt) = match stated {
                     Some(outward) => (outward, 0.0),
                     None => {
                         let curvature = bend_at_end(section, end, bounds);
-                        direction_at_end(ahead, stretch.len(), curvature, rounding)
+                        let from = if end == 0 { section.first as usize } else { section.last as usize };
+                        let near = |crowd: &&Crowd| crowd.point.abs_diff(from) <= FACE_SAMPLES;
+                        let off = given
+                            .crowds
+                            .iter()
+                            .filter(near)
+                            .fold(0.0, |off: Real, crowd| off.max(2.0 * crowd.gap));
+                        direction_at_end(ahead, stretch.len(), curvature, rounding + off)
                     }
                 };
                 tube.sections[number].faces[end] =
@@ -346,7 +251,7 @@ impl Tube {
             });
         }
         for section in &self.sections {
-            super::check_faces(section, || position_of(section.first as usize, samples, one_place))?;
+            super::check_faces(section, || given.position_of(section.first as usize))?;
         }
         self.mark_lasting_faces();
         Ok(())
@@ -363,14 +268,28 @@ fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
     two.iter().fold(0.0, |most: Real, bound| most.max(bound.curvature))
 }
 
-/// Where a point stood among the samples before those at one place were dropped.
-fn position_of(point: usize, samples: &[Vector], one_place: Real) -> usize {
-    let (mut last, mut count) = (0, 0);
-    for k in 1..samples.len() {
-        let is_apart = |segment: Segment| segment.length > one_place;
-        if count < point && Segment::between(samples[last], samples[k], 0.0).is_some_and(is_apart) {
-            (last, count) = (k, count + 1);
+/// Samples as they were given.
+struct Given<'a> {
+    samples: &'a [Vector],
+    /// What is no farther apart than this is at one place.
+    one_place: Real,
+    crowds: &'a [Crowd],
+}
+
+impl Given<'_> {
+    /// Where a point stood among the samples before those at one place were dropped.
+    fn position_of(&self, point: usize) -> usize {
+        let (mut last, mut count) = (0, 0);
+        for (k, &sample) in self.samples.iter().enumerate().skip(1) {
+            let is_apart = |segment: Segment| segment.length > self.one_place;
+            let is_dropped = |crowd: &Crowd| crowd.first < k && k <= crowd.last;
+            if count < point
+                && !self.crowds.iter().any(is_dropped)
+                && Segment::between(self.samples[last], sample, 0.0).is_some_and(is_apart)
+            {
+                (last, count) = (k, count + 1);
+            }
         }
+        last
     }
-    last
 }

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// How the curvature goes along a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     /// Arcs that are at least twice as long as a segment.
     Arcs,
     /// It changes evenly: a clothoid.
@@ -20,7 +20,13 @@ enum Kind {
 }
 
 /// A stretch as very short arcs: of each its length and curvature vector. No segment of the frames is longer than `spacing`.
-fn stretch(random: &mut Random, kind: Kind, length: f64, spacing: f64, sharpest: f64) -> Vec<(f64, Vector)> {
+pub(super) fn stretch(
+    random: &mut Random,
+    kind: Kind,
+    length: f64,
+    spacing: f64,
+    sharpest: f64,
+) -> Vec<(f64, Vector)> {
     let bend = |size: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (sharpest * size);
     let angle = TAU * random.unit();
     if kind == Kind::Arcs {
@@ -46,7 +52,7 @@ fn stretch(random: &mut Random, kind: Kind, length: f64, spacing: f64, sharpest:
 }
 
 /// Frames of a curve, with a radius for each segment: no segment is longer than `spacing`, nor less than half as long.
-fn frames(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<Vector>, Vec<f64>) {
+pub(super) fn frames(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<Vector>, Vec<f64>) {
     let (start, tangent) = arcs.at(0.0);
     let (mut points, mut tangents, mut radii, mut from) = (vec![start], vec![tangent], Vec::new(), 0.0);
     for part in &arcs.stretches {

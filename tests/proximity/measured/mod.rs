@@ -1,5 +1,6 @@
 //! Tubes of frames and of measured points against the truth: the nearest of all discs across curves that are known everywhere.
 
+mod crowds;
 mod fit;
 mod frames;
 
