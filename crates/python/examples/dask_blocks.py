@@ -45,7 +45,7 @@ def block_of_distances(mesh, block_info=None):
 
 def distances(client, mesh, count, block):
     """All distances, as an array whose blocks lie with the workers that made them."""
-    sent = client.scatter(mesh, broadcast=True)
+    sent = client.scatter(mesh, broadcast=True, hash=False)  # under a name of its own each time
     blocks = tuple(min(block, count - start) for start in range(0, count, block))
     return da.map_blocks(block_of_distances, mesh=sent, chunks=(blocks,), dtype=float, meta=np.zeros(0))
 

@@ -1,7 +1,7 @@
 //! From plain numbers to what Python gets: arrays, and tuples with names.
 
 use crate::input::numpy;
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
+use numpy::{Element, IxDyn, PyArray1, PyArrayDyn, PyArrayMethods};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{Decision, Side};
 use pyo3::prelude::*;
@@ -29,6 +29,26 @@ pub(crate) fn array<'py, T: Element + Copy>(
     }
 }
 
+/// An array with a row of N numbers, or one number, for each of some answers. It is written where it lies, which takes least of
+/// answers that have many arrays.
+pub(crate) fn rows<'py, S, T: Element + Copy, const N: usize>(
+    py: Python<'py>,
+    answers: &[S],
+    row: impl Fn(&S) -> [T; N],
+) -> Bound<'py, PyAny> {
+    let shape = [answers.len(), N];
+    // SAFETY: the array is new, so that nobody else has it, and contiguous, with a row for each of the answers. All of them are
+    // written, with numbers that need no drop.
+    unsafe {
+        let array = PyArrayDyn::<T>::new(py, IxDyn(if N == 1 { &shape[..1] } else { &shape }), false);
+        let place = array.data().cast::<[T; N]>();
+        for (number, answer) in answers.iter().enumerate() {
+            place.add(number).write(row(answer));
+        }
+        array.into_any()
+    }
+}
+
 /// An array of this shape, or the number itself where the shape is that of one.
 pub(crate) fn array_or_number<'py, T>(
     py: Python<'py>,
@@ -46,7 +66,7 @@ where
 
 /// Points one after the other.
 pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
-    points.into_iter().flat_map(|point| point.to_array()).collect()
+    points.into_iter().map(|point| point.to_array()).collect::<Vec<_>>().into_flattened()
 }
 
 /// An answer of the package's Python half: the tuple with names of that class, of these values. `answer!` is the same with a place

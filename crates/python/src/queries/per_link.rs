@@ -69,7 +69,7 @@ impl Mesh {
         let segments = robots.segments_each();
         let count = robots.len() * segments;
         let (mut distance, mut arc_length) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let (mut on_robot, mut on_mesh) = (Vec::with_capacity(3 * count), Vec::with_capacity(3 * count));
+        let (mut on_robot, mut on_mesh) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut triangle = Vec::with_capacity(count);
         let ask = |session: &mut Session, robot: &Given<'_>, rows: &mut [Row]| {
             session.set_chain(robot, caps)?;
@@ -88,16 +88,16 @@ impl Mesh {
         };
         ask_each(py, &self.engine(py), &robots, (NOTHING, segments.max(1)), ask, |_, rows| {
             distance.extend(rows.iter().map(|row| row.distance));
-            on_robot.extend(rows.iter().flat_map(|row| row.on_robot.to_array()));
-            on_mesh.extend(rows.iter().flat_map(|row| row.on_mesh.to_array()));
+            on_robot.extend(rows.iter().map(|row| row.on_robot.to_array()));
+            on_mesh.extend(rows.iter().map(|row| row.on_mesh.to_array()));
             arc_length.extend(rows.iter().map(|row| row.arc_length));
             triangle.extend(rows.iter().map(|row| row.triangle));
         })?;
         let shape = || robots.shape(&[segments]);
         let values = (
             array(py, shape(), distance)?,
-            array(py, robots.shape(&[segments, 3]), on_robot)?,
-            array(py, robots.shape(&[segments, 3]), on_mesh)?,
+            array(py, robots.shape(&[segments, 3]), on_robot.into_flattened())?,
+            array(py, robots.shape(&[segments, 3]), on_mesh.into_flattened())?,
             array(py, shape(), arc_length)?,
             array(py, shape(), triangle)?,
         );

@@ -3,11 +3,12 @@
 use super::distance::no_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
-use crate::output::{answer, array, flat};
-use crate::threads::{Session, ask_each};
+use crate::output::{answer, rows};
+use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{Contact, Proximity};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 #[pymethods]
 impl Mesh {
@@ -61,41 +62,38 @@ impl Mesh {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = Robots::new("points", points, radii, pose)?;
-        let (mut all, mut offsets, mut robot_of): (Vec<Contact>, _, _) =
-            (Vec::new(), vec![0_i64], Vec::new());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<Contact>]| {
+        // Each with the number of its robot.
+        let mut all: Vec<(Contact, i64)> = Vec::new();
+        let mut offsets = Vec::with_capacity(robots.len() + 1);
+        offsets.push(0_i64);
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<(Contact, i64)>]| {
             session.set_chain(robot, caps)?;
             let chain = session.chain.as_ref().ok_or_else(no_chain)?;
             session.search.within(chain, &robot.pose()?, margin, prominence, &mut session.contacts)?;
-            row[0].extend(&session.contacts);
+            row[0] = session.contacts.iter().map(|contact| (*contact, robot.number as i64)).collect();
             Ok(())
         };
-        ask_each(py, &self.engine(py), &robots, (Vec::new(), 1), ask, |first, found| {
-            for (robot, contacts) in (first..).zip(found) {
-                all.extend(contacts);
+        ask_each(py, &self.engine(py), &robots, (Vec::new(), 1), ask, |_, found| {
+            for contacts in found {
+                all.extend_from_slice(contacts);
                 offsets.push(all.len() as i64);
-                robot_of.resize(all.len(), robot as i64);
             }
         })?;
-        let count = || vec![all.len()];
-        let numbers = |of: fn(&Contact) -> f64| array(py, count(), all.iter().map(of).collect());
-        let places = |of: fn(&Contact) -> u32| {
-            array(py, count(), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
-        };
-        let points = |of: fn(&Contact) -> Vector| array(py, vec![all.len(), 3], flat(all.iter().map(of)));
-        let values = (
-            places(|contact| contact.segment)?,
-            numbers(|contact| contact.fraction)?,
-            numbers(|contact| contact.arc_length)?,
-            numbers(|contact| contact.distance)?,
-            numbers(|contact| contact.depth.unwrap_or(f64::NAN))?,
-            points(|contact| contact.normal.unwrap_or(Vector::NAN))?,
-            points(|contact| contact.on_robot)?,
-            points(|contact| contact.on_mesh)?,
-            places(|contact| contact.triangle)?,
-            array(py, count(), robot_of)?,
-            array(py, vec![offsets.len()], offsets.clone())?,
-        );
-        answer!(py, "Contacts", values)
+        let numbers = |of: fn(&Contact) -> f64| rows(py, &all, |(contact, _)| [of(contact)]);
+        let points = |of: fn(&Contact) -> Vector| rows(py, &all, |(contact, _)| of(contact).to_array());
+        let values = [
+            rows(py, &all, |(contact, _)| [i64::from(contact.segment)]),
+            numbers(|contact| contact.fraction),
+            numbers(|contact| contact.arc_length),
+            numbers(|contact| contact.distance),
+            numbers(|contact| contact.depth.unwrap_or(f64::NAN)),
+            points(|contact| contact.normal.unwrap_or(Vector::NAN)),
+            points(|contact| contact.on_robot),
+            points(|contact| contact.on_mesh),
+            rows(py, &all, |(contact, _)| [i64::from(contact.triangle)]),
+            rows(py, &all, |(_, robot)| [*robot]),
+            rows(py, &offsets, |offset| [*offset]),
+        ];
+        answer!(py, "Contacts", PyTuple::new(py, values)?)
     }
 }
