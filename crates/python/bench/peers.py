@@ -51,8 +51,8 @@ def peers(mesh, vertices, faces, shapes):
     own, exact = timed(lambda points: mesh.distance(points, RADIUS), shapes)
     batch = min(timed(lambda _: mesh.distance(shapes, RADIUS), [None] * 5)[0] for _ in range(3)) / len(shapes)
     touches = f"{np.mean(exact == 0):.0%} of the shapes touch"
-    rows.append(("**`distance`**, one robot", own, "0", "0", "0 %"))
-    rows.append(("**`distance`**, a batch", batch, "0", "0", "0 %"))
+    rows.append(("**`distance`**, one robot", own, "0", "0", "0%"))
+    rows.append(("**`distance`**, a batch", batch, "0", "0", "0%"))
     for name, package, make, caps, count in WAYS:
         if importlib.util.find_spec(package) is None:
             missing.append(package)
@@ -68,7 +68,8 @@ def peers(mesh, vertices, faces, shapes):
         error, is_free = found - true, true > 0
         over, under = error[is_free].max(initial=0), (-error[is_free]).max(initial=0)
         called_free = np.mean(found[~is_free] > 0) if (~is_free).any() else 0
-        rows.append((name, taken, f"{over:.1e}", f"{under:.1e}", f"{called_free:.0%}"))
+        over, under = (f"{error:.1e}" if error > 0 else "0" for error in (over, under))
+        rows.append((name, taken, over, under, f"{called_free:.0%}"))
         print(rows[-1], flush=True)
     return rows, sorted(set(missing)), touches
 
@@ -139,17 +140,21 @@ def main(count=500):
     shapes = robots(count)
     mesh = Mesh(vertices, faces)
     mesh.prepare()
+    # Before the peers are loaded, which bring threads and memory of their own.
+    added, shared = overhead(mesh, vertices, faces, shapes), threads(mesh, shapes)
     rows, missing, touches = peers(mesh, vertices, faces, shapes)
     versions = [DISTRIBUTIONS.get(package, package) for package in sorted({way[1] for way in WAYS} - set(missing))]
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in versions)
+    without = f" Not installed: {', '.join(missing)}." if missing else ""
     lines = [
         "# Python beside its peers",
         "",
         "Written by `python crates/python/bench/peers.py` (`pip install './crates/python[bench]'` has what it needs), on a machine",
         f"with {os.cpu_count()} cores ({platform.machine()}, Python {platform.python_version()}), with parry-continuum "
-        f"{parry_continuum.__version__} and {versions}." + (f" Not installed: {', '.join(missing)}." if missing else ""),
+        f"{parry_continuum.__version__},",
+        f"{versions}.{without}",
         "",
-        f"A cavity of {len(faces):,} triangles, about 50 mm wide on each side, and robots of {shapes.shape[1] - 1} links, 75 mm "
+        f"A cavity of {len(faces):,} triangles, about 50 mm wide on each side, and robots of {shapes.shape[1] - 1} links, 75 mm",
         f"long, with the radius {RADIUS} mm; {touches}. Each library is asked as its users ask it. The error is that of",
         "the distance in mm, of free shapes, beside the exact distance of the shape that the library was given: cylinders,",
         "capsules, or, where only points are asked about, the robot itself. What reports more room than there is, is in the",
@@ -168,7 +173,7 @@ def main(count=500):
         "| question | Rust | Python | more |",
         "|---|---|---|---|",
         *(f"| `{name}` | {rust:.2f} | {python:.2f} | {python - rust:+.2f} |"
-          for name, rust, python in overhead(mesh, vertices, faces, shapes)),
+          for name, rust, python in added),
         "",
         "## Two threads",
         "",
@@ -177,7 +182,7 @@ def main(count=500):
         "",
         "| question | times as many |",
         "|---|---|",
-        *(f"| `{name}` | {ratio:.2f} |" for name, ratio in threads(mesh, shapes)),
+        *(f"| `{name}` | {ratio:.2f} |" for name, ratio in shared),
     ]
     PAGE.write_text("\n".join(lines) + "\n")
     print(PAGE.read_text())
