@@ -152,8 +152,8 @@ fn draw(panels: &[Panel]) -> Canvas {
             canvas.text(text, [x + 38.0, y + 18.0 + 32.0 * line as f32], Align::Left, 17.0, INK);
         }
     }
-    canvas.text("the radius is 1, or 1.5, 1 and 0.5", [x, y + 150.0], Align::Left, 16.5, PALE);
-    canvas.text("long links 1.5, short links 0.4, tubes 1", [x, y + 186.0], Align::Left, 16.5, PALE);
+    canvas.text("radius 1; of three tubes 1.5, 1 and 0.5", [x, y + 150.0], Align::Left, 16.5, PALE);
+    canvas.text("links 1.5 long, short ones 0.4, of three tubes 1", [x, y + 186.0], Align::Left, 16.5, PALE);
     canvas
 }
 

@@ -11,7 +11,6 @@ use clap::{Parser, ValueEnum};
 use continuum_demo::anatomy::{Anatomy, no_goal, show};
 use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
 use continuum_demo::{command, figure, steer, timing, ventricle};
-use indicatif::{ProgressBar, ProgressStyle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece};
@@ -117,9 +116,7 @@ fn steer(options: &Options) -> Result<(), String> {
 
     // The way in: both engines at every step.
     let scale = mesh.local_aabb().extents().length() + mesh.local_aabb().center().abs().max_element();
-    let bar = ProgressBar::new(options.steps.into());
-    let style = ProgressStyle::with_template("{msg:>20} {wide_bar} {pos}/{len} steps").map_err(text)?;
-    bar.set_style(style.progress_chars("━╸ "));
+    let bar = command::progress(options.steps, "steps")?;
     let (mut found, mut checked) = (Vec::new(), Vec::new());
     let (mut chains, mut apart) = (Vec::new(), 0.0);
     for step in 1..=options.steps {
@@ -270,7 +267,7 @@ fn print_times(
     let [first, again, all, parry] = medians[..] else { return Err("a time is missing".into()) };
     println!("\ntime per query of all {} links (median, taken in turns)", chain.links().len());
     let row = |name: &str, time: Duration| {
-        println!("  {name:<46} {:>11.1} us   {:>8.2} x", time.as_secs_f64() * 1e6, ratio(parry, time));
+        println!("  {name:<46} {:>11.1} µs   {:>8.2} x", time.as_secs_f64() * 1e6, ratio(parry, time));
     };
     row("parry distance(Cylinder, TriMesh), link by link", parry);
     row("search, first time", first);
@@ -325,7 +322,7 @@ fn caption(
 fn clock(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     let (value, unit) = match seconds {
-        s if s < 1e-3 => (s * 1e6, "us"),
+        s if s < 1e-3 => (s * 1e6, "µs"),
         s if s < 1.0 => (s * 1e3, "ms"),
         s => (s, "s"),
     };

@@ -18,7 +18,6 @@ use continuum_demo::canvas::Canvas;
 use continuum_demo::ctr::{Robot, three_tubes};
 use continuum_demo::{command, steer, ventricle};
 use edges::{Check, Costs, DRAWN_IN, Edges, Place, RESOLUTION, place, text};
-use indicatif::{ProgressBar, ProgressStyle};
 use over_time::OverTime;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::proximity::{BvhSearch, Decision};
@@ -82,10 +81,7 @@ fn run(options: &Options) -> Result<(), String> {
     let mut proven = None;
     for check in [Check::Proof, Check::Steps(0.5), Check::Steps(0.1)] {
         let mut edges = new_edges(options, &robot, &base, &search, check);
-        let bar = ProgressBar::new(options.plans.into());
-        let style =
-            ProgressStyle::with_template("{msg:>30} {wide_bar} {pos} of {len} plans").map_err(text)?;
-        bar.set_style(style.progress_chars("━╸ "));
+        let bar = command::progress(options.plans, "plans")?;
         let mut sums = Sums::default();
         for number in 0..u64::from(options.plans) {
             let found = plan(&mut edges, ends, options.seed.wrapping_add(number))?;
@@ -123,7 +119,7 @@ fn run(options: &Options) -> Result<(), String> {
         edges.costs.shapes
     );
     if let Some(file) = picture {
-        save(&draw::draw(&mesh, &edges, &path)?, &file, "--picture")?;
+        save(&draw::draw(&mesh, &options.anatomy.name(), &edges, &path)?, &file, "--picture")?;
     }
     if let Some(file) = clearance {
         let found = OverTime::new(&mut edges, &path)?;

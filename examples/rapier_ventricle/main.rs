@@ -83,15 +83,18 @@ fn simulate(options: &Options) -> Result<(), String> {
     let steps = (plan.duration() / world.integration_parameters.dt).round() as usize;
     let picture_every = steps.div_ceil(options.frames.max(40) as usize);
     let (mut clocks, mut film, mut best) = (Clocks::default(), Vec::new(), Summary::default());
+    let bar = command::progress(steps as u32, "steps")?;
     for step in 1..=steps {
         let time = step as Real * world.integration_parameters.dt;
         let moment = advance(&mut world, &mut rod, &plan, &mut search, time, &mut clocks)?;
         recorder.write(step, &moment).map_err(cannot)?;
         best.take_note(&moment);
+        bar.inc(1);
         if step % picture_every == 0 || step == steps {
             film.push(moment);
         }
     }
+    bar.finish_and_clear();
     recorder.finish().map_err(cannot)?;
     best.print(steps, &plan);
     clocks.print();
@@ -199,7 +202,7 @@ impl Clocks {
             let at = |share: f64| times.get((share * (times.len().max(1) - 1) as f64) as usize).copied();
             let [median, slowest] = [0.5, 1.0].map(|share| at(share).unwrap_or_default().as_secs_f64());
             println!(
-                "  {name:<22} {:>8.1} us {:>8.1} us   {:>6.1} %",
+                "  {name:<22} {:>8.1} µs {:>8.1} µs   {:>6.1} %",
                 median * 1e6,
                 slowest * 1e6,
                 median * 1e5

@@ -1,10 +1,12 @@
-//! What the example programs share as commands: errors of one line, numbers, and where pictures go.
+//! What the example programs share as commands: errors of one line, numbers, how far the work is, and where pictures go.
 
 use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Runs a program on its options. Help goes to standard output; an error is one line on standard error and a
 /// non-zero exit.
@@ -54,6 +56,30 @@ pub fn length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
         _ => Err("write a length of at least 0, for example 0.5".into()),
+    }
+}
+
+/// A bar that shows how many of `count` things are done, with room for a message before it. It shows on a terminal alone.
+///
+/// # Errors
+/// The name of the things cannot be a part of the bar.
+pub fn progress(count: u32, things: &str) -> Result<ProgressBar, String> {
+    let template = format!("{{msg:>30}} {{wide_bar}} {{pos}} of {{len}} {things}");
+    let style = ProgressStyle::with_template(&template).map_err(|error| error.to_string())?;
+    Ok(ProgressBar::new(count.into()).with_style(style.progress_chars("━╸ ")))
+}
+
+/// What a program that takes minutes is at.
+pub struct Stages(Instant);
+
+impl Stages {
+    pub fn begin() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Says on the standard error what comes now, and after how many seconds.
+    pub fn next(&self, name: &str) {
+        eprintln!("{:5.0} s  {name}", self.0.elapsed().as_secs_f64());
     }
 }
 

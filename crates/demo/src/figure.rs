@@ -1,8 +1,8 @@
 //! The picture of a proximity query: the whole scene on the left, the robot close up on the right.
 //!
 //! Each link has the colour of its distance to the wall. A thin line joins its two closest points, and the triangle
-//! where it ends is painted in the link's colour. The pieces into which a query divided the curve, if there was one, are
-//! outlined close up.
+//! where it ends is painted in the link's colour. A ring marks the closest link. The pieces into which a query divided the
+//! curve, if there was one, are outlined close up.
 
 use crate::canvas::{Align, Canvas, Colour, hex, mix};
 use crate::colour_map::ColourMap;
@@ -18,11 +18,17 @@ const PALE: Colour = hex(0x66757f);
 const SIZE: [usize; 2] = [2000, 1220];
 const LEFT: usize = 1230;
 const TOP: usize = 150;
-const INSET: [usize; 4] = [1250, 70, 690, 800];
+const INSET: [usize; 4] = [1250, 70, 690, 764];
 /// Of the outlines of pieces, by turns.
 const OUTLINES: [Colour; 2] = [hex(0xffffff), hex(0xff8c1a)];
+/// Of the ring around the closest points of all (Okabe and Ito's vermilion).
+const MARK: Colour = hex(0xd55e00);
 /// From a line of the legend to the next.
 const ROW: usize = 36;
+/// The distance of the last colour, mm: one for all pictures, so that two of them compare.
+const FARTHEST: Real = 5.0;
+/// How many times larger the close-up must show the robot than the whole picture does.
+const MAGNIFIES: f32 = 1.5;
 
 /// The text on the picture.
 pub struct Caption {
@@ -42,8 +48,7 @@ pub fn draw(
     pieces: &[TubePiece],
     caption: &Caption,
 ) -> Canvas {
-    let largest = answers.iter().map(|answer| answer.distance).fold(0.0, Real::max);
-    let colours = ColourMap::up_to(largest);
+    let colours = ColourMap::up_to(FARTHEST);
     let thick = robot.links().iter().map(ModifiedCylinder::radius).fold(0.0, Real::max);
     let mut picture = Picture::new(Some(mesh), solids(robot, pose, answers, &colours, thick));
     for answer in answers.iter().rev() {
@@ -85,35 +90,55 @@ pub fn draw(
     let depth = |p: Vector| (p - near.eye).dot(near.forward);
     let robot_depths = inner.into_iter().map(|p| depth(p) - 1.05 * thick);
     near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
-    picture.sky = [sky(top), sky(top + height)];
-    picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
-    let mut inset = picture.render(&near, width, height);
-    for (piece, colour) in pieces.iter().zip(OUTLINES.into_iter().cycle()) {
-        inset.stroke(&[outline(&piece.body, &Pose::IDENTITY, &near, [width, height])], 2.5, colour, 0.9);
+    let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
+    let closest = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance));
+    let closest = closest.map(|answer| answer.on_robot.midpoint(answer.on_mesh));
+    for [x, y] in closest.iter().map(|&p| whole.place(p, size)) {
+        ring(&mut canvas, [x, y + TOP as f32], 13.0);
     }
-    let frame = [left as f32, top as f32, (left + width) as f32, (top + height) as f32];
-    let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
-    lens(&mut canvas, &places.collect::<Vec<_>>(), frame);
-    canvas.paste(&inset, [left, top], 18.0);
-    canvas.frame(frame, 18.0, 2.5, PALE);
+
+    let magnified = scale(&near, centre, [width, height]) / scale(&whole, centre, size);
+    let mut foot = top as f32;
+    if magnified >= MAGNIFIES {
+        picture.sky = [sky(top), sky(top + height)];
+        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
+        let mut inset = picture.render(&near, width, height);
+        for (piece, colour) in pieces.iter().zip(OUTLINES.into_iter().cycle()) {
+            inset.stroke(&[outline(&piece.body, &Pose::IDENTITY, &near, [width, height])], 2.5, colour, 0.9);
+        }
+        for place in closest.iter().map(|&p| near.place(p, [width, height])) {
+            ring(&mut inset, place, 26.0);
+        }
+        foot += height as f32;
+        let frame = [left as f32, top as f32, (left + width) as f32, foot];
+        let places = seen.iter().map(|&p| whole.place(p, size)).map(|[x, y]| [x, y + TOP as f32]);
+        lens(&mut canvas, &places.collect::<Vec<_>>(), frame);
+        canvas.paste(&inset, [left, top], 18.0);
+        canvas.frame(frame, 18.0, 2.5, PALE);
+        ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, foot - 28.0]);
+    }
 
     canvas.text(&caption.title, [56.0, 84.0], Align::Left, 30.0, INK);
     canvas.text(&caption.subtitle, [56.0, 132.0], Align::Left, 19.0, PALE);
-    let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
     ruler(&mut canvas, &whole, mesh.local_aabb().center(), size, [56.0, 1164.0]);
-    ruler(&mut canvas, &near, centre, [width, height], [frame[0] + 24.0, frame[3] - 28.0]);
-    let bar = [frame[0], frame[3] + 74.0];
-    colours.draw(&mut canvas, bar, [width as f32, 24.0], "distance from link to wall (mm)", INK);
+    let bar = [left as f32, foot + 74.0];
+    let title = format!("distance from link to wall (mm, the last colour from {FARTHEST} on)");
+    colours.draw(&mut canvas, bar, [width as f32, 24.0], &title, INK);
     legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
-    let mut below = bar[1] + 188.0;
+    let mut below = bar[1] + 188.0 + ROW as f32;
     if !pieces.is_empty() {
-        outline_legend(&mut canvas, [bar[0], bar[1] + 104.0 + 2.0 * ROW as f32]);
+        outline_legend(&mut canvas, [bar[0], bar[1] + 104.0 + 3.0 * ROW as f32]);
         below += ROW as f32;
     }
     for (row, note) in caption.notes.iter().enumerate() {
         canvas.text(note, [bar[0], below + 33.0 * row as f32], Align::Left, 18.0, PALE);
     }
     canvas
+}
+
+/// Marks a place.
+fn ring(canvas: &mut Canvas, [x, y]: [f32; 2], radius: f32) {
+    canvas.frame([x - radius, y - radius, x + radius, y + radius], radius, 4.0, MARK);
 }
 
 /// What the lines and the tinted triangles mean; `at` is the left end of the base line.
@@ -130,6 +155,9 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     });
     canvas.stroke(&rows.collect::<Vec<_>>(), 1.4, tint, 1.0);
     canvas.text("nearest triangle of a link, in the link's colour", [x + 66.0, y], Align::Left, 18.0, INK);
+    let y = y + ROW as f32;
+    ring(canvas, [x + 25.0, y - 8.0], 11.0);
+    canvas.text("the closest link", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
 /// What the outlines mean.
@@ -189,10 +217,15 @@ fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
     canvas.frame(frame, 10.0, 2.0, PALE);
 }
 
+/// How many pixels a millimetre has at the given depth.
+fn scale(camera: &Camera, depth: Vector, size: [usize; 2]) -> f32 {
+    let [from, to] = [depth, depth + camera.right].map(|p| camera.place(p, size)[0]);
+    to - from
+}
+
 /// A ruler as long as a round number of millimetres at the given depth, with its left end at `at`.
 pub fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
-    let [from, to] = [depth, depth + camera.right].map(|p| camera.place(p, size)[0]);
-    let unit = f64::from(to - from);
+    let unit = f64::from(scale(camera, depth, size));
     let decade = 10f64.powf((150.0 / unit).log10().floor());
     let length =
         [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|n| n * unit <= 170.0).unwrap_or(decade);

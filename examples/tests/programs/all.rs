@@ -94,7 +94,7 @@ fn nearest(output: &str, line: &str) -> f64 {
 #[test]
 fn a_fixture_keeps_the_robot_away_from_the_wall() {
     let out = succeed("control", &["--ticks", "800", "--out", "controlled/way.png"]);
-    assert!(nearest(&out, "as it likes") < 0.01, "{out}");
+    assert!(nearest(&out, "without the fixture") < 0.01, "{out}");
     assert!(nearest(&out, "with the fixture") >= 0.5, "{out}");
     for part in ["kinematics", "robot", "query", "p99.9"] {
         assert!(out.contains(part), "{out}");
