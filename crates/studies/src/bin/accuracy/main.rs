@@ -11,7 +11,7 @@ mod peers;
 mod slice;
 
 use clap::Parser;
-use continuum_demo::command;
+use continuum_demo::command::{self, Stages};
 use continuum_demo::levels::levels;
 use continuum_studies::accuracy::measure::{Measurement, measure, problems, range};
 use continuum_studies::accuracy::{EACH, LARGEST, certificates, engines, reference, tables};
@@ -145,8 +145,11 @@ fn write_all(docs: &Path) -> Result<(), String> {
     let path = docs.join("ACCURACY.md");
     let cases = distance_cases();
     let levels = levels();
+    let stages = Stages::begin();
+    stages.next("random problems");
     let (problems, single) = (problems::<f64>(EACH), problems::<f32>(EACH));
     let (double_errors, single_errors) = (measure(&problems, &levels), measure(&single, &levels));
+    stages.next("parry");
     let peer = Peer::ask(&problems);
     std::fs::create_dir_all(docs)
         .map_err(|error| format!("cannot make {} ({error}); choose another --out", docs.display()))?;
@@ -154,8 +157,10 @@ fn write_all(docs: &Path) -> Result<(), String> {
     let on_gpu = between(&before, "gpu").unwrap_or("No GPU has been measured yet.\n").to_owned();
     #[cfg(feature = "gpu")]
     let on_gpu = device::section(docs, &on_gpu, &problems, &single)?.unwrap_or(on_gpu);
+    stages.next("certificates");
     let gaps = certificates::measure(&cases, &problems);
     let parry = long_table::write(&peer.table(), &docs.join("accuracy_parry.csv"), peers::is_shown)?;
+    stages.next("engines");
     let page = [
         INTRODUCTION,
         &reference::in_millimetres(&cases),
@@ -192,6 +197,7 @@ fn write_all(docs: &Path) -> Result<(), String> {
     let mut lines = vec![reference::HEAD.to_owned()];
     lines.extend(reference::lines(&cases, peers::on_cases));
     save(&docs.join("accuracy_cases.csv"), &(lines.join("\n") + "\n"))?;
+    stages.next("picture");
     let picture = docs.join("correctness.png");
     slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
     println!("{}", picture.display());

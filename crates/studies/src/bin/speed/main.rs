@@ -18,7 +18,7 @@ mod rare;
 mod search;
 
 use clap::Parser;
-use continuum_demo::command;
+use continuum_demo::command::{self, Stages};
 use continuum_studies::{machine, quote};
 use goals::Goals;
 use std::fs;
@@ -96,14 +96,23 @@ fn measure(options: &Options) -> Result<(), String> {
          {written}. \
          Times are medians; jobs that are compared take turns in one run. [GPU_SPEED.md](GPU_SPEED.md) is about the GPU.\n"
     );
+    let stages = Stages::begin();
+    stages.next("memory");
     let memory = exhaustive::memory(effort)?;
     let mut goals = Goals::default();
+    stages.next("search");
     let (search, rows) = search::chapter(effort, &mut goals)?;
+    stages.next("planner");
     let (planner, shapes) = planner::chapter(effort, &mut goals)?;
+    stages.next("every triangle");
     let exhaustive = exhaustive::chapter(effort, &mut goals)?;
+    stages.next("growth with the mesh");
     let growth = growth::chapter(effort, &options.out)?;
+    stages.next("after other work");
     let (latency, after_other_work) = latency::chapter(effort)?;
+    stages.next("the worst of many");
     let rare = rare::chapter(effort, &written, &mut goals)?;
+    stages.next("moving meshes");
     let rare = format!("<!-- {0} -->\n{rare}<!-- /{0} -->\n", rare::MARK);
     for chapter in [search, planner, latency, rare, exhaustive, growth, moving::chapter(effort)?, memory] {
         page.push('\n');

@@ -18,7 +18,7 @@ mod turns;
 
 use clap::{Parser, ValueEnum};
 
-use continuum_demo::command;
+use continuum_demo::command::{self, Stages};
 use continuum_studies::machine;
 use std::fs;
 use std::path::PathBuf;
@@ -94,10 +94,12 @@ fn measure(options: &Options) -> Result<(), String> {
         machine::description()
     );
     let mut rest = before.split_once("\n## ").map_or("", |(_, chapters)| chapters);
+    let stages = Stages::begin();
     for chapter in Chapter::ALL {
         let old = rest.split_once(&chapter.mark());
         rest = old.map_or(rest, |(_, after)| after.trim_start_matches("\n## "));
         if options.only.is_none_or(|only| only == chapter) {
+            stages.next(&format!("{chapter:?}").to_lowercase());
             page.push_str(&match chapter {
                 Chapter::Discs => discs::chapter(options.problems, &options.out)?,
                 Chapter::Branching => pairs::chapters(options.queries)?.join("\n"),

@@ -28,14 +28,14 @@ mod ways;
 
 use clap::Parser;
 use continuum_demo::anatomy::Anatomy;
+use continuum_demo::command::{self, Stages};
+use continuum_demo::ctr;
 use continuum_demo::steer::Random;
-use continuum_demo::{command, ctr};
 use continuum_studies::{long_table, quote};
 use outcome::outcomes;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
 
 /// Measure what accuracy costs: models, tolerances and engines on many shapes of a concentric tube robot.
 #[derive(Parser)]
@@ -104,9 +104,8 @@ fn measure(options: &Options) -> Result<(), String> {
         return Ok(());
     }
 
-    let start = Instant::now();
-    let stage = |name: &str| println!("{:5.0} s  {name}", start.elapsed().as_secs_f64());
-    stage("shapes");
+    let stages = Stages::begin();
+    stages.next("shapes");
     let mut random = Random(1);
     let shapes: Vec<_> = (0..options.shapes).map(|_| shapes::draw(&robot, &mut random)).collect();
     let outcomes = outcomes(&robot, &shapes, &mesh, &base)?;
@@ -131,27 +130,27 @@ fn measure(options: &Options) -> Result<(), String> {
         .map(|(joints, _)| joints.clone())
         .take(options.timed as usize)
         .collect();
-    stage("the reference itself");
+    stages.next("the reference itself");
     let checked = reference::check(&robot, &timed, &mesh, &base)?;
-    stage("torsion");
+    stages.next("torsion");
     let some = TWISTED.min(shapes.len());
     let (kinematics, torsion_median, torsion_worst) =
         kinematics::chapter(&robot, &shapes[..some], &outcomes[..some], &mesh, &base)?;
-    stage("times");
+    stages.next("times");
     #[cfg(feature = "gpu")]
     let devices = gpu::devices();
     #[cfg(not(feature = "gpu"))]
     let devices = Vec::new();
     let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
 
-    stage("from samples");
+    stages.next("from samples");
     let (from_samples, rows) =
         from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING, &out)?;
 
-    stage("motions");
+    stages.next("motions");
     let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
 
-    stage("writing");
+    stages.next("writing");
     let errors = front::errors(&outcomes);
     let all = front::combinations(&times, &errors);
     let features = if cfg!(feature = "gpu") { "--features gpu " } else { "" };
@@ -188,7 +187,7 @@ fn measure(options: &Options) -> Result<(), String> {
         torsion: [torsion_median, torsion_worst],
     });
     quote::in_page(&guide, "tradeoff", &out.join("book/trade.md"))?;
-    stage("done");
+    stages.next("done");
     println!("{}", file.display());
     Ok(())
 }
