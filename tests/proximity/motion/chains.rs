@@ -154,3 +154,39 @@ fn a_cap_that_becomes_round_behind_a_thick_point_is_seen() {
     let [clear_until, t] = first.interval;
     assert!(first.decision == Decision::Contact && clear_until <= jump && jump <= t, "{first:?}");
 }
+
+/// A chain of links that are shorter than its radius, pushed towards a wall.
+struct Pushed {
+    chain: Chain,
+    way: Real,
+}
+
+impl Motion for Pushed {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        tube.set_chain(&self.chain);
+        Ok(Pose::from_translation(Vector::Z * (self.way * t)))
+    }
+
+    fn speed(&self, _: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+        Speed { point: self.way, turn: 0.0 }
+    }
+}
+
+/// Joints less than a radius behind the tip's face stay flat, as far as the motion cannot bring them away from it: round, the
+/// first of them would reach 0.35 beyond the tip.
+#[test]
+fn short_links_do_not_reach_beyond_a_flat_tip() {
+    let points: Vec<_> = (0..=120).map(|k| Vector::Z * (0.25 * Real::from(k))).collect();
+    let chain = Chain::from_centreline(&points, &[0.6; 120]).unwrap();
+    assert_eq!(chain.links()[118].caps()[1], Cap::Flat);
+    let way = 0.05;
+    for gap in [0.1, 0.2, 0.4] {
+        let z = 30.0 + way + gap;
+        let wall = [Vector::new(-9.0, -9.0, z), Vector::new(9.0, -9.0, z), Vector::new(0.0, 9.0, z)];
+        let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]]).unwrap();
+        let answer = search.clears_motion(&Pushed { chain: chain.clone(), way }, 0.0, 1e-3).unwrap();
+        assert!(answer.is_clear(), "{gap}: {answer:?}");
+        let answer = search.clears_motion(&Pushed { chain: chain.clone(), way }, 1.1 * gap, 1e-3).unwrap();
+        assert_eq!(answer.decision, Decision::Contact, "{gap}: {answer:?}");
+    }
+}
