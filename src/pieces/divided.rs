@@ -14,9 +14,13 @@ pub(crate) trait Divided {
     /// An upper bound on the clearance, and what realises it.
     type Found: Bound;
 
+    fn body(&self, piece: &Self::Piece) -> Self::Body;
+
+    /// (Apart from [`body`](Self::body), whose answer is large: a `Result` of it would be copied once more for each piece.)
+    ///
     /// # Errors
-    /// The curve is not finite there.
-    fn body(&self, piece: &Self::Piece) -> Result<Self::Body, ProximityError>;
+    /// The curve is not finite there, and so the body.
+    fn check_finite(&self, piece: &Self::Piece, body: &Self::Body) -> Result<(), ProximityError>;
 
     /// The halves of a piece whose body can become narrower, and at a face as near to the tube as `aim`.
     fn halves(&self, piece: &Self::Piece, body: &Self::Body, aim: Real) -> Option<[Self::Piece; 2]>;

@@ -83,11 +83,10 @@ impl PlacedTube<'_> {
     }
 
     /// # Errors
-    /// The curve is not finite there.
-    pub(crate) fn finite_outer(&self, piece: &Piece) -> Result<Outer, ProximityError> {
-        let outer = self.outer(piece);
+    /// The curve is not finite there, and so the body around the piece.
+    pub(crate) fn check_finite(&self, piece: &Piece, outer: &Outer) -> Result<(), ProximityError> {
         if outer.body.is_finite() {
-            Ok(outer)
+            Ok(())
         } else {
             Err(ProximityError::CurveNotFinite { arc_length: self.arcs(piece)[0] })
         }

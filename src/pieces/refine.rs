@@ -94,7 +94,8 @@ pub(crate) fn refine<T: Divided, P: Part<T>, Q: Question<T, P>>(
             return Ok(());
         }
         let piece = part.piece(tube);
-        let outer = tube.body(&piece)?;
+        let outer = tube.body(&piece);
+        tube.check_finite(&piece, &outer)?;
         let Look { bound, is_wide, aim, start } = question.look(tube, &part, &piece, &outer)?;
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {

@@ -51,8 +51,12 @@ impl Divided for TubeInMesh<'_> {
     type Nearest = Nearest;
     type Found = Found;
 
-    fn body(&self, piece: &Piece) -> Result<Outer, ProximityError> {
-        self.tube.finite_outer(piece)
+    fn body(&self, piece: &Piece) -> Outer {
+        self.tube.outer(piece)
+    }
+
+    fn check_finite(&self, piece: &Piece, outer: &Outer) -> Result<(), ProximityError> {
+        self.tube.check_finite(piece, outer)
     }
 
     fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {

@@ -131,7 +131,9 @@ impl<'a> TwoTubes<'a> {
             tube.begin(scale.max(0.25 * tube.widest()), pieces);
             bodies.clear();
             for piece in pieces.iter() {
-                bodies.push((*piece, tube.finite_outer(piece)?));
+                let outer = tube.outer(piece);
+                tube.check_finite(piece, &outer)?;
+                bodies.push((*piece, outer));
             }
         }
         order.clear();
@@ -197,14 +199,13 @@ impl Divided for TwoTubes<'_> {
     type Nearest = NearestOfLinks;
     type Found = FoundBetween;
 
-    fn body(&self, pair: &PiecePair) -> Result<[Outer; 2], ProximityError> {
-        for (k, outer) in pair.outers.iter().enumerate() {
-            if !outer.body.is_finite() {
-                let arc_length = self.tubes[k].arcs(&pair.pieces[k])[0];
-                return Err(ProximityError::CurveNotFinite { arc_length });
-            }
-        }
-        Ok(pair.outers)
+    fn body(&self, pair: &PiecePair) -> [Outer; 2] {
+        pair.outers
+    }
+
+    fn check_finite(&self, pair: &PiecePair, bodies: &[Outer; 2]) -> Result<(), ProximityError> {
+        let mut of_each = self.tubes.iter().zip(&pair.pieces).zip(bodies);
+        of_each.try_for_each(|((tube, piece), outer)| tube.check_finite(piece, outer))
     }
 
     fn halves(&self, pair: &PiecePair, bodies: &[Outer; 2], aim: Real) -> Option<[PiecePair; 2]> {

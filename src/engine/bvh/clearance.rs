@@ -181,7 +181,8 @@ impl<'a> Context<'a> {
             out.push(placed.report(piece, outer, lower));
         })?;
         while let Some(piece) = memory.pieces.pop() {
-            let outer = placed.finite_outer(&piece)?;
+            let outer = placed.outer(&piece);
+            placed.check_finite(&piece, &outer)?;
             out.push(placed.report(&piece, &outer, 0.0));
         }
         out.sort_unstable_by(|a, b| {
