@@ -2,6 +2,7 @@
 
 use crate::Run;
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
+use continuum_demo::ticks::ticks;
 use parry_continuum::parry::math::Real;
 
 const SIZE: [usize; 2] = [1200, 820];
@@ -9,9 +10,6 @@ const INK: Colour = hex(0x22_2b_38);
 const GRID: Colour = hex(0xd5_da_e1);
 const FREE: Colour = hex(0xc4_4e_2c);
 const KEPT: Colour = hex(0x1f_6f_8b);
-
-/// The steps that ticks on an axis may have, times a power of ten.
-const STEPS: [Real; 4] = [0.5, 1.0, 2.0, 5.0];
 
 pub fn draw(free: &Run, kept: &Run, margin: Real, tick: Real) -> Canvas {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, _| hex(0xff_ff_ff));
@@ -26,14 +24,6 @@ pub fn draw(free: &Run, kept: &Run, margin: Real, tick: Real) -> Canvas {
                 turned stay turned.";
     canvas.text(note, [70.0, SIZE[1] as f32 - 24.0], Align::Left, 13.0, INK);
     canvas
-}
-
-/// The ticks from 0 to the first that is at least `high`, about four of them.
-fn ticks(high: Real) -> Vec<Real> {
-    let decade = 10_f64.powf((high / 4.0).log10().floor());
-    let steps = STEPS.into_iter().chain([10.0]).map(|step| step * decade);
-    let step = steps.into_iter().find(|step| high / step <= 5.0).unwrap_or(high);
-    (0..=(high / step - 1e-9).ceil() as u32).map(|k| Real::from(k) * step).collect()
 }
 
 fn panel(canvas: &mut Canvas, top: f32, title: &str, curves: [&[Real]; 2], limit: Option<Real>, tick: Real) {

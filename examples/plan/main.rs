@@ -119,7 +119,7 @@ fn run(options: &Options) -> Result<(), String> {
         edges.costs.shapes
     );
     if let Some(file) = picture {
-        save(&draw::draw(&mesh, &options.anatomy.name(), &edges, &path)?, &file, "--picture")?;
+        save(&draw::draw(&mesh, &options.anatomy.name(), &mut edges, &path)?, &file, "--picture")?;
     }
     if let Some(file) = clearance {
         let found = OverTime::new(&mut edges, &path)?;

@@ -3,6 +3,7 @@
 use super::edges::{Edges, Place, text};
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
 use continuum_demo::joint_motion::JointMotion;
+use continuum_demo::ticks::ticks;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::{Motion, RobotError, Speed, Tube};
 
@@ -91,14 +92,14 @@ impl OverTime {
         let [left, right, top, bottom] = [80.0, SIZE[0] as f32 - 40.0, 110.0, SIZE[1] as f32 - 60.0];
         let edges = self.bounds.len() as Real / Real::from(PARTS);
         let uppers = self.bounds.iter().map(|bounds| bounds[1]);
-        let high = 1.1 * uppers.fold(2.0 * margin, Real::max).max(TOLERANCE);
+        let levels = ticks(uppers.fold(2.0 * margin, Real::max).max(TOLERANCE));
+        let high = levels[levels.len() - 1];
         let x = |time: Real| left + (time / edges) as f32 * (right - left);
         let y = |value: Real| bottom - (value.min(high) / high) as f32 * (bottom - top);
         let mut line = |from: [f32; 2], to: [f32; 2], width: f32, colour: Colour| {
             canvas.stroke(&[vec![from, to]], width, colour, 1.0);
         };
-        for step in 0..=4 {
-            let value = high * Real::from(step) / 4.0;
+        for &value in &levels {
             line([left, y(value)], [right, y(value)], 1.0, GRID);
         }
         for (k, [lower, upper]) in self.bounds.iter().enumerate() {
@@ -115,10 +116,10 @@ impl OverTime {
         let note = format!("the least of each part, between two proven bounds {TOLERANCE} mm apart");
         canvas.text(&note, [left, 76.0], Align::Left, 15.0, BOUNDS);
         canvas.text(&format!("what steps of {STEP} mm see"), [right, 76.0], Align::Right, 15.0, STEPS);
-        canvas.text("margin", [right, y(margin) - 6.0], Align::Right, 13.0, INK);
-        for step in 0..=4 {
-            let value = high * Real::from(step) / 4.0;
-            canvas.text(&format!("{value:.1}"), [left - 10.0, y(value) + 5.0], Align::Right, 13.0, INK);
+        // Below the line, where no way that keeps the margin comes.
+        canvas.text("margin", [right, y(margin) + 19.0], Align::Right, 13.0, INK);
+        for value in levels {
+            canvas.text(&format!("{value}"), [left - 10.0, y(value) + 5.0], Align::Right, 13.0, INK);
         }
         for edge in 0..=edges as u32 {
             canvas.text(&format!("{edge}"), [x(edge.into()), bottom + 24.0], Align::Centre, 13.0, INK);

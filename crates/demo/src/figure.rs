@@ -26,7 +26,7 @@ const MARK: Colour = hex(0xd55e00);
 /// From a line of the legend to the next.
 const ROW: usize = 36;
 /// The distance of the last colour, mm: one for all pictures, so that two of them compare.
-const FARTHEST: Real = 5.0;
+pub const FARTHEST: Real = 5.0;
 /// How many times larger the close-up must show the robot than the whole picture does.
 const MAGNIFIES: f32 = 1.5;
 
@@ -122,7 +122,7 @@ pub fn draw(
     canvas.text(&caption.subtitle, [56.0, 132.0], Align::Left, 19.0, PALE);
     ruler(&mut canvas, &whole, mesh.local_aabb().center(), size, [56.0, 1164.0]);
     let bar = [left as f32, foot + 74.0];
-    let title = format!("distance from link to wall (mm, the last colour from {FARTHEST} on)");
+    let title = format!("distance from link to wall (mm; {FARTHEST}: or more)");
     colours.draw(&mut canvas, bar, [width as f32, 24.0], &title, INK);
     legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
     let mut below = bar[1] + 188.0 + ROW as f32;

@@ -6,7 +6,7 @@
 //! | the wall | [`ventricle`], grown from a [`field`] by [`surface`] and [`remesh`]; [`cavity`] and [`lumen`], of any size; [`subdivide`] |
 //! | the robot | [`ctr`]; [`joint_motion`], while its joints move; [`torsion`], where its tubes twist; `rod`, where it bends (feature `rod`) |
 //! | the way | [`steer`] finds a start and a goal in a mesh that nobody has planned a path for |
-//! | pictures | `picture`, `figure`, `outline`, `canvas`, `lettering`, `colour_map` (feature `pictures`) |
+//! | pictures | `picture`, `figure`, `outline`, `canvas`, `lettering`, `colour_map`, `ticks` (feature `pictures`) |
 //! | programs | `command`, `anatomy` (feature `command`); [`timing`], [`levels`] |
 
 #[cfg(feature = "command")]
@@ -37,6 +37,8 @@ pub mod rod;
 pub mod steer;
 pub mod subdivide;
 pub mod surface;
+#[cfg(feature = "pictures")]
+pub mod ticks;
 pub mod timing;
 pub mod torsion;
 pub mod ventricle;
