@@ -55,10 +55,8 @@ pub(crate) fn simplify<'py>(
 ///
 /// Parameters
 /// ----------
-/// points : (N, 3) array
-/// radii : float or (N - 1,) array
-/// tolerance : float
-///     A length, at least 0.
+/// points, radii, tolerance
+///     As for `simplify`.
 ///
 /// Returns
 /// -------

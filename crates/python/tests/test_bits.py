@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import Mesh
+from parry_continuum import BendingMotion, Mesh, MovingBase, RigidMotion, RobotPair
 from shapes import Array, poses, robots, soup, sphere
 
 CRATE = Path(__file__).parent.parent
@@ -29,6 +29,11 @@ def rust(*numbers: object) -> Array:
 def witness(found: object, at: object = ()) -> list[object]:
     fields = ["on_robot", "on_mesh", "segment", "arc_length", "triangle"]
     return [np.asarray(getattr(found, field))[at] for field in fields]
+
+
+def fresh(mesh: Mesh) -> Mesh:
+    """The same mesh, which was asked nothing yet."""
+    return Mesh(mesh.vertices, mesh.faces)
 
 
 def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> Array:
@@ -58,9 +63,27 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
     many = mesh.clearance(points, radii, TOLERANCE, pose=pose)
     motions = [mesh.clears_motion(points, end, radii, 0.0, TOLERANCE, caps=caps) for caps in ("fitted", "capsules")]
     for k, row in enumerate(out):
-        tube = Mesh(mesh.vertices, mesh.faces).clearance(points[k], radii[k], TOLERANCE, pose=pose[k])
+        tube = fresh(mesh).clearance(points[k], radii[k], TOLERANCE, pose=pose[k])
         assert many.lower[k] <= tube.upper and tube.lower <= many.upper[k]
         row += [tube.lower, tube.upper, tube.resolved, tube.uncertainty, *witness(tube)]
+        sections = [np.column_stack([[1, 1], 0.01 * shape[:2, :2]]) for shape in (points[k], end[k])]
+        rigid = RigidMotion(points[k], radii[k], pose[k], np.eye(4))
+        bending = BendingMotion(*sections, radii[k, 0], pose=pose[k])
+        based = MovingBase(BendingMotion(*sections, radii[k, 0], pose=pose[k]), pose[k], np.eye(4))
+        paths = np.stack([points[k], points[k] + [0.5, -0.25, 1.0]])
+        for found in [
+            *(fresh(mesh).clears_motion(motion, margin=0.0, resolution=TOLERANCE) for motion in (rigid, bending, based)),
+            fresh(mesh).clears_path(paths, radii[k], 0.1, MARGIN, TOLERANCE),
+            fresh(mesh).clears_motion_while(0.9 * mesh.vertices, rigid, margin=0.0, resolution=TOLERANCE),
+        ]:
+            row += [found.interval, found.decision]
+        two = (points[k], radii[k], end[k], radii[k])
+        segments = RobotPair().per_link(*two, pose_a=pose[k])
+        has_length = segments.segments[:, 0] >= 0
+        row += [np.column_stack([segments.distance, segments.on_first, segments.on_second, segments.arc_lengths])[has_length]]
+        places = RobotPair().within(*two, 4.0, pose_a=pose[k])
+        row += [len(places.distance)]
+        row += [np.column_stack([places.distance, places.on_first, places.on_second, places.arc_lengths])]
         for motion in motions:
             row += [motion.interval[k], motion.decision[k]]
     return np.concatenate([np.ravel(np.asarray(n, float)) for row in out for n in row])

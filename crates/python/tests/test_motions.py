@@ -208,6 +208,8 @@ def test_shapes_of_a_planner() -> None:
         safe = max(0.0, distance - deviation - step - 0.011)
         if distance > deviation + step + 0.02:
             assert MESH.clears_path(path, RADIUS, deviation, safe, 0.01).decision is Decision.CLEAR
+        if distance > 0.3:  # a tube within 0.3 is nearer than that by as much
+            assert MESH.clears_path(path, RADIUS, 0.3, distance - 0.1, 0.01).decision is not Decision.CLEAR
         far = distance + deviation + RADIUS + 0.011
         found = MESH.clears_path(path, RADIUS, deviation, far, 0.01)
         assert found.decision is Decision.CONTACT and 0 <= found.t <= 1 and found.upper <= far

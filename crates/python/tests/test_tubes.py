@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Decision, Mesh
+from parry_continuum import ContinuumError, Decision, Mesh, RobotPair
 from shapes import Array
 
 FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
@@ -65,6 +65,54 @@ def test_turns() -> None:
     for turn in (-0.1, np.nan):
         with pytest.raises(ContinuumError, match="`turn`"):
             FLOOR.clearance(points, RADIUS, 0.1, turn=turn)
+
+
+def test_two_tubes() -> None:
+    """An arc above its mirror image in the floor is twice as far from that as from the floor: the rims of both ends."""
+    points, tangents, true = arc(60)
+    mirror, pair = np.array([1, 1, -1]), RobotPair()
+    given = (points, RADIUS, points * mirror, RADIUS)
+    random = np.random.default_rng(53)
+    noise = random.normal(size=points.shape)
+    noise *= (0.01 * random.random(60) / np.linalg.norm(noise, axis=1))[:, None]
+    noisy = (points + noise, RADIUS, points * mirror, RADIUS)
+    widths = []
+    for robots_of, stated in [
+        (given, {}),
+        (given, {"tangents_a": tangents, "tangents_b": tangents * mirror}),
+        (given, {"tangents_a": tangents[[0, -1]]}),
+        (noisy, {"deviation_a": 0.01, "turn_a": 0.05, "tangents_b": tangents * mirror}),
+        (noisy, {"deviation_a": 0.01, "tangents_b": tangents * mirror}),
+    ]:
+        for _ in range(2):  # with and without a memory
+            found = pair.clearance(*robots_of, 1e-3, **stated)
+            assert found.lower <= 2 * true <= found.upper
+        assert np.linalg.norm(found.on_first - found.on_second) <= found.upper + 1e-12
+        widths.append(found.upper - found.lower)
+    assert widths[1] < widths[2] < widths[0] and widths[1] <= 1e-3 and widths[1] < widths[3] < widths[4]
+    for margin, decision in [(2 * true - 0.3, Decision.CLEAR), (2 * true + 0.3, Decision.CONTACT)]:
+        ends = {"tangents_a": tangents, "tangents_b": tangents * mirror}
+        assert pair.tubes_clear(*given, margin, 0.01, **ends) is decision
+    shifts = np.eye(4) + np.zeros((30, 4, 4))
+    shifts[:, 2, 3] = np.linspace(0, 5, 30)
+    batch = (np.stack([points] * 30), RADIUS, points * mirror, RADIUS)
+    many = pair.clearance(*batch, 0.2, pose_a=shifts)
+    assert (many.lower <= 2 * true + shifts[:, 2, 3]).all() and (2 * true + shifts[:, 2, 3] <= many.upper).all()
+    decided = pair.tubes_clear(*batch, 2 * true + 2.5, 0.3, pose_a=shifts)
+    assert decided[0] == Decision.CONTACT and decided[-1] == Decision.CLEAR
+    spoilt = np.stack([points] * 3)
+    spoilt[1, 5] = np.nan
+    found = pair.clearance(spoilt, RADIUS, points * mirror, RADIUS, 0.2)
+    assert found.status.tolist() == ["", "point_not_finite", ""] and np.isnan(found.lower).tolist() == [False, True, False]
+    for text, stated in [
+        ("`tangents_b` and a deviation", {"tangents_b": tangents, "deviation_b": 0.1}),
+        ("`tangents_a` has the shape", {"tangents_a": tangents[:7]}),
+        ("`turn`", {"turn_b": -1.0}),
+    ]:
+        with pytest.raises(ContinuumError, match=text):
+            pair.clearance(*given, 0.1, **stated)
+    with pytest.raises(ContinuumError, match="`tolerance`"):
+        pair.clearance(*given, np.nan)
 
 
 def test_what_was_asked_before_does_not_count() -> None:

@@ -223,6 +223,27 @@ class RobotProximity(NamedTuple):
     """(2,): how far along the centreline of either from its base."""
 
 
+class RobotClearance(NamedTuple):
+    """Bounds on how near two tubes are."""
+
+    lower: FloatOrFloats
+    """The clearance is at least this."""
+    upper: FloatOrFloats
+    """The clearance is at most this: 0 where the tubes touch or overlap."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What stated deviations of the points cost, which no finer tolerance can mend."""
+    on_first: Floats
+    """A point of the first tube, (3,)."""
+    on_second: Floats
+    """A point of the second tube, (3,). The two are ``upper`` apart, or nearer."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either from its base."""
+    status: StrOrStrs
+    """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
+
+
 class RobotContacts(NamedTuple):
     """Places where two robots are near one another, one in each row."""
 

@@ -21,6 +21,7 @@ from ._answers import (
     MotionClearance,
     PerLink,
     PerStructure,
+    RobotClearance,
     RobotContacts,
     RobotProximity,
     SceneContacts,
@@ -306,6 +307,41 @@ class RobotPair:
         pose_b: ArrayLike | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
+    def clearance(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        tolerance: float,
+        *,
+        tangents_a: ArrayLike | None = None,
+        tangents_b: ArrayLike | None = None,
+        deviation_a: float = 0.0,
+        deviation_b: float = 0.0,
+        turn_a: float | None = None,
+        turn_b: float | None = None,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+    ) -> RobotClearance: ...
+    def tubes_clear(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        tangents_a: ArrayLike | None = None,
+        tangents_b: ArrayLike | None = None,
+        deviation_a: float = 0.0,
+        deviation_b: float = 0.0,
+        turn_a: float | None = None,
+        turn_b: float | None = None,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+    ) -> DecisionOrDecisions: ...
     def self_minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
     def self_clears(
         self, points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted"

@@ -144,14 +144,14 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
-    /// The same with directions of each robot's curve, at its two ends or at all of its points.
-    pub(crate) fn with_tangents(mut self, given: Option<&Bound<'py, PyAny>>) -> PyResult<Self> {
+    /// The same with directions of each robot's curve, at its two ends or at all of its points. `name` is the parameter's.
+    pub(crate) fn with_tangents(mut self, name: &str, given: Option<&Bound<'py, PyAny>>) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
-        let (tangents, count, each) = points(given, "tangents")?;
+        let (tangents, count, each) = points(given, name)?;
         if count != self.count || !(each == 2 || each == self.points_each) {
             let text = format!(
-                "`tangents` has the shape {} beside `points` of {}; give two directions for each robot, at its ends, or one \
-                 for each point",
+                "`{name}` has the shape {} beside points of {}; give two directions for each robot, at its ends, or one for \
+                 each point",
                 shape_text(tangents.shape()),
                 shape_text(self.points.shape())
             );

@@ -89,7 +89,7 @@ impl RigidMotion {
         turn: Option<f64>,
     ) -> PyResult<Py<Self>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, None)?, tangents, stated)?;
+        let robots = tubes(Robots::new("points", points, radii, None)?, "tangents", tangents, stated)?;
         let way = Way::new(start_pose, end_pose)?;
         let motion = rigid(points.py(), &robots, &way, |robot| tube(robot, stated))?;
         Py::new(points.py(), motion.into_class(Self))

@@ -65,15 +65,18 @@ impl Session {
 /// Points that are off need no directions.
 pub(crate) fn tubes<'py>(
     robots: Robots<'py>,
+    name: &str,
     tangents: Option<&Bound<'py, PyAny>>,
     stated: Stated,
 ) -> PyResult<Robots<'py>> {
     match tangents {
         Some(tangents) if stated.deviation != 0.0 => {
-            let text = "`tangents` and `deviation` are given; points that may be off are fitted without directions, so give one";
+            let text = format!(
+                "`{name}` and a deviation are given; points that may be off are fitted without directions, so give one"
+            );
             Err(Refused::other("bad_type", text).raise(tangents.py(), None))
         }
-        _ => robots.with_tangents(tangents),
+        _ => robots.with_tangents(name, tangents),
     }
 }
 
@@ -144,7 +147,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, stated)?;
+        let robots = tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -240,7 +243,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, pose)?, tangents, stated)?;
+        let robots = tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let pose = session.set_tube(robot, stated)?;

@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 /// >>> pair.within(a, 0.5, b, 0.5, margin=3).segments
 /// array([[0, 0]])
 #[pyclass(frozen, module = "parry_continuum", weakref)]
-pub(crate) struct RobotPair(Pairs);
+pub(crate) struct RobotPair(pub(super) Pairs);
 
 #[pymethods]
 impl RobotPair {

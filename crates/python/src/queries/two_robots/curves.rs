@@ -1,0 +1,247 @@
+//! How near two curved tubes are, between bounds.
+
+use super::{Pairs, RobotPair, Session};
+use crate::error::Refused;
+use crate::input::{Given, Robots};
+use crate::output::{answer, array, array_or_number, decision_value, flat, members, texts};
+use crate::queries::clearance::{Stated, tube, tubes};
+use crate::queries::distance::no_chain;
+use crate::threads::{Asked, ask_each};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
+use parry_continuum::{Tube, proximity};
+use pyo3::prelude::*;
+
+/// What is stated of the points of either robot.
+type Both = [Stated; 2];
+
+impl Session {
+    /// Asks about the tubes of two robots.
+    fn about_tubes<A>(
+        &mut self,
+        robot: &Given<'_>,
+        stated: Both,
+        ask: impl FnOnce(&mut proximity::RobotPair, [(&Tube, &Pose); 2]) -> Result<A, ProximityError>,
+    ) -> Result<A, Refused> {
+        let other = robot.other().ok_or_else(no_chain)?;
+        let [first, second] = [tube(robot, stated[0])?, tube(&other, stated[1])?];
+        let poses = [robot.pose()?, other.pose()?];
+        Ok(ask(&mut self.pair, [(&first, &poses[0]), (&second, &poses[1])])?)
+    }
+}
+
+impl Pairs {
+    fn clearance<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        stated: Both,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if tolerance.is_nan() || tolerance < 0.0 {
+            let error = ProximityError::Negative { parameter: "tolerance", value: tolerance };
+            return Err(Refused::from(error).raise(py, None));
+        }
+        let is_batch = robots.count.is_some();
+        let (mut all, mut status) = (Vec::with_capacity(robots.len()), Vec::new());
+        let ask =
+            |session: &mut Session, robot: &Given<'_>, row: &mut [(Option<RobotClearance>, &'static str)]| {
+                let found = session
+                    .about_tubes(robot, stated, |pair, [a, b]| pair.clearance(a.0, a.1, b.0, b.1, tolerance));
+                row[0] = match found {
+                    Ok(found) => (Some(found), ""),
+                    Err(refused) if is_batch => (None, refused.kind()),
+                    Err(refused) => return Err(refused),
+                };
+                Ok(())
+            };
+        ask_each(py, self, robots, ((None, ""), 1), ask, |_, found| {
+            all.extend(found.iter().map(|row| row.0));
+            status.extend(found.iter().map(|row| row.1));
+        })?;
+        let shape = || robots.shape(&[]);
+        let numbers = |of: fn(&RobotClearance) -> f64| {
+            array_or_number(py, shape(), all.iter().map(|it| it.as_ref().map_or(f64::NAN, of)).collect())
+        };
+        let points = |of: fn(&RobotClearance) -> Vector| {
+            array(py, robots.shape(&[3]), flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))))
+        };
+        let lengths = all.iter().flat_map(|it| it.map_or([f64::NAN; 2], |it| it.arc_lengths)).collect();
+        let values = (
+            numbers(|found| found.lower)?,
+            numbers(|found| found.upper)?,
+            array_or_number(py, shape(), all.iter().map(|it| it.is_some_and(|it| it.resolved)).collect())?,
+            numbers(|found| found.uncertainty)?,
+            points(|found| found.on_first)?,
+            points(|found| found.on_second)?,
+            array(py, robots.shape(&[2]), lengths)?,
+            if is_batch { texts(py, status)? } else { "".into_pyobject(py)?.into_any() },
+        );
+        answer!(py, "RobotClearance", values)
+    }
+
+    fn tubes_clear<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        stated: Both,
+        [margin, resolution]: [f64; 2],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
+            let found: Decision = session.about_tubes(robot, stated, |pair, [a, b]| {
+                pair.tubes_clear(a.0, a.1, b.0, b.1, margin, resolution)
+            })?;
+            row[0] = decision_value(found);
+            Ok(())
+        };
+        ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
+        members(py, "Decision", robots.shape(&[]), all)
+    }
+}
+
+/// The arguments that say what two tubes are.
+struct Arguments<'a, 'py> {
+    points: [&'a Bound<'py, PyAny>; 2],
+    radii: [&'a Bound<'py, PyAny>; 2],
+    poses: [Option<&'a Bound<'py, PyAny>>; 2],
+    tangents: [Option<&'a Bound<'py, PyAny>>; 2],
+    stated: Both,
+}
+
+impl<'py> Arguments<'_, 'py> {
+    fn robots(&self) -> PyResult<Robots<'py>> {
+        let robots = |which: usize, points: &str, tangents: &str| {
+            let robots = Robots::new(points, self.points[which], self.radii[which], self.poses[which])?;
+            tubes(robots, tangents, self.tangents[which], self.stated[which])
+        };
+        let others = robots(1, "points_b", "tangents_b")?;
+        robots(0, "points_a", "tangents_a")?.with_others(self.points[0].py(), others)
+    }
+}
+
+#[pymethods]
+impl RobotPair {
+    /// How near two curved tubes are, between proven bounds.
+    ///
+    /// Both robots are taken for smooth tubes with flat ends, as `Mesh.clearance` takes them.
+    ///
+    /// Of a batch, a pair that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of its
+    /// error.
+    ///
+    /// Parameters
+    /// ----------
+    /// points_a, radii_a, points_b, radii_b, pose_a, pose_b
+    ///     As for `between`.
+    /// tolerance : float
+    ///     How far apart the bounds may be, at least 0.
+    /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
+    ///     Of either robot as for `Mesh.clearance`.
+    ///
+    /// Returns
+    /// -------
+    /// RobotClearance
+    ///     Numbers and points of one pair, or arrays with one for each pair.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as for `between`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import RobotPair
+    /// >>> angle = np.linspace(0, 1, 60)
+    /// >>> arc = 30 * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1)
+    /// >>> found = RobotPair().clearance(arc, 1.0, arc * [-1, 1, 1] + [65, 0, 0], 1.0, tolerance=0.1)
+    /// >>> bool(found.lower <= 3 <= found.upper), bool(found.resolved)
+    /// (True, True)
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, tolerance, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn clearance<'py>(
+        &self,
+        py: Python<'py>,
+        points_a: &Bound<'py, PyAny>,
+        radii_a: &Bound<'py, PyAny>,
+        points_b: &Bound<'py, PyAny>,
+        radii_b: &Bound<'py, PyAny>,
+        tolerance: f64,
+        tangents_a: Option<&Bound<'py, PyAny>>,
+        tangents_b: Option<&Bound<'py, PyAny>>,
+        deviation_a: f64,
+        deviation_b: f64,
+        turn_a: Option<f64>,
+        turn_b: Option<f64>,
+        pose_a: Option<&Bound<'py, PyAny>>,
+        pose_b: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = Arguments {
+            points: [points_a, points_b],
+            radii: [radii_a, radii_b],
+            poses: [pose_a, pose_b],
+            tangents: [tangents_a, tangents_b],
+            stated: [
+                Stated { deviation: deviation_a, turn: turn_a },
+                Stated { deviation: deviation_b, turn: turn_b },
+            ],
+        };
+        self.0.clearance(py, &given.robots()?, given.stated, tolerance)
+    }
+
+    /// Whether two curved tubes keep more than a margin from each other.
+    ///
+    /// Parameters
+    /// ----------
+    /// points_a, radii_a, points_b, radii_b, pose_a, pose_b
+    ///     As for `between`.
+    /// margin : float
+    ///     A length, at least 0.
+    /// resolution : float
+    ///     The answer is undecided only where the clearance is within this of the margin.
+    /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
+    ///     Of either robot as for `Mesh.clearance`.
+    ///
+    /// Returns
+    /// -------
+    /// Decision or (B,) array of int8
+    ///     As of `Mesh.tube_clears`.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, or as for `clearance`. Of
+    ///     a batch, ``robot`` is the first that is refused.
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, resolution, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn tubes_clear<'py>(
+        &self,
+        py: Python<'py>,
+        points_a: &Bound<'py, PyAny>,
+        radii_a: &Bound<'py, PyAny>,
+        points_b: &Bound<'py, PyAny>,
+        radii_b: &Bound<'py, PyAny>,
+        margin: f64,
+        resolution: f64,
+        tangents_a: Option<&Bound<'py, PyAny>>,
+        tangents_b: Option<&Bound<'py, PyAny>>,
+        deviation_a: f64,
+        deviation_b: f64,
+        turn_a: Option<f64>,
+        turn_b: Option<f64>,
+        pose_a: Option<&Bound<'py, PyAny>>,
+        pose_b: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = Arguments {
+            points: [points_a, points_b],
+            radii: [radii_a, radii_b],
+            poses: [pose_a, pose_b],
+            tangents: [tangents_a, tangents_b],
+            stated: [
+                Stated { deviation: deviation_a, turn: turn_a },
+                Stated { deviation: deviation_b, turn: turn_b },
+            ],
+        };
+        self.0.tubes_clear(py, &given.robots()?, given.stated, [margin, resolution])
+    }
+}
