@@ -89,7 +89,7 @@ def test_five_thousand_inputs() -> None:
 
         def moving() -> Motion:
             sections = np.abs(robot)
-            match random.integers(5):
+            match random.integers(6):
                 case 0:
                     return LinearMotion(**motion)
                 case 1:
@@ -98,6 +98,8 @@ def test_five_thousand_inputs() -> None:
                     return BendingMotion(spoilt(random, sections), spoilt(random, sections), 0.01, pose=given["pose"])
                 case 3:
                     return MovingBase(BendingMotion(sections, sections, 0.01), spoilt(random, pose), pose)
+                case 4:
+                    return RigidMotion.of_curve(given["points"], given["radii"], pose, spoilt(random, pose), deviation=number)
                 case _:
                     return MotionPath([LinearMotion(**motion), LinearMotion(robot, spoilt(random, robot), radii)])
 
@@ -121,6 +123,8 @@ def test_five_thousand_inputs() -> None:
             lambda: mesh.clearance_of_motion(moving(), tolerance=max(number, 1e-2)),
             lambda: pair.per_link(given["points"], given["radii"], robot, 0.1, pose_a=given["pose"]),
             lambda: pair.within(given["points"], given["radii"], robot, 0.1, number),
+            lambda: pair.clearance(given["points"], given["radii"], robot, 0.1, max(number, 1e-2), tangents_a=tube["tangents"]),
+            lambda: pair.tubes_clear(given["points"], given["radii"], robot, 0.1, number, 0.1, turn_a=number),
             lambda: scene(mesh).contacts([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], number),
             lambda: scene(mesh).per_structure([(given["points"], given["radii"]), (robot, 0.1)]),
             lambda: mesh.side(given["points"]),
