@@ -83,7 +83,7 @@ impl RobotPair {
         out: &mut Vec<RobotProximity>,
     ) -> Result<(), ProximityError> {
         out.clear();
-        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.per_link(out);
+        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.per_link(&mut self.memory, out);
         Ok(())
     }
 

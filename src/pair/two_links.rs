@@ -56,11 +56,20 @@ impl PlacedLink {
     /// The same if they are at most `bound` apart. The capsules around the links spare what they can.
     pub(crate) fn measure_link_within(&self, bound: Real, other: &Self) -> Option<NearestOfLinks> {
         let (pair, unit) = self.with_link(other);
-        let apart = pair.axes().gap.norm() - pair.first.radius - pair.second.radius - SLACK;
+        let axes = pair.axes();
+        let apart = axes.gap.norm() - pair.first.radius - pair.second.radius - SLACK;
         if apart * unit > bound {
             return None;
         }
-        Some(self.measure_link(other)).filter(|nearest| nearest.distance <= bound)
+        let nearest = self.nearest_of_links(unit, &pair.closest(&axes, |mask| mask));
+        (nearest.distance <= bound).then_some(nearest)
+    }
+
+    /// Whether the capsules around two links may be at most `bound` apart.
+    pub(crate) fn may_be_within(&self, bound: Real, other: &Self) -> bool {
+        let (pair, unit) = self.with_link(other);
+        let apart = pair.axes().gap.norm() - pair.first.radius - pair.second.radius - SLACK;
+        apart * unit <= bound
     }
 
     /// Where the axes of two links are nearest, and how far they are apart there.

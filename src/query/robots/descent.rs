@@ -17,6 +17,10 @@ struct Place {
     first: usize,
 }
 
+impl Place {
+    const ROOT: Self = Self { node: 0, first: 0 };
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     places: [Place; 2],
@@ -51,6 +55,7 @@ impl Limit {
 pub(super) struct Descent {
     stack: Vec<Entry>,
     outlines: [Outlines; 2],
+    frame: SearchFrame,
 }
 
 impl Descent {
@@ -59,20 +64,51 @@ impl Descent {
     pub fn run(
         &mut self,
         robots: [&PlacedRobot; 2],
+        limit: Limit,
+        asks: impl Fn([Range<usize>; 2]) -> bool,
+        visit: impl FnMut([usize; 2]) -> Limit,
+    ) {
+        self.begin(robots);
+        if asks(robots.map(|robot| 0..robot.links().len())) {
+            self.run_from([Place::ROOT; 2], robots, limit, asks, visit);
+        }
+    }
+
+    /// Shows `visit` each link of the first robot, alone for a first limit, and then with all links of the second that are
+    /// within the limit.
+    pub fn run_per_link(
+        &mut self,
+        robots: [&PlacedRobot; 2],
+        mut visit: impl FnMut(usize, Option<usize>) -> Limit,
+    ) {
+        self.begin(robots);
+        let nodes = robots[0].link_tree().iter().enumerate();
+        let leaves = nodes.filter(|(_, node)| node.links() == 1).map(|(node, _)| node);
+        for (first, node) in leaves.enumerate() {
+            let (limit, places) = (visit(first, None), [Place { node, first }, Place::ROOT]);
+            self.run_from(places, robots, limit, |_| true, |[first, other]| visit(first, Some(other)));
+        }
+    }
+
+    /// Forgets the last robots' outlines.
+    fn begin(&mut self, robots: [&PlacedRobot; 2]) {
+        for (outlines, robot) in self.outlines.iter_mut().zip(robots) {
+            outlines.start(robot);
+        }
+        self.frame = SearchFrame::around(robots);
+    }
+
+    fn run_from(
+        &mut self,
+        places: [Place; 2],
+        robots: [&PlacedRobot; 2],
         mut limit: Limit,
         asks: impl Fn([Range<usize>; 2]) -> bool,
         mut visit: impl FnMut([usize; 2]) -> Limit,
     ) {
-        let frame = SearchFrame::around(robots);
-        let Self { stack, outlines } = self;
-        for (outlines, robot) in outlines.iter_mut().zip(robots) {
-            outlines.start(robot);
-        }
+        let Self { stack, outlines, frame } = self;
         stack.clear();
-        let root = Place { node: 0, first: 0 };
-        if asks(robots.map(|robot| 0..robot.links().len())) {
-            stack.push(Entry { places: [root; 2], at_least: 0.0 });
-        }
+        stack.push(Entry { places, at_least: 0.0 });
         while let Some(entry) = stack.pop() {
             if limit.leaves_out(&entry) {
                 continue;
@@ -85,9 +121,9 @@ impl Descent {
             }
             let divided = usize::from(counts[1] > counts[0]);
             let kept = 1 - divided;
-            let other = outlines[kept].get(&frame, robots[kept], entry.places[kept].node);
+            let other = outlines[kept].get(frame, robots[kept], entry.places[kept].node);
             let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|half| {
-                let outline = outlines[divided].get(&frame, robots[divided], half.node);
+                let outline = outlines[divided].get(frame, robots[divided], half.node);
                 let mut places = entry.places;
                 places[divided] = half;
                 Entry { places, at_least: frame.outside(outline.at_least(&other)) }

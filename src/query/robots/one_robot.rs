@@ -180,16 +180,18 @@ impl<'a> OneRobot<'a> {
     /// The nearest of all pairs that are asked for.
     pub fn minimum(&self, memory: &mut OwnMemory) -> Option<RobotProximity> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
+        let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
+        let remembered = remembered.filter(|links| turns.reach(PI, links[0], links[1]));
+        let known = remembered.and_then(|links| self.measure_within(Real::INFINITY, links));
+        let bound = known.map_or(Real::INFINITY, |known| known.distance);
         let mut best = None;
-        if let Some(links) = nearest.filter(|links| links[1] < self.robot.links().len())
-            && turns.reach(PI, links[0], links[1])
-        {
-            best = self.measure_within(Real::INFINITY, links);
-        }
-        self.between_faces(turns, faces, |found| {
-            best = Some(nearer(best, found));
-            true
+        self.between_faces(turns, faces, bound, |found| {
+            let least = nearer(best, found);
+            best = Some(least);
+            Some(least.distance.min(bound))
         });
+        // After the faces, as in the descent: of two that are as near the first counts, whatever is remembered.
+        best = known.map(|known| nearer(best, known)).or(best);
         descent.run([&self.robot; 2], limit(&best), asks(turns), |links| {
             let bound = best.map_or(Real::INFINITY, |best| best.distance);
             if let Some(found) = self.measure_within(bound, links) {
@@ -204,7 +206,8 @@ impl<'a> OneRobot<'a> {
     /// Whether all pairs that are asked for are farther apart than `margin`.
     pub fn clears(&self, margin: Real, memory: &mut OwnMemory) -> bool {
         let OwnMemory { descent, turns, faces, .. } = memory;
-        if !self.between_faces(turns, faces, |found| found.distance > margin) {
+        let is_near = |found: RobotProximity| (found.distance > margin).then_some(margin);
+        if !self.between_faces(turns, faces, margin, is_near) {
             return false;
         }
         let mut is_clear = true;
@@ -221,15 +224,17 @@ impl<'a> OneRobot<'a> {
         Some(nearest.answer(links, [&first, &second]))
     }
 
-    /// Shows `keep` what every face is near, as long as it returns true. Returns whether it always did.
+    /// Shows `keep` what every face is near, at most `bound` away, as long as it returns what is the bound from then on.
+    /// Returns whether it always did.
     fn between_faces(
         &self,
         turns: &Turns,
         faces: &[Face],
-        mut keep: impl FnMut(RobotProximity) -> bool,
+        mut bound: Real,
+        mut keep: impl FnMut(RobotProximity) -> Option<Real>,
     ) -> bool {
         for (number, face) in faces.iter().enumerate() {
-            let on_face = self.robot.link(face.link);
+            let (on_face, ball) = (self.robot.link(face.link), face.ball(&self.robot));
             let outward = face.outward(&self.robot);
             let leaves = |nearest: &NearestOfLinks| {
                 nearest.distance <= 0.0 || (nearest.on_second - nearest.on_first).dot(outward) >= 0.0
@@ -241,9 +246,15 @@ impl<'a> OneRobot<'a> {
                 .filter(|&link| turns.reach(0.5 * PI, face.link, link) && !turns.reach(PI, face.link, link));
             for link in before.chain(after) {
                 let other = self.robot.link(link);
+                // The ball around a face holds it, and spares most links.
+                if !ball.may_be_within(bound, &other) {
+                    continue;
+                }
                 let nearest = face.nearest_to_link(&self.robot, &other);
-                if leaves(&nearest) && !keep(in_order([face.link, link], [&on_face, &other], &nearest)) {
-                    return false;
+                if leaves(&nearest) {
+                    let found = in_order([face.link, link], [&on_face, &other], &nearest);
+                    let Some(next) = keep(found) else { return false };
+                    bound = next;
                 }
             }
             for facing in &faces[number + 1..] {
@@ -254,11 +265,10 @@ impl<'a> OneRobot<'a> {
                 let nearest = face.nearest_to_face(&self.robot, facing);
                 let way = nearest.on_first - nearest.on_second;
                 let meets = nearest.distance <= 0.0 || way.dot(facing.outward(&self.robot)) >= 0.0;
-                if meets
-                    && leaves(&nearest)
-                    && !keep(in_order([face.link, facing.link], [&on_face, &other], &nearest))
-                {
-                    return false;
+                if meets && leaves(&nearest) {
+                    let found = in_order([face.link, facing.link], [&on_face, &other], &nearest);
+                    let Some(next) = keep(found) else { return false };
+                    bound = next;
                 }
             }
         }

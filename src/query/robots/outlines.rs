@@ -31,7 +31,7 @@ impl Outline {
 }
 
 /// Where a search over robots takes place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SearchFrame {
     origin: Vector,
     scale: Real,

@@ -87,24 +87,29 @@ impl<'a> TwoRobots<'a> {
     }
 
     /// Of each link of the first robot, the nearest link of the second.
-    pub fn per_link(&self, out: &mut Vec<RobotProximity>) {
-        let others: [usize; 2] = [self.robots[0].links().len(), self.robots[1].links().len()];
-        for link in 0..others[0] {
-            let first = self.robots[0].link(link);
-            let mut best: Option<RobotProximity> = None;
-            // Neighbours have near neighbours: what was nearest to the last link bounds this one.
-            let guess = out.last().map_or(0, |last| last.links[1] as usize).min(others[1] - 1);
-            for other in std::iter::once(guess).chain((0..others[1]).filter(|&other| other != guess)) {
-                let bound = best.map_or(Real::INFINITY, |best| best.distance);
-                let second = self.robots[1].link(other);
-                let Some(nearest) = first.measure_link_within(bound, &second) else { continue };
-                let found = nearest.answer([link, other], [&first, &second]);
-                if best.is_none_or(|best| found.comes_before(&best)) {
-                    best = Some(found);
-                }
+    pub fn per_link(&self, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
+        let last = self.robots[1].links().len() - 1;
+        let limit = |best: &RobotProximity| Limit {
+            distance: best.distance,
+            links: Some(best.links.map(|link| link as usize)),
+        };
+        memory.descent.run_per_link(self.both(), |link, other| {
+            let Some(other) = other else {
+                // Neighbours have near neighbours: what was nearest to the last link bounds this one.
+                let guess = out.last().map_or(0, |best| best.links[1] as usize).min(last);
+                let [first, second] = self.links([link, guess]);
+                let best = first.measure_link(&second).answer([link, guess], [&first, &second]);
+                out.push(best);
+                return limit(&best);
+            };
+            let Some(best) = out.last_mut() else { return Limit::NOTHING };
+            if let Some(found) = self.measure_within(best.distance, [link, other])
+                && found.comes_before(best)
+            {
+                *best = found;
             }
-            out.extend(best);
-        }
+            limit(best)
+        });
     }
 
     /// Whether all links are farther apart than `margin`.
