@@ -80,3 +80,8 @@ fn motions() {
 fn touching() {
     try_bytes("touching", fuzz::touching, 300);
 }
+
+#[test]
+fn robots() {
+    try_bytes("robots", fuzz::robots, 1000);
+}
