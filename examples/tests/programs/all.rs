@@ -61,7 +61,17 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
     ] {
         refuse("plan", arguments, expected);
     }
-    for name in ["ventricle", "rapier_ventricle", "plan"] {
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--mesh", sheet], "name one with --base"),
+        (&["--margin", "-1"], "at least 0"),
+        (&["--between", "far"], "write a number"),
+        (&["--steps", "0"], "write a whole number from 1 to 100000"),
+        (&["--out", "bar.jpg", "--mesh", "nowhere.stl"], "ends in .jpg"),
+    ] {
+        refuse("two_robots", arguments, expected);
+    }
+    for name in ["ventricle", "rapier_ventricle", "plan", "two_robots"] {
         assert!(succeed(name, &["--help"]).contains("--mesh"));
     }
 }
@@ -77,8 +87,11 @@ fn programs_draw_their_pictures() {
     for line in ["parry distance(Cylinder, TriMesh)", "search, first time", "search, again", "exhaustive"] {
         assert!(out.contains(line), "{out}");
     }
+    let arguments = ["--mesh", &room, "--beside", "6", "--steps", "2", "--out", "drawn/two.png"];
+    let out = succeed("two_robots", &arguments);
+    assert!(out.contains("step  clear  the least room") && out.contains("robot against robot"), "{out}");
     succeed("figure7", &["--out", "drawn/seven.png"]);
-    for name in ["drawn/ventricle.png", "drawn/seven.png"] {
+    for name in ["drawn/ventricle.png", "drawn/two.png", "drawn/seven.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
 }

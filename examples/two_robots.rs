@@ -1,0 +1,213 @@
+//! Two concentric tube robots in one brain ventricle: which is tightest, and where?
+//!
+//! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every step one scene is asked:
+//! whether each robot keeps its margin from the wall and from the other one, and where the least room is left. At the
+//! end there are the time per question, and a picture of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy instead
+//! (in millimetres, or with `--scale`); `--base` and `--axis` place the first robot in it, and the second stands
+//! `--beside` it.
+
+use clap::Parser;
+use continuum_demo::anatomy::{Anatomy, no_goal};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex};
+use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
+use continuum_demo::picture::{Camera, Picture, Solid};
+use continuum_demo::{command, steer, timing, ventricle};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::shape::{SharedShape, TriMesh};
+use parry_continuum::proximity::{Between, BvhSearch, RobotPair, Scene, StructureProximity, Tightest};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Send two concentric tube robots into one brain ventricle, and tell at every step where the least room is left.
+#[derive(Parser)]
+struct Options {
+    #[command(flatten)]
+    anatomy: Anatomy,
+
+    /// The margin that the robots keep from the wall, in millimetres
+    #[arg(long, value_name = "MM", default_value_t = 0.3, value_parser = command::length, allow_negative_numbers = true)]
+    margin: Real,
+
+    /// The margin that the robots keep from one another, in millimetres
+    #[arg(long, value_name = "MM", default_value_t = 1.0, value_parser = command::length, allow_negative_numbers = true)]
+    between: Real,
+
+    /// How far the second robot stands from the first in a mesh from a file, in millimetres
+    #[arg(long, value_name = "MM", default_value_t = 4.0, value_parser = command::length, allow_negative_numbers = true)]
+    beside: Real,
+
+    /// How many steps the way in has
+    #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = command::whole(1..=100_000))]
+    steps: u32,
+
+    /// Where to save the picture: a directory, or a file that ends in .png
+    #[arg(long, value_name = "PATH", default_value = "target/two_robots.png")]
+    out: PathBuf,
+}
+
+const LINKS: usize = 30;
+const COLOURS: [Colour; 2] = [hex(0x2f6db3), hex(0xd9822b)];
+const INK: Colour = hex(0x22303c);
+const SIZE: [usize; 2] = [1400, 1000];
+
+fn main() -> ExitCode {
+    command::run(steer)
+}
+
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn steer(options: &Options) -> Result<(), String> {
+    let out = command::picture_path(&options.out, "two_robots.png")?;
+    let mesh = options.anatomy.load()?;
+    let mut search = BvhSearch::new(&mesh).map_err(text)?;
+    let first = options.anatomy.pose(&mesh)?;
+    let bases = [first, beside(options, &first)];
+    let robot = three_tubes();
+    let mut goal =
+        |base: &Pose| steer::find_goal(&robot, &mut search, base).map_err(|none| no_goal(&none, base));
+    let goals = if options.anatomy.is_planned() {
+        [ventricle::goal(), goal(&bases[1])?]
+    } else {
+        [goal(&bases[0])?, goal(&bases[1])?]
+    };
+
+    let mut scene = Scene::new();
+    scene.add(options.anatomy.name(), search, Some(options.margin)).map_err(text)?;
+    scene.set_robot_margin(Some(options.between)).map_err(text)?;
+    println!("step  clear  the least room that is left");
+    let mut last_clear = None;
+    for step in 1..=options.steps {
+        let share = Real::from(step) / Real::from(options.steps);
+        let chains = chains(&robot, &goals, share)?;
+        let robots = [(&chains[0], bases[0]), (&chains[1], bases[1])];
+        let clears = scene.clears(&robots).map_err(text)?;
+        last_clear = if clears { Some(step) } else { last_clear };
+        if let Some(tightest) = scene.tightest(&robots).map_err(text)? {
+            println!("{step:4}  {:<5}  {}", if clears { "yes" } else { "no" }, told(&scene, &tightest));
+        }
+    }
+
+    // What is drawn is the last step at which all is clear.
+    let drawn = last_clear.unwrap_or(options.steps);
+    let chains = chains(&robot, &goals, Real::from(drawn) / Real::from(options.steps))?;
+    let robots = [(&chains[0], bases[0]), (&chains[1], bases[1])];
+    let tightest = scene.tightest(&robots).map_err(text)?.ok_or("there is nothing to be near to")?;
+    let mut walls = Vec::new();
+    scene.per_structure(&robots, &mut walls).map_err(text)?;
+    print_times(&mut scene, &robots)?;
+
+    let canvas = draw(&mesh, &robots, &walls, &told(&scene, &tightest))?;
+    canvas.save(&out).map_err(|error| command::unwritable(&out, error))?;
+    println!("\npicture of step {drawn}: {}", out.display());
+    Ok(())
+}
+
+/// Where the second robot stands: in the other frontal horn, or beside the first.
+fn beside(options: &Options, first: &Pose) -> Pose {
+    let axis = first.rotation * Vector::Z;
+    if options.anatomy.is_planned() {
+        let mirrored = Vector::new(-axis.x, axis.y, axis.z);
+        let base = first.translation;
+        let base = Vector::new(-base.x, base.y, base.z);
+        return Pose::from_parts(base, Rot3::from_rotation_arc(Vector::Z, mirrored));
+    }
+    Pose::from_translation(axis.any_orthonormal_vector() * options.beside) * *first
+}
+
+/// Both robots on their way in.
+fn chains(robot: &Robot, goals: &[Joints; 2], share: Real) -> Result<[Chain; 2], String> {
+    let chain = |goal: &Joints| {
+        let Centreline { points, radii } = robot.centreline(&robot.on_the_way(goal, share), LINKS);
+        Chain::from_centreline(&points, &radii).map_err(text)
+    };
+    Ok([chain(&goals[0])?, chain(&goals[1])?])
+}
+
+/// Who is tightest, in words.
+fn told(scene: &Scene, tightest: &Tightest) -> String {
+    let slack = tightest.slack;
+    match &tightest.between {
+        Between::Structure(StructureProximity { structure, robot, nearest, .. }) => format!(
+            "{slack:7.3} mm: link {} of robot {robot} and triangle {} of {}",
+            nearest.link,
+            nearest.triangle,
+            scene.name(*structure as usize).unwrap_or("a structure"),
+        ),
+        Between::Robots { robots: [a, b], nearest } => {
+            let [i, j] = nearest.links;
+            format!("{slack:7.3} mm: link {i} of robot {a} and link {j} of robot {b}")
+        }
+        _ => format!("{slack:7.3} mm"),
+    }
+}
+
+fn print_times(scene: &mut Scene, robots: &[(&Chain, Pose); 2]) -> Result<(), String> {
+    let [(a, pose_a), (b, pose_b)] = robots;
+    let mut asked = scene.clone();
+    let mut pair = RobotPair::new();
+    let medians = timing::medians::<String>(
+        &mut [
+            &mut || scene.tightest(robots).map(drop).map_err(text),
+            &mut || asked.clears(robots).map(drop).map_err(text),
+            &mut || pair.minimum(a, pose_a, b, pose_b).map(drop).map_err(text),
+        ],
+        Duration::from_millis(500),
+    )?;
+    println!("\ntime per question (median, taken in turns)");
+    for (name, time) in
+        ["the tightest of all", "whether all is clear", "robot against robot"].iter().zip(medians)
+    {
+        println!("  {name:<24} {:>8.1} us", time.as_secs_f64() * 1e6);
+    }
+    Ok(())
+}
+
+/// Both robots, their closest points, and those of each to the wall.
+fn draw(
+    mesh: &TriMesh,
+    robots: &[(&Chain, Pose); 2],
+    walls: &[StructureProximity],
+    tightest: &str,
+) -> Result<Canvas, String> {
+    let [(a, pose_a), (b, pose_b)] = robots;
+    let nearest = RobotPair::new().minimum(a, pose_a, b, pose_b).map_err(text)?;
+    let mut solids = Vec::new();
+    for ((chain, pose), colour) in robots.iter().zip(COLOURS) {
+        let links = chain.links().iter();
+        solids.extend(links.map(|link| Solid::new(SharedShape::new(*link), *pose, colour, true)));
+    }
+    let thick = a.links().iter().map(|link| link.radius()).fold(0.0, Real::max);
+    let mut join = |from: Vector, to: Vector| {
+        for end in [from, to] {
+            let ball = SharedShape::ball(0.25 * thick);
+            solids.push(Solid::new(ball, Pose::from_translation(end), INK, false));
+        }
+        if let Some(way) = (to - from).try_normalize() {
+            let middle = Pose::from_parts(from.midpoint(to), Rot3::from_rotation_arc(Vector::Y, way));
+            let line = SharedShape::cylinder(0.5 * (to - from).length(), 0.1 * thick);
+            solids.push(Solid::new(line, middle, INK, false));
+        }
+    };
+    join(nearest.on_first, nearest.on_second);
+    for wall in walls {
+        join(wall.nearest.on_robot, wall.nearest.on_mesh);
+    }
+    let mut picture = Picture::new(Some(mesh), solids);
+    picture.skin.veil = 0.15;
+    let [width, height] = SIZE;
+    let towards = Vector::new(0.1, -1.0, -0.15);
+    let camera = Camera::framing(mesh.vertices(), towards, Vector::Z, width as Real / height as Real, 0.08);
+    let mut canvas = picture.render(&camera, width, height);
+    canvas.text("Two concentric tube robots in one ventricle", [40.0, 890.0], Align::Left, 28.0, INK);
+    let apart = format!(
+        "{:.3} mm between the robots, at links {} and {}",
+        nearest.distance, nearest.links[0], nearest.links[1]
+    );
+    canvas.text(&apart, [40.0, 926.0], Align::Left, 19.0, INK);
+    canvas.text(&format!("the least room: {}", tightest.trim_start()), [40.0, 956.0], Align::Left, 19.0, INK);
+    Ok(canvas)
+}
