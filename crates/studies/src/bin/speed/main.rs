@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
-//! `--out` of its own, is a rehearsal. `--only rare` measures that chapter again and leaves the others as they are.
+//! `--out` of its own, is a rehearsal. `--only rare` and `--only robots` measure that
+//! chapter again and leave the others as they are.
 
 mod exhaustive;
 mod goals;
@@ -15,6 +16,7 @@ mod latency;
 mod moving;
 mod planner;
 mod rare;
+mod robots;
 mod search;
 
 use clap::Parser;
@@ -51,6 +53,8 @@ struct Options {
 enum Chapter {
     /// The worst of many new shapes.
     Rare,
+    /// Robots beside robots.
+    Robots,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -81,13 +85,20 @@ fn measure(options: &Options) -> Result<(), String> {
         machine::description()
     );
     let file = options.out.join("SPEED.md");
-    if options.only == Some(Chapter::Rare) {
-        let is_there =
-            fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, rare::MARK).is_some());
+    if let Some(only) = options.only {
+        let mark = match only {
+            Chapter::Rare => rare::MARK,
+            Chapter::Robots => robots::MARK,
+        };
+        let is_there = fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, mark).is_some());
         if !is_there {
             return Err(format!("{} has no such chapter; write it whole, without --only", file.display()));
         }
-        quote::in_page(&rare::chapter(effort, &written, &mut Goals::default())?, rare::MARK, &file)?;
+        let chapter = match only {
+            Chapter::Rare => rare::chapter(effort, &written, &mut Goals::default())?,
+            Chapter::Robots => robots::chapter(effort, &written)?,
+        };
+        quote::in_page(&chapter, mark, &file)?;
         println!("{}", file.display());
         return Ok(());
     }
@@ -112,9 +123,13 @@ fn measure(options: &Options) -> Result<(), String> {
     let (latency, after_other_work) = latency::chapter(effort)?;
     stages.next("the worst of many");
     let rare = rare::chapter(effort, &written, &mut goals)?;
+    let rare = marked(rare::MARK, &rare);
+    stages.next("robots beside robots");
+    let robots = marked(robots::MARK, &robots::chapter(effort, &written)?);
     stages.next("moving meshes");
-    let rare = format!("<!-- {0} -->\n{rare}<!-- /{0} -->\n", rare::MARK);
-    for chapter in [search, planner, latency, rare, exhaustive, growth, moving::chapter(effort)?, memory] {
+    for chapter in
+        [search, planner, latency, rare, robots, exhaustive, growth, moving::chapter(effort)?, memory]
+    {
         page.push('\n');
         page.push_str(&chapter);
     }
@@ -133,6 +148,11 @@ fn measure(options: &Options) -> Result<(), String> {
         search::HEAD,
     );
     quote::in_readme(&quote, "speed", &options.out)
+}
+
+/// A chapter that can be written alone.
+fn marked(mark: &str, chapter: &str) -> String {
+    format!("<!-- {mark} -->\n{chapter}<!-- /{mark} -->\n")
 }
 
 fn write(path: &Path, page: &str) -> Result<(), String> {
