@@ -193,10 +193,15 @@ fn speed_is_measured_drawn_and_quoted() {
 
 #[test]
 fn curves_are_measured_drawn_and_quoted() {
-    file("curves/docs/book/tube.md", "before\n<!-- curves -->\nstale\n<!-- /curves -->\nafter\n");
+    let marks = "before\n<!-- curves -->\nstale\n<!-- /curves -->\nbetween\n<!-- faces -->\nstale\n<!-- /faces -->\nafter\n";
+    file("curves/docs/book/tube.md", marks);
     let out = succeed(CURVES, &["--robots", "3", "--out", "curves/docs"]);
     let page = read("curves/docs/book/tube.md");
-    assert_eq!(page, format!("before\n<!-- curves -->\n{out}<!-- /curves -->\nafter\n"));
+    let (curves, faces) = out.split_at(out.find("| tube of radius 1 |").expect("a second table"));
+    let written = format!(
+        "before\n<!-- curves -->\n{curves}<!-- /curves -->\nbetween\n<!-- faces -->\n{faces}<!-- /faces -->\nafter\n"
+    );
+    assert_eq!(page, written);
     assert_finite(&page);
     let rows = table(&page, "| 100 samples unless said otherwise | tube |");
     let fits: Vec<_> = rows.iter().filter(|row| row[1].starts_with("`fit`")).collect();

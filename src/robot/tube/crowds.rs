@@ -11,8 +11,8 @@
 //! - *What is taken to be.* The first of them stays. Let g be how far the others are from it at most, the gap. The curve passes
 //!   within g of the one that stays, and bends no more than the samples show that are on the curve: those that do not
 //!   crowd, and for each crowd the place within the gap where the curve is. Or else the curve goes through all of them, and
-//!   in the segments before and behind bends no more than they show. That is left out if it would be by more than 1 rad,
-//!   for which the tube would be refused.
+//!   in the segments before and behind bends no more than they show. That is left out if it would be by more than 1 rad
+//!   or within the radius, for which the tube would be refused.
 //! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every chord to it; all bodies and
 //!   witnesses count g. A chord l long between samples with the gaps g1 and g2 has an end moved by g1 and another by g2. Of
 //!   two vectors v and w with |v - w| <= g = g1 + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g)

@@ -46,7 +46,8 @@ use parry3d_f64::math::{Real, Vector};
 ///
 /// # What is known of the curve
 /// - [`from_samples`](Self::from_samples): the curve goes through the samples, and each section bends nowhere more than
-///   its samples show at most. Within that its curvature may jump anywhere. A curve that turns more sharply between two
+///   its samples show at most; where these lie unevenly, each segment no more than the two samples before it and the two
+///   behind it show. Within that its curvature may jump anywhere. A curve that turns more sharply between two
 ///   samples than at any of them is not covered: sample more densely.
 /// - [`from_frames`](Self::from_frames): the curve goes through the points in the directions given, and bends as these
 ///   show.

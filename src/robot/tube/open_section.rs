@@ -136,6 +136,7 @@ impl Open {
             points: &points[first..=last],
             arcs: &arcs[first..=last],
             tangents: self.tangents,
+            radius: self.section.radius,
             rounding,
             first,
             crowds,

@@ -14,8 +14,10 @@
 //! is less than the curvature k by q^2 / 12 of it. The differences of bends are about q k long; q^2 / 8 is added.
 //!
 //! **Uneven samples.** The turn at two samples that are close together is all noise. So a sample less than a quarter of the
-//! usual distance (the geometric mean) behind the one before it counts only for its own two segments. What the others show
-//! counts for all.
+//! usual distance (the geometric mean) behind the one before it counts only for its own two segments. Of the others, the two
+//! before a segment and the two behind it count for the segment. So its curvature may jump anywhere: the hats of the outer
+//! two end where the segment begins and where it ends, and show what is before the jump and what is behind it, if
+//! there is no other jump under them. A peak in the segment is above one of the four by no more than is added.
 
 use super::crowds::{Crowd, bend_at, gap_at};
 use super::curve::CurveBound;
@@ -35,6 +37,7 @@ pub(super) struct OwnSamples<'a> {
     pub arcs: &'a [Real],
     /// The directions of the curve at its ends, where they are given.
     pub tangents: [Option<Vector>; 2],
+    pub radius: Real,
     /// What rounding can do to a point.
     pub rounding: Real,
     /// The number of the first of them among all samples, and those that crowd.
@@ -122,6 +125,11 @@ impl OwnSamples<'_> {
 
     /// The curvature between samples, if the largest bend that they show is `most`, at the sample `at`.
     pub(super) fn between_samples(&self, at: usize, most: Real) -> Real {
+        self.at_end(0).max(self.at_end(1)).max(self.around(at, most))
+    }
+
+    /// The curvature around a sample that shows `most`, but for what is beyond an end.
+    fn around(&self, at: usize, most: Real) -> Real {
         let mut curvature = most;
         let doubt = self.doubt(at);
         if let Some(here) = self.bend(at) {
@@ -149,20 +157,6 @@ impl OwnSamples<'_> {
             if size > 0.0 {
                 let hidden = if least > 0.0 { turned.min(size * least) / least } else { size };
                 curvature += (2.0 * peak).min(0.25 * most) + hidden / 8.0;
-            }
-        }
-        self.at_end(0).max(self.at_end(1)).max(curvature)
-    }
-
-    /// The same; where samples crowd, of every sample, as that which hides most need not be the one that shows most.
-    pub(super) fn between_all(&self, at: usize, most: Real) -> Real {
-        let mut curvature = self.between_samples(at, most);
-        if !self.crowds.is_empty() {
-            for sample in (0..=self.last()).filter(|&sample| self.is_kept(sample)) {
-                if let Some(bend) = self.bend(sample) {
-                    let most = bend.length() + self.doubt(sample);
-                    curvature = curvature.max(self.between_samples(sample, most));
-                }
             }
         }
         curvature
@@ -208,17 +202,17 @@ impl OwnSamples<'_> {
         let last = self.last();
         let logarithms: Real = self.arcs.windows(2).map(|arcs| libm::log2(arcs[1] - arcs[0])).sum();
         self.shortest = CLOSE * libm::exp2(logarithms / last as Real);
-        let (mut most, mut at) = (0.0, 0);
-        for sample in (0..=last).filter(|&sample| self.is_kept(sample)) {
-            let noise = 2.0 * self.rounding / self.shortest;
-            let bend = self.bend(sample).map_or(0.0, |bend| bend.length() + noise / self.shortest)
-                + self.doubt(sample);
-            if bend > most {
-                (most, at) = (bend, sample);
-            }
-        }
-        let shown = most;
-        let most = self.between_all(at, most).max(least);
+        let noise = 2.0 * self.rounding / self.shortest;
+        let shown = |sample: usize| {
+            let bend = self.bend(sample).map_or(0.0, |bend| bend.length() + noise / self.shortest);
+            bend + self.doubt(sample)
+        };
+        let most = (0..=last).filter(|&sample| self.is_kept(sample)).map(shown).fold(0.0, Real::max);
+        let ends = [0, 1].map(|end| self.at_end(end));
+        // Of a segment the two samples before it and the two behind it, as far as there are any, and what the four show.
+        let around = |sample: Option<usize>| sample.map_or(0.0, |sample| self.around(sample, shown(sample)));
+        let mut four = [None, None, Some(0), self.behind(0)];
+        let mut bends = four.map(around);
         let segment = |from: usize| self.segment(from, from + 1);
         let own = |sample: usize| match sample {
             0 => self.tangents[0]
@@ -240,20 +234,34 @@ impl OwnSamples<'_> {
         let mut before = own(0);
         for from in 0..last {
             let behind = own(from + 1);
-            let curvature = most.max(before).max(behind);
-            // Of a curve that bends by more than 1 rad there nothing is said.
+            if self.is_kept(from) {
+                let next = four[3].and_then(|sample| self.behind(sample));
+                four = [four[1], four[2], four[3], next];
+                bends = [bends[1], bends[2], bends[3], around(next)];
+            }
+            let at_ends =
+                [four[0].is_none_or(|sample| sample == 0), four[3].is_none_or(|sample| sample == last)];
+            let shown = [0, 1].map(|end| if at_ends[end] { ends[end] } else { 0.0 });
+            let local = bends.into_iter().chain(shown).fold(least, Real::max);
+            let curvature = local.max(before).max(behind);
+            // For a curve that bends by more than 1 rad there, or within its radius, the tube would be refused.
             let through = bend_at(self.crowds, self.first + from, 1).max(bend_at(
                 self.crowds,
                 self.first + from + 1,
                 0,
             ));
-            let is_possible = through * (self.arcs[from + 1] - self.arcs[from]) <= 1.0;
+            let is_possible =
+                through * (self.arcs[from + 1] - self.arcs[from]) <= 1.0 && through * self.radius < 1.0;
             let curvature = if is_possible { curvature.max(through) } else { curvature };
             bounds.push(CurveBound { curvature, off: 0.0 });
             let longest = segment(from).map_or(0.0, |segment| 2.0 * segment.length - segment.least);
             let turn = curvature * longest;
             if turn > 1.0 && sharpest.is_none() {
-                let sample = if before.max(behind) < most { at } else { from + usize::from(behind > before) };
+                let sharpest_of =
+                    |one: usize, other: usize| if bends[other] > bends[one] { other } else { one };
+                let at = four[[0, 2, 3].into_iter().fold(1, sharpest_of)].unwrap_or(from);
+                let is_own = local <= before.max(behind);
+                let sample = if is_own { from + usize::from(behind > before) } else { at };
                 sharpest = Some(Bend { at: sample, from, turn });
             }
             before = behind;
@@ -261,7 +269,7 @@ impl OwnSamples<'_> {
                 if self.is_kept(from + 1) { None } else { Some((own(from).max(behind), from + 1)) };
             if let Some((bend, sample)) = crowding
                 && crowded.is_none()
-                && (bend - 1.25 * shown) * longest_beside(sample) > SHARPER
+                && (bend - 1.25 * most) * longest_beside(sample) > SHARPER
             {
                 crowded = Some(sample);
             }

@@ -67,29 +67,31 @@ impl Tube {
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
         let mut crowds = std::mem::take(&mut self.crowds);
         crowds.clear();
-        let mut result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+        let (mut result, mut crowding) =
+            self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
         for _ in 0..MOST_TRIED {
-            let crowding = match result {
-                Ok(Some(index)) | Err(RobotError::TurnsTooSharply { index, .. }) => index,
-                _ => break,
+            let at = match result {
+                Err(RobotError::TurnsTooSharply { index, .. }) => Some(index),
+                Ok(()) | Err(RobotError::BendsWithinRadius { .. }) => crowding,
+                Err(_) => None,
             };
             let is_good = result.is_ok();
-            if !crowds::find(samples, radii, crowding, one_place, &mut crowds) {
+            if !at.is_some_and(|at| crowds::find(samples, radii, at, one_place, &mut crowds)) {
                 break;
             }
-            result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+            (result, crowding) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
             if is_good && result.is_err() {
                 crowds.clear();
-                result = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+                (result, _) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
                 break;
             }
         }
         self.crowds = crowds;
-        result.map(|_| ())
+        result
     }
 
-    /// Fills the tube with good samples, of which those that crowd are one. A sample is returned around which there may be more
-    /// that do.
+    /// Fills the tube with good samples, of which those that crowd are one. A sample around which there may be more that
+    /// do is returned as well.
     fn lay_samples(
         &mut self,
         samples: &[Vector],
@@ -98,7 +100,7 @@ impl Tube {
         reach: Real,
         one_place: Real,
         crowds: &mut [Crowd],
-    ) -> Result<Option<usize>, RobotError> {
+    ) -> (Result<(), RobotError>, Option<usize>) {
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -205,7 +207,7 @@ impl Tube {
         let crowding =
             crowding.map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
-        result.map(|()| crowding)
+        (result, crowding)
     }
 
     /// Finds the flat ends of the sections and their directions. `points` are the samples without those repeated.

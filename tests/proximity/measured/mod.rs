@@ -3,6 +3,7 @@
 mod crowds;
 mod fit;
 mod frames;
+mod uneven;
 
 use continuum_testing::{Arcs, Random};
 use parry_continuum::Tube;

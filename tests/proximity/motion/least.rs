@@ -4,7 +4,7 @@ use super::{Steps, anatomy, polyline, random_edge};
 use continuum_demo::ctr;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::proximity::{BvhSearch, MotionClearance, ProximityError};
+use parry_continuum::proximity::{BvhSearch, Decision, MotionClearance, ProximityError};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
     RobotError, Speed, Tube,
@@ -70,22 +70,34 @@ fn judge(search: &mut BvhSearch, motion: &impl Motion, steps: usize, tolerance: 
 
 #[test]
 fn bounds_hold_for_edges_of_a_planner() {
-    let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(21));
+    edges(90, 21);
+}
+
+fn edges(count: usize, seed: u64) {
+    let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(seed));
     let mut judged = Judged::default();
-    for round in 0..90 {
+    for round in 0..count {
         let distance = [0.5, 1.0, 2.0, 5.0, 10.0][round % 5];
         let motion = random_edge(&robot, &mut random, distance);
         judge(&mut search, &motion, 200, [1e-3, 0.01, 0.1][round % 3], &mut judged);
     }
     println!("{judged:?}");
-    assert!(judged.resolved == judged.of && judged.touching > 10 && judged.touching < 80, "{judged:?}");
+    assert!(
+        judged.resolved == judged.of && 10 * judged.touching > count && 10 * judged.touching < 9 * count,
+        "{judged:?}"
+    );
 }
 
 #[test]
 fn bounds_hold_for_bases_that_move_and_for_chains() {
-    let (mut search, mut random) = (anatomy(), Random::new(22));
+    bases_and_chains(60, 22);
+}
+
+/// Four times as many motions.
+fn bases_and_chains(count: usize, seed: u64) {
+    let (mut search, mut random) = (anatomy(), Random::new(seed));
     let [mut bases, mut chains, mut rigid, mut paths] = [0; 4].map(|_: i32| Judged::default());
-    for round in 0..60 {
+    for round in 0..count {
         let near = search_vertex(&mut random, &search) + random.point() * 6.0;
         let tolerance = [1e-3, 0.01, 0.1][round % 3];
         let mut bent = || {
@@ -125,6 +137,52 @@ fn bounds_hold_for_bases_that_move_and_for_chains() {
 fn search_vertex(random: &mut Random, search: &BvhSearch) -> Vector {
     use parry_continuum::proximity::Proximity;
     search.vertices()[random.below(search.vertices().len() as u32) as usize]
+}
+
+/// Capsules over a floor, whose least height is a vertex's where it begins or where it ends: scraping, and at the margin.
+#[test]
+fn motions_that_scrape_are_never_misjudged() {
+    scraping(150, 23);
+}
+
+fn scraping(count: usize, seed: u64) {
+    let (mut search, mut random) = (floor(), Random::new(seed));
+    let (mut clear, mut contact) = (0, 0);
+    for round in 0..count {
+        let (from, radii) = polyline(&mut random, Vector::ZERO);
+        let shift = random.direction() * random.between(0.0, 3.0);
+        let to: Vec<_> = from.iter().map(|&point| point + shift + random.point() * 0.5).collect();
+        let low = |points: &[Vector]| {
+            let links = points.windows(2).zip(&radii);
+            links.fold(Real::INFINITY, |low, (ends, radius)| low.min(ends[0].z.min(ends[1].z) - radius))
+        };
+        let gap = [0.0, 1e-9, 1e-6, 1e-3, random.between(0.0, 5.0)][round % 5];
+        let lift = Vector::Z * (gap - low(&from).min(low(&to)));
+        let lifted = [from, to].map(|points| points.iter().map(|&point| point + lift).collect::<Vec<_>>());
+        let motion = LinearMotion::capsules(&lifted[0], &lifted[1], &radii).unwrap();
+        for tolerance in [1e-3, 0.1] {
+            let least = search.clearance_of_motion(&motion, tolerance).unwrap();
+            assert!(least.lower <= gap + 1e-13 && gap <= least.upper + 1e-13, "{gap}: {least:?}");
+            assert!(least.resolved, "{gap}: {least:?}");
+        }
+        let mut decide = |margin| search.clears_motion(&motion, margin, 1e-4).unwrap().decision;
+        assert_ne!(decide(gap + 1e-9), Decision::Clear);
+        clear += usize::from(decide((gap - 2e-4).max(0.0)) == Decision::Clear);
+        contact += usize::from(decide(gap + 2e-4) == Decision::Contact);
+        if gap >= 1e-9 {
+            assert_ne!(decide(gap - 1e-9), Decision::Contact);
+        }
+    }
+    assert!(5 * clear >= 2 * count && 10 * contact > 9 * count, "{clear} {contact} of {count}");
+}
+
+/// The same for as many motions as take minutes.
+#[test]
+#[ignore = "minutes: run it by name, in release"]
+fn bounds_hold_for_1_500_motions() {
+    edges(400, 31);
+    bases_and_chains(150, 32);
+    scraping(500, 33);
 }
 
 /// A square of 40 across z at the origin.

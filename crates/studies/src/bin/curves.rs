@@ -1,11 +1,13 @@
 //! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are accepted, how close their
-//! bounds are, and how far from the truth. Writes the table of `docs/book/tube.md` and the plot `docs/curves.svg`.
+//! bounds are, and how far from the truth; and how finely tubes are divided beside flat faces. Writes the tables of
+//! `docs/book/tube.md` and the plot `docs/curves.svg`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin curves
 //! ```
 
 use clap::Parser;
+use continuum_demo::{ctr, steer};
 use continuum_studies::quote;
 use continuum_testing::{Arcs, Random};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -33,16 +35,64 @@ struct Options {
 const LENGTH: f64 = 80.0;
 const RADIUS: f64 = 0.5;
 
+/// The rows of the robot in the demonstration.
+const VENTRICLE: &str = "the ventricle's robot";
+
 /// A robot and what is near it.
 struct Scene {
-    arcs: Arc<Arcs>,
-    /// Where its sections end.
-    ends: [f64; 3],
+    curve: Centreline,
+    sections: Vec<TubeSection>,
+    /// Where its bends change or its radius does.
+    ends: Vec<f64>,
     mesh: TriMesh,
     truth: f64,
 }
 
-/// Three sections of constant curvature, 80 mm long together, and three specks of a wall 0.5 to 5 mm beside them.
+/// A point of a centreline and the direction there, by arc length.
+type Centreline = Arc<dyn Fn(f64) -> (Vector, Vector) + Send + Sync>;
+
+impl Scene {
+    /// The robot beside three specks of a wall 0.5 to 5 mm away.
+    fn new(random: &mut Random, curve: Centreline, sections: Vec<TubeSection>, ends: Vec<f64>) -> Self {
+        let length: f64 = sections.iter().map(|section| section.length).sum();
+        let mut vertices = Vec::new();
+        for _ in 0..3 {
+            let s = random.between(-0.04 * length, 1.04 * length).clamp(0.0, length);
+            let (centre, tangent) = curve(s);
+            let across = (tangent.cross(random.direction()).normalize()
+                + tangent * random.between(-1.0, 1.0))
+            .normalize();
+            let at = centre + across * (radius_at(&sections, s) + random.between(0.5, 5.0));
+            vertices.extend([at, at + random.direction() * 0.3, at + random.direction() * 0.3]);
+        }
+        let mesh = TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).expect("three triangles");
+        let given = Arc::clone(&curve);
+        let exact = Tube::from_function(&sections, move |s| given(s)).expect("a tube");
+        let mut search = BvhSearch::new(&mesh).expect("a mesh");
+        let truth = search.clearance(&exact, &Pose::IDENTITY, 1e-6).expect("a clearance").upper;
+        Self { curve, sections, ends, mesh, truth }
+    }
+
+    fn length(&self) -> f64 {
+        self.ends[self.ends.len() - 1]
+    }
+
+    fn tangents(&self, places: &[f64]) -> Vec<Vector> {
+        places.iter().map(|&s| (self.curve)(s).1).collect()
+    }
+}
+
+/// The radius at an arc length.
+fn radius_at(sections: &[TubeSection], s: f64) -> f64 {
+    let mut end = 0.0;
+    let here = sections.iter().find(|section| {
+        end += section.length;
+        s <= end
+    });
+    here.unwrap_or(&sections[sections.len() - 1]).radius
+}
+
+/// Three sections of constant curvature, 80 mm long together.
 fn scene(seed: u64) -> Scene {
     let mut random = Random::new(seed + 1);
     let mut arcs = Arcs::from_frame(random.pose(20.0));
@@ -53,24 +103,25 @@ fn scene(seed: u64) -> Scene {
         (length, Vector::new(angle.cos(), angle.sin(), 0.0) * random.between(0.0, 0.05))
     });
     arcs.push(RADIUS, &parts);
-    let mut vertices = Vec::new();
-    for _ in 0..3 {
-        let (centre, tangent) = arcs.at(random.between(-3.0, LENGTH + 3.0).clamp(0.0, LENGTH));
-        let across =
-            (tangent.cross(random.direction()).normalize() + tangent * random.between(-1.0, 1.0)).normalize();
-        let at = centre + across * (RADIUS + random.between(0.5, 5.0));
-        vertices.extend([at, at + random.direction() * 0.3, at + random.direction() * 0.3]);
-    }
-    let mesh = TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).expect("three triangles");
-    let arcs = Arc::new(arcs);
     let stretch = arcs.stretches[0];
     let section = TubeSection { length: stretch.length, radius: RADIUS, curvature: stretch.curvature };
-    let curve = Arc::clone(&arcs);
-    let exact = Tube::from_function(&[section], move |s| curve.at(s)).expect("a tube");
-    let found =
-        BvhSearch::new(&mesh).expect("a mesh").clearance(&exact, &Pose::IDENTITY, 1e-6).expect("a clearance");
-    let ends = [lengths[0], lengths[0] + lengths[1], LENGTH];
-    Scene { arcs, ends, mesh, truth: found.upper }
+    let ends = vec![lengths[0], lengths[0] + lengths[1], LENGTH];
+    Scene::new(&mut random, Arc::new(move |s| arcs.at(s)), vec![section], ends)
+}
+
+/// The concentric tube robot of the ventricle, in any shape.
+fn concentric_tubes(seed: u64) -> Scene {
+    let robot = ctr::three_tubes();
+    let joints = robot.any_joints(&mut steer::Random(seed));
+    let sections = robot.sections_out(&joints);
+    let mut end = 0.0;
+    let ends = sections.iter().map(|section| {
+        end += section.length;
+        end
+    });
+    let ends = ends.collect();
+    let curve = robot.curve(&joints);
+    Scene::new(&mut Random::new(seed + 1), Arc::new(move |s| curve.at(s)), sections, ends)
 }
 
 /// What a robot is measured like.
@@ -102,16 +153,17 @@ fn normal(random: &mut Random) -> f64 {
 /// Arc lengths of the samples, and their points.
 fn measure(scene: &Scene, input: Input, random: &mut Random) -> (Vec<f64>, Vec<Vector>) {
     let count = input.samples - 1;
-    let mut places: Vec<f64> = (0..=count).map(|k| LENGTH * k as f64 / count as f64).collect();
+    let length = scene.length();
+    let mut places: Vec<f64> = (0..=count).map(|k| length * k as f64 / count as f64).collect();
     if input.spacing == Spacing::Random {
-        places[1..count].fill_with(|| LENGTH * random.unit());
+        places[1..count].fill_with(|| length * random.unit());
         places.sort_by(f64::total_cmp);
     }
     if input.spacing == Spacing::Sections {
         places.truncate(1);
         let mut from = 0.0;
-        for end in scene.ends {
-            let own = ((end - from) / LENGTH * count as f64).round().max(1.0);
+        for &end in &scene.ends {
+            let own = ((end - from) / length * count as f64).round().max(1.0);
             places.extend((1..=own as usize).map(|k| from + (end - from) * k as f64 / own));
             from = end;
         }
@@ -119,7 +171,7 @@ fn measure(scene: &Scene, input: Input, random: &mut Random) -> (Vec<f64>, Vec<V
     let mut points: Vec<_> = places
         .iter()
         .map(|&s| {
-            scene.arcs.at(s).0 + Vector::new(normal(random), normal(random), normal(random)) * input.noise
+            (scene.curve)(s).0 + Vector::new(normal(random), normal(random), normal(random)) * input.noise
         })
         .collect();
     match input.spacing {
@@ -152,14 +204,15 @@ enum Way {
 
 impl Way {
     fn tube(self, scene: &Scene, places: &[f64], points: &[Vector]) -> Result<Tube, RobotError> {
-        let radii = vec![RADIUS; points.len() - 1];
+        let middle = |pair: &[f64]| radius_at(&scene.sections, 0.5 * (pair[0] + pair[1]));
+        let radii: Vec<_> = places.windows(2).map(middle).collect();
         match self {
             Self::Samples => Tube::from_samples(points, &radii, None),
-            Self::SamplesAndTangents => Tube::from_samples(points, &radii, Some(scene.arcs.end_tangents())),
-            Self::Frames => {
-                let tangents: Vec<_> = places.iter().map(|&s| scene.arcs.at(s).1).collect();
-                Tube::from_frames(points, &tangents, &radii)
-            }
+            Self::SamplesAndTangents => Tube::from_samples(points, &radii, {
+                let tangents = scene.tangents(&[0.0, scene.length()]);
+                Some([tangents[0], tangents[1]])
+            }),
+            Self::Frames => Tube::from_frames(points, &scene.tangents(places), &radii),
             Self::Fit(deviation) => Tube::fit(points, &radii, deviation),
         }
     }
@@ -235,29 +288,23 @@ fn ask(scenes: &[Scene], input: Input, way: Way, tolerance: f64) -> Outcome {
 fn main() -> ExitCode {
     let my = Options::parse();
     let scenes: Vec<_> = (0..my.robots).map(scene).collect();
+    let ventricle: Vec<_> = (0..my.robots).map(concentric_tubes).collect();
     let clean = |samples| Input { samples, spacing: Spacing::Even, noise: 0.0 };
     let spaced = |spacing| Input { spacing, ..clean(100) };
     let noisy = |samples, noise| Input { noise, ..clean(samples) };
     let scattered = |noise| Input { spacing: Spacing::Random, ..noisy(100, noise) };
     use Way::{Fit, Frames, Samples, SamplesAndTangents};
+    let at_ends = |samples| Input { spacing: Spacing::Sections, ..clean(samples) };
     let mut rows: Vec<(String, Input, Way, f64)> = vec![
+        (format!("{VENTRICLE}, 20 frames"), at_ends(20), Frames, 0.01),
+        (format!("{VENTRICLE}, 60 frames"), at_ends(60), Frames, 0.001),
         ("clean".into(), clean(100), Samples, 0.1),
         ("clean".into(), clean(100), Samples, 0.01),
         ("clean".into(), clean(100), SamplesAndTangents, 0.01),
         ("clean, 20 frames".into(), clean(20), Frames, 0.01),
         ("clean, 60 frames".into(), clean(60), Frames, 0.001),
-        (
-            "clean, 20 frames, at the sections' ends too".into(),
-            Input { spacing: Spacing::Sections, ..clean(20) },
-            Frames,
-            0.01,
-        ),
-        (
-            "clean, 60 frames, at the sections' ends too".into(),
-            Input { spacing: Spacing::Sections, ..clean(60) },
-            Frames,
-            0.001,
-        ),
+        ("clean, 20 frames, at the sections' ends too".into(), at_ends(20), Frames, 0.01),
+        ("clean, 60 frames, at the sections' ends too".into(), at_ends(60), Frames, 0.001),
         ("three sections with end points of their own".into(), spaced(Spacing::Joined), Samples, 0.1),
         ("at random places".into(), scattered(0.0), Samples, 0.1),
         ("at random places".into(), scattered(0.0), Samples, 0.2),
@@ -289,7 +336,7 @@ fn main() -> ExitCode {
     let mut refused = Vec::new();
     for (name, input, way, tolerance) in &rows {
         let Outcome { accepted, resolved, width, off, covered, times } =
-            ask(&scenes, *input, *way, *tolerance);
+            ask(if name.starts_with(VENTRICLE) { &ventricle } else { &scenes }, *input, *way, *tolerance);
         let [tube, query] = times;
         let _ = writeln!(
             table,
@@ -305,7 +352,12 @@ fn main() -> ExitCode {
         }
     }
     print!("{table}");
-    let written = quote::in_page(&table, "curves", &my.out.join("book/tube.md")).and_then(|()| {
+    let faces = faces(my.robots);
+    print!("{faces}");
+    let page = my.out.join("book/tube.md");
+    let written =
+        quote::in_page(&table, "curves", &page).and_then(|()| quote::in_page(&faces, "faces", &page));
+    let written = written.and_then(|()| {
         plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
     });
     match written {
@@ -315,6 +367,62 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A tube of radius 1 beside triangles that are near its flat base: how finely it is divided, and how long that takes.
+fn faces(count: u64) -> String {
+    let mut table = String::from(
+        "| tube of radius 1 | tolerance | pieces, median | most | resolved | µs, median | most |\n|---|---|---|---|---|---|---|\n",
+    );
+    for (name, length, bend, far) in [
+        ("4 long, bent by 0.2", 4.0, 0.2, 0.0),
+        ("0.3 long, bent by 0.9", 0.3, 0.9, 0.0),
+        ("5 long, bent by 0.2, 10^6 from the origin", 5.0, 0.2, 1e6),
+    ] {
+        let mut arcs = Arcs::from_frame(Pose::IDENTITY);
+        arcs.push(1.0, &[(length, Vector::X * bend)]);
+        let arcs = Arc::new(arcs);
+        let section = TubeSection { length, radius: 1.0, curvature: bend };
+        let tube = Tube::from_function(&[section], move |s| arcs.at(s)).expect("a tube");
+        for tolerance in [1e-4, 1e-5, 1e-6, 1e-7] {
+            let (mut pieces, mut times, mut resolved) = (Vec::new(), Vec::new(), 0);
+            for seed in 0..count {
+                let mut random = Random::new(seed + 1);
+                // In the plane of the face, beside its rim or beside it, level, tilted or across.
+                let gap = [0.3, 1e-3, 2.0][random.below(3) as usize];
+                let angle = random.between(0.0, 6.3);
+                let rim = Vector::new(angle.cos(), angle.sin(), 0.0) * random.between(0.0, 1.5);
+                let tilt = [0.0, 0.1, 1.0][random.below(3) as usize];
+                let corner = |random: &mut Random| {
+                    let along = random.point() * Vector::new(2.0, 2.0, tilt);
+                    rim + Vector::Z * -gap + along
+                };
+                let corners = (0..3).map(|_| corner(&mut random)).collect();
+                let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");
+                let pose = Pose::from_translation(Vector::new(far, -far, far));
+                let moved =
+                    TriMesh::new(mesh.vertices().iter().map(|p| pose * *p).collect(), vec![[0, 1, 2]]);
+                let mut search = BvhSearch::new(&moved.expect("a triangle")).expect("a mesh");
+                let mut all = Vec::new();
+                let found = search.clearance_pieces(&tube, &pose, tolerance, &mut all).expect("a clearance");
+                search.forget();
+                let clock = Instant::now();
+                search.clearance(&tube, &pose, tolerance).expect("a clearance");
+                times.push(clock.elapsed().as_secs_f64() * 1e6);
+                pieces.push(all.len() as f64);
+                resolved += usize::from(found.resolved);
+            }
+            let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+            let [most_pieces, most_time] = [most(&pieces), most(&times)];
+            let _ = writeln!(
+                table,
+                "| {name} | {tolerance:e} | {} | {most_pieces} | {resolved} of {count} | {:.0} | {most_time:.0} |",
+                median(pieces),
+                median(times)
+            );
+        }
+    }
+    table
 }
 
 /// A number as the table shows it, if there is one.
