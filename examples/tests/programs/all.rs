@@ -65,7 +65,7 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
         (&["--mesh", "nowhere.stl"][..], "check the path"),
         (&["--mesh", sheet], "name one with --base"),
         (&["--margin", "-1"], "at least 0"),
-        (&["--between", "far"], "write a number"),
+        (&["--between", "far"], "write a length"),
         (&["--steps", "0"], "write a whole number from 1 to 100000"),
         (&["--out", "bar.jpg", "--mesh", "nowhere.stl"], "ends in .jpg"),
     ] {
