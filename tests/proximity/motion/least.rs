@@ -176,9 +176,9 @@ fn scraping(count: usize, seed: u64) {
     assert!(5 * clear >= 2 * count && 10 * contact > 9 * count, "{clear} {contact} of {count}");
 }
 
-/// The same for as many motions as take minutes.
+/// The same for many motions.
 #[test]
-#[ignore = "minutes: run it by name, in release"]
+#[ignore = "ten seconds: run it by name"]
 fn bounds_hold_for_1_500_motions() {
     edges(400, 31);
     bases_and_chains(150, 32);
