@@ -215,3 +215,20 @@ fn what_is_wrong_is_named() {
     let margin = pair.tubes_clear(&tube, &here, &tube, &here, f64::NAN, 0.1).unwrap_err();
     assert!(margin.to_string().contains("margin"), "{margin}");
 }
+
+/// Answers are checked when they are read.
+#[test]
+#[cfg(feature = "serde-serialize")]
+fn answers_are_written_and_read() {
+    let (tube, there) = (quarter(1.0), Pose::from_translation(Vector::Y * 5.0));
+    let found = RobotPair::new().clearance(&tube, &Pose::IDENTITY, &tube, &there, 0.01).unwrap();
+    let text = serde_json::to_string(&found).unwrap();
+    assert_eq!(serde_json::from_str::<RobotClearance>(&text).unwrap(), found);
+    let spoilt = |field: &str, value: serde_json::Value| {
+        let mut fields: serde_json::Value = serde_json::from_str(&text).unwrap();
+        fields[field] = value;
+        serde_json::from_value::<RobotClearance>(fields).unwrap_err().to_string()
+    };
+    assert!(spoilt("lower", (found.upper + 1.0).into()).contains("in order"));
+    assert!(spoilt("uncertainty", (-1.0).into()).contains("at least 0"));
+}
