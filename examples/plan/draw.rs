@@ -97,9 +97,10 @@ pub fn draw(mesh: &TriMesh, name: &str, edges: &mut Edges, path: &[Place]) -> Re
     let foot = height as f32 - FOOT as f32;
     let middle = places.iter().sum::<Vector>() / places.len() as Real;
     ruler(&mut canvas, &camera, middle, PANEL, [GAP as f32 + 4.0, foot + 52.0]);
-    let bar = [0.4 * width as f32, foot + 48.0];
+    // At whole pixels, so that the colours stay what they are.
+    let bar = [(0.4 * width as f32).round(), foot + 48.0];
     let title = format!("distance from link to wall (mm; {FARTHEST}: or more)");
-    colours.draw(&mut canvas, bar, [0.56 * width as f32, 22.0], &title, INK);
+    colours.draw(&mut canvas, bar, [(0.56 * width as f32).round(), 22.0], &title, INK);
     Ok(canvas)
 }
 

@@ -156,6 +156,15 @@ pub enum RobotError {
         /// When.
         t: Real,
     },
+    /// The shapes of a path must have the same links: the same segments must have a length, with the same radii.
+    #[error(
+        "shape {index} of `shapes` has other links than the first: other segments without length, or other radii; make all shapes of \
+         the same segments, each with a length"
+    )]
+    ShapesDiffer {
+        /// The shape, counted from 0.
+        index: usize,
+    },
     /// The kinematics behind a motion has no shape: return it from [`Motion::shape`](crate::Motion::shape).
     #[error("the kinematics has no shape at t = {t}: {reason}")]
     NoShape {

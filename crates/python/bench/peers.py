@@ -51,8 +51,8 @@ def peers(mesh, vertices, faces, shapes):
     own, exact = timed(lambda points: mesh.distance(points, RADIUS), shapes)
     batch = min(timed(lambda _: mesh.distance(shapes, RADIUS), [None] * 5)[0] for _ in range(3)) / len(shapes)
     touches = f"{np.mean(exact == 0):.0%} of the shapes touch"
-    rows.append(("**`distance`**, one robot", own, "0", "0", "0%"))
-    rows.append(("**`distance`**, a batch", batch, "0", "0", "0%"))
+    rows.append(("**`distance`**, one robot", len(shapes), own, "", "", ""))
+    rows.append(("**`distance`**, a batch", len(shapes), batch, "", "", ""))
     for name, package, make, caps, count in WAYS:
         if importlib.util.find_spec(package) is None:
             missing.append(package)
@@ -69,7 +69,7 @@ def peers(mesh, vertices, faces, shapes):
         over, under = error[is_free].max(initial=0), (-error[is_free]).max(initial=0)
         called_free = np.mean(found[~is_free] > 0) if (~is_free).any() else 0
         over, under = (f"{error:.1e}" if error > 0 else "0" for error in (over, under))
-        rows.append((name, taken, over, under, f"{called_free:.0%}"))
+        rows.append((name, count, taken, over, under, f"{called_free:.0%}"))
         print(rows[-1], flush=True)
     return rows, sorted(set(missing)), touches
 
@@ -145,7 +145,7 @@ def main(count=500):
     rows, missing, touches = peers(mesh, vertices, faces, shapes)
     versions = [DISTRIBUTIONS.get(package, package) for package in sorted({way[1] for way in WAYS} - set(missing))]
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in versions)
-    without = f" Not installed: {', '.join(missing)}." if missing else ""
+    without = f" Not there, or not to be loaded: {', '.join(missing)}." if missing else ""
     lines = [
         "# Python beside its peers",
         "",
@@ -155,20 +155,21 @@ def main(count=500):
         f"{versions}.{without}",
         "",
         f"A cavity of {len(faces):,} triangles, about 50 mm wide on each side, and robots of {shapes.shape[1] - 1} links, 75 mm",
-        f"long, with the radius {RADIUS} mm; {touches}. Each library is asked as its users ask it. The error is that of",
-        "the distance in mm, of free shapes, beside the exact distance of the shape that the library was given: cylinders,",
-        "capsules, or, where only points are asked about, the robot itself. What reports more room than there is, is in the",
-        "first of the columns of errors; the last is the share of touching shapes that are called free. Times are processor time,",
-        "of all threads together, the median of calls.",
+        f"long, with the radius {RADIUS} mm; {touches}. Each library is asked as its users ask it. Errors are those of the",
+        "distance of free shapes, beside what `distance` answers for the shape that the library was given: cylinders, capsules, or,",
+        "where only points are asked about, the robot itself. *Too far* is unsafe: there is less room than reported. The last column",
+        "is the share of touching shapes that are called free. Slow ways are asked about fewer shapes. Times are processor time, of all",
+        "threads together: the median of calls, of the batch the least of three medians divided by its shapes.",
         "",
-        "| way | a robot, us | too far by, mm | too near by, mm | touching, called free |",
-        "|---|---|---|---|---|",
-        *(f"| {name} | {number(taken)} | {over} | {under} | {called_free} |" for name, taken, over, under, called_free in rows),
+        "| way | shapes | a robot, us | too far by, mm | too near by, mm | touching, called free |",
+        "|---|---|---|---|---|---|",
+        *(f"| {name} | {count} | {number(taken)} | {over} | {under} | {called_free} |"
+          for name, count, taken, over, under, called_free in rows),
         "",
         "## What Python adds",
         "",
-        "Microseconds of one thread's time for a robot, the least of several rounds in turns: arrays in, a chain made of them,",
-        "the answer, arrays out.",
+        "Microseconds of processor time for a robot, the least of several rounds in turns: arrays in, a chain made of them, the answer,",
+        "arrays out. A batch runs on one thread in Rust, and on all cores in Python.",
         "",
         "| question | Rust | Python | more |",
         "|---|---|---|---|",

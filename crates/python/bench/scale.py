@@ -105,7 +105,7 @@ def main(count=200_000, rounds=3):
         "likes; [ray_blocks.py](../crates/python/examples/ray_blocks.py) over Ray. Each is a few lines to copy. For a cluster give",
         "`Client` or `ray.init` its address, and start each worker with `RAYON_NUM_THREADS=1` and as many workers as cores.",
         "",
-        f"Written by `python crates/python/bench/scale.py` on a machine with {os.cpu_count()} cores ({platform.machine()}, Python "
+        f"Written by `python crates/python/bench/scale.py {count} {rounds}` on a machine with {os.cpu_count()} cores ({platform.machine()}, Python "
         f"{platform.python_version()}),",
         f"with parry-continuum {parry_continuum.__version__}, {versions}. {count:,} shapes of 30 links each in blocks",
         f"of {BLOCK:,}, in a closed mesh of {len(mesh.faces):,} triangles. The least of {rounds} rounds, which go through all rows in turn; all rows give the same distances bit for bit.",
@@ -120,8 +120,8 @@ def main(count=200_000, rounds=3):
         "core's time, and at the rate of the slower",
         f"of the two rows of two workers {hours:.2g} hours on this machine. Blocks do not depend on one another, so that more workers "
         "share that",
-        f"as long as the scheduler hands out blocks as fast as they are done: one takes a worker {BLOCK * slowest / count * 2:.2g} s, and "
-        "larger ones ask less of it.",
+        f"as long as the scheduler hands out blocks as fast as they are done. A block takes a worker {BLOCK * slowest / count * 2:.2g} s; "
+        "larger blocks give the scheduler less to do.",
     ]
     PAGE.write_text("\n".join(lines) + "\n")
     print(PAGE.read_text())

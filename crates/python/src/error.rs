@@ -103,6 +103,7 @@ fn index_in_robot(error: &RobotError) -> Option<usize> {
         | RobotError::BadLength { index, .. }
         | RobotError::BadCurvature { index, .. }
         | RobotError::SectionsDiffer { index }
+        | RobotError::ShapesDiffer { index }
         | RobotError::BadTangent { index, .. }
         | RobotError::TurnsTooSharply { index, .. }
         | RobotError::BendsWithinRadius { index, .. } => Some(*index),

@@ -251,6 +251,18 @@ def test_meshes_that_move_meanwhile() -> None:
     assert_array_equal(mesh.vertices, vertices)
 
 
+def nested(motion: Motion, pose: Array) -> Motion:
+    for _ in range(100):
+        motion = MovingBase(motion, pose, pose)
+    return motion
+
+
+def doubled(motion: Motion) -> Motion:
+    for _ in range(5):
+        motion = MotionPath([motion] * 100)
+    return motion
+
+
 @pytest.mark.parametrize(
     ("ask", "kind", "text"),
     [
@@ -269,6 +281,13 @@ def test_meshes_that_move_meanwhile() -> None:
         (lambda r, p: BendingMotion([[1, 0, 0]], [[1, 20, 0]], 0.1), "bends_within_radius", "radius"),
         (lambda r, p: LinearMotion(r[0], r[0], 0.1, caps="cylinders"), "bad_caps", "cylinders"),
         (lambda r, p: MotionPath([]), "no_motions", "motions"),
+        # Arrays without numbers, of any number of rows.
+        (lambda r, p: MESH.distance(np.zeros((10**15, 0, 3)), 0.1), "too_few_points", "robots without points"),
+        (lambda r, p: LinearMotion(np.zeros((10**15, 0, 3)), r, 0.1), "too_few_points", "`start`"),
+        (lambda r, p: BendingMotion(np.zeros((10**15, 0, 3)), r, 0.1), "no_sections", "`start`"),
+        (lambda r, p: MESH.clears_path(np.zeros((10**15, 0, 2, 3)), 0.1, 0.1, 0.1, 0.1), "too_few_points", "`shapes`"),
+        (lambda r, p: nested(MotionPath([LinearMotion(r[0], r[0], 0.1)]), p[0]), "nested_too_deep", "7 deep"),
+        (lambda r, p: doubled(LinearMotion(r[0], r[0], 0.1)), "nested_too_deep", "make one path"),
         (
             lambda r, p: MESH.clears_motion(LinearMotion(r[0], r[0], 0.1), radii=0.1, margin=1.0, resolution=0.1),
             "bad_type",

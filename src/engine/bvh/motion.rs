@@ -130,7 +130,7 @@ impl BvhSearch {
     ///
     /// # Errors
     /// - The margin or the resolution is negative or NaN, or the deviation is, or is not finite.
-    /// - There are no shapes, or they differ in their number of links or in radii.
+    /// - There are no shapes, or they differ in radii or in which segments have a length.
     /// - The resolution is finer than rounding, or than shapes so far apart can be divided.
     /// - The robot is out of range.
     pub fn clears_path(

@@ -19,6 +19,14 @@ impl TubesMemory {
     pub fn forget(&mut self) {
         self.last = None;
     }
+
+    /// A first upper bound: where the last query ended, if that is a place of these tubes.
+    fn first_bound(&self, tubes: &TwoTubes) -> FoundBetween {
+        match self.last.filter(|(sections, _)| tubes.have(*sections)) {
+            Some((sections, arcs)) => tubes.bound_at(sections, arcs),
+            None => tubes.first_bound(),
+        }
+    }
 }
 
 /// Both tubes in one frame.
@@ -44,11 +52,8 @@ pub(crate) fn clearance_between(
     memory: &mut TubesMemory,
     tolerance: Real,
 ) -> Result<RobotClearance, ProximityError> {
+    let best = memory.first_bound(tubes);
     let TubesMemory { beginning, pairs, last } = memory;
-    let best = match last.filter(|(sections, _)| tubes.have(*sections)) {
-        Some((sections, arcs)) => tubes.bound_at(sections, arcs),
-        None => tubes.first_bound(),
-    };
     tubes.begin(best.upper.max(tolerance), best.upper, beginning, pairs)?;
     let found = between_bounds(tubes, pairs, best, tolerance, |_, _, _| ())?;
     let BetweenBounds { lower, resolved, uncertainty, best } = found;
@@ -76,8 +81,14 @@ pub(crate) fn tubes_clear(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
+    let best = memory.first_bound(tubes);
+    if best.upper <= margin {
+        memory.last = Some((best.sections, best.arcs));
+        return Ok(Decision::Contact);
+    }
     let TubesMemory { beginning, pairs, last } = memory;
-    tubes.begin(margin.max(resolution), margin, beginning, pairs)?;
+    // Tubes that are far apart are seen to be so in few pieces.
+    tubes.begin(best.upper.max(resolution), margin, beginning, pairs)?;
     let (decision, found) = keeps(tubes, pairs, margin, resolution, None)?;
     if let Some(FoundBetween { sections, arcs, .. }) = found {
         *last = Some((sections, arcs));

@@ -40,6 +40,8 @@ pub struct LinearMotion {
     from: Vec<Vector>,
     to: Vec<Vector>,
     radii: Vec<Real>,
+    /// The segments of the input that the links stand for.
+    segments: Vec<u32>,
     /// None for capsules; else the links whose direction may get lost.
     fading: Option<Vec<usize>>,
 }
@@ -102,6 +104,7 @@ impl LinearMotion {
             from: vertices().map(|k| from[k]).collect(),
             to: vertices().map(|k| to[k]).collect(),
             radii: segments.iter().map(|&k| radii[k]).collect(),
+            segments: segments.iter().map(|&k| k as u32).collect(),
             fading: None,
         })
     }
@@ -138,7 +141,7 @@ impl LinearMotion {
 impl Motion for LinearMotion {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         let points = self.from.iter().zip(&self.to).map(|(&from, &to)| from + (to - from) * t);
-        tube.set_links(points, &self.radii, self.fading.is_some());
+        tube.set_links(points, &self.radii, &self.segments, self.fading.is_some());
         for &link in self.fading.iter().flatten() {
             tube.mark_fading(link);
         }

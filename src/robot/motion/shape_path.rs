@@ -22,17 +22,20 @@ pub(crate) struct ShapePath<'a> {
 
 impl<'a> ShapePath<'a> {
     /// # Errors
-    /// There are no shapes, or not all have as many links with the same radii; or the deviation is not finite or negative.
+    /// There are no shapes, or not all have links of the same segments with the same radii; or the deviation is not finite or
+    /// negative.
     pub(crate) fn new(shapes: &'a [Chain], deviation: Real) -> Result<Self, RobotError> {
         let Some(first) = shapes.first() else { return Err(RobotError::NoMotions { parameter: "shapes" }) };
         if !(0.0..Real::INFINITY).contains(&deviation) {
             return Err(RobotError::Negative { parameter: "deviation", value: deviation });
         }
-        let radii = |chain: &'a Chain| chain.links().iter().map(|link| link.radius());
-        let path = Self { shapes, deviation };
-        match shapes.iter().position(|shape| !radii(shape).eq(radii(first))) {
-            Some(other) => Err(RobotError::SectionsChange { t: other as Real / path.legs() as Real }),
-            None => Ok(path),
+        // A chain leaves out segments without length. Were others left out in another shape, links would stand for other stretches.
+        let links = |chain: &'a Chain| {
+            chain.links().iter().enumerate().map(|(number, link)| (chain.segment_of(number), link.radius()))
+        };
+        match shapes.iter().position(|shape| !links(shape).eq(links(first))) {
+            Some(index) => Err(RobotError::ShapesDiffer { index }),
+            None => Ok(Self { shapes, deviation }),
         }
     }
 
@@ -55,9 +58,11 @@ fn ends(chain: &Chain, link: usize) -> Option<[Vector; 2]> {
 impl Motion for ShapePath<'_> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         let ([from, to], share) = self.around(t);
-        let links = from.links().iter().zip(to.links()).map(|(from, to)| {
-            let between = |from: Vector, to: Vector| from + (to - from) * share;
-            ([between(from.start(), to.start()), between(from.end(), to.end())], from.radius())
+        let pairs = from.links().iter().zip(to.links()).enumerate();
+        let links = pairs.map(|(number, (one, other))| {
+            let between = |one: Vector, other: Vector| one + (other - one) * share;
+            let ends = [between(one.start(), other.start()), between(one.end(), other.end())];
+            (ends, one.radius(), from.segment_of(number) as u32)
         });
         tube.set_loose_links(links, self.deviation);
         Ok(Pose::IDENTITY)

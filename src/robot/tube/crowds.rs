@@ -12,7 +12,8 @@
 //!   within g of the one that stays, and bends no more than the samples show that are on the curve: those that do not
 //!   crowd, and for each crowd the place within the gap where the curve is. Or else the curve goes through all of them, and
 //!   in the segments before and behind bends no more than they show. That is left out if it would be by more than 1 rad
-//!   or within the radius, for which the tube would be refused.
+//!   or within the radius, for which the tube would be refused. Where a tube that was good would be refused because of a crowd,
+//!   that is none.
 //! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every chord to it; all bodies and
 //!   witnesses count g. A chord l long between samples with the gaps g1 and g2 has an end moved by g1 and another by g2. Of
 //!   two vectors v and w with |v - w| <= g = g1 + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g)
@@ -20,7 +21,7 @@
 //!   seems by no more than that for each of its segments, half of their lengths together is less by no more than half of
 //!   their g, and the curve between them is longer by no more than the share g / l.
 
-use super::segment::{Segment, curvature_from};
+use super::segment::{Segment, curvature_between};
 use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
@@ -81,7 +82,7 @@ fn find_within(samples: &[Vector], radii: &[Real], within: Real, one_place: Real
     while first < samples.len() {
         let apart = |k: usize| (samples[k] - samples[first]).length();
         let (mut next, mut gap): (usize, Real) = (first + 1, 0.0);
-        while next < samples.len() && next - first <= MOST && apart(next) <= within {
+        while next < samples.len() && next - first < MOST && apart(next) <= within {
             gap = gap.max(apart(next));
             next += 1;
         }
@@ -115,13 +116,19 @@ fn find_within(samples: &[Vector], radii: &[Real], within: Real, one_place: Real
     }
 }
 
-/// How much a segment next to samples that crowd bends at most, if the curve goes through all of them.
+/// How much a segment next to samples that crowd bends at most, if the curve goes through all of them: as if they did not crowd.
 fn bend_beside(samples: &[Vector], (from, to): (Vector, Vector), one_place: Real) -> Real {
     let Some(beside) = Segment::between(from, to, one_place) else { return 0.0 };
-    let within = samples.windows(2).filter_map(|pair| Segment::between(pair[0], pair[1], one_place));
-    within.fold(0.0, |most: Real, segment| {
-        most.max(curvature_from(segment.direction, &beside) + segment.noise / beside.length)
-    })
+    let (mut most, mut last): (Real, _) = (0.0, samples[0]);
+    for &sample in &samples[1..] {
+        // Between samples at one place there is no direction.
+        let Some(segment) = Segment::between(last, sample, one_place) else { continue };
+        if segment.length > one_place {
+            most = most.max(curvature_between(&segment, &beside));
+            last = sample;
+        }
+    }
+    most
 }
 
 /// What a segment next to a point that stands for samples bends, if the curve goes through all of them.

@@ -40,11 +40,13 @@ impl Tube {
         self.set_straight(links, Lasting::WhileAllNear);
     }
 
-    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball.
+    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball. `segments` are those of
+    /// the input that they stand for.
     pub(crate) fn set_links(
         &mut self,
         points: impl Iterator<Item = Vector>,
         radii: &[Real],
+        segments: &[u32],
         by_algorithm_1: bool,
     ) {
         let (mut ends, mut caps) = (std::mem::take(&mut self.ends), std::mem::take(&mut self.caps));
@@ -56,12 +58,13 @@ impl Tube {
             caps.clear();
             caps.resize(radii.len(), [Cap::Round; 2]);
         }
-        let links =
-            ends.windows(2).zip(radii).zip(&caps).zip(0..).map(|(((ends, &radius), &caps), segment)| {
+        let links = ends.windows(2).zip(radii).zip(&caps).zip(segments).map(
+            |(((ends, &radius), &caps), &segment)| {
                 let ends = [ends[0], ends[1]];
                 let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
                 Straight { ends, radius, caps, segment }
-            });
+            },
+        );
         self.set_straight(links, Lasting::WhileNear);
         (self.ends, self.caps) = (ends, caps);
     }
@@ -71,12 +74,11 @@ impl Tube {
     /// taken for two of them, which leaves out nothing: their centres are in the tube, and a ball around each holds its disc.
     pub(crate) fn set_loose_links(
         &mut self,
-        links: impl Iterator<Item = ([Vector; 2], Real)>,
+        links: impl Iterator<Item = ([Vector; 2], Real, u32)>,
         deviation: Real,
     ) {
-        let links = links.zip(0..);
         let links =
-            links.map(|((ends, radius), segment)| Straight { ends, radius, caps: [Cap::Round; 2], segment });
+            links.map(|(ends, radius, segment)| Straight { ends, radius, caps: [Cap::Round; 2], segment });
         self.set_straight(links, Lasting::Never);
         self.error = deviation;
         let count = self.sections.len();

@@ -88,7 +88,7 @@ pub struct Tube {
     /// The largest coordinate of the centreline, or its length, or more.
     reach: Real,
     /// Memory for samples that crowd.
-    crowds: Vec<Crowd>,
+    crowds: [Vec<Crowd>; 2],
     /// Memory for the next links: their ends and caps.
     ends: Vec<Vector>,
     caps: Vec<[Cap; 2]>,
@@ -263,7 +263,7 @@ impl Tube {
             deviation: 0.0,
             merged: 0.0,
             reach: 0.0,
-            crowds: Vec::new(),
+            crowds: Default::default(),
             ends: Vec::new(),
             caps: Vec::new(),
         }

@@ -65,7 +65,7 @@ impl Tube {
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
         // Coordinates that were computed in two ways may differ by so much.
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
-        let mut crowds = std::mem::take(&mut self.crowds);
+        let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
         crowds.clear();
         let (mut result, mut crowding) =
             self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
@@ -76,17 +76,18 @@ impl Tube {
                 Err(_) => None,
             };
             let is_good = result.is_ok();
+            good.clone_from(&crowds);
             if !at.is_some_and(|at| crowds::find(samples, radii, at, one_place, &mut crowds)) {
                 break;
             }
             (result, crowding) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
             if is_good && result.is_err() {
-                crowds.clear();
+                crowds.clone_from(&good);
                 (result, _) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
                 break;
             }
         }
-        self.crowds = crowds;
+        self.crowds = [crowds, good];
         result
     }
 
@@ -239,12 +240,14 @@ impl Tube {
                     None => {
                         let curvature = bend_at_end(section, end, bounds);
                         let from = if end == 0 { section.first as usize } else { section.last as usize };
-                        let near = |crowd: &&Crowd| crowd.point.abs_diff(from) <= FACE_SAMPLES;
-                        let off = given
+                        // In the order of their points.
+                        let first = given
                             .crowds
+                            .partition_point(|crowd| crowd.point.saturating_add(FACE_SAMPLES) < from);
+                        let near = given.crowds[first..]
                             .iter()
-                            .filter(near)
-                            .fold(0.0, |off: Real, crowd| off.max(2.0 * crowd.gap));
+                            .take_while(|crowd| crowd.point <= from.saturating_add(FACE_SAMPLES));
+                        let off = near.fold(0.0, |off: Real, crowd| off.max(2.0 * crowd.gap));
                         direction_at_end(ahead, stretch.len(), curvature, rounding + off)
                     }
                 };

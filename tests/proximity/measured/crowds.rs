@@ -86,3 +86,34 @@ fn a_pair_counts_in_the_uncertainty() {
     points[21] = arc(20.01);
     assert_eq!(width(&points), 0.0);
 }
+
+/// A curve that goes through all samples and bends as they show is covered, also where samples at one place are among those
+/// that crowd, and where it all but bends too much.
+#[test]
+fn a_curve_through_samples_that_crowd_is_covered() {
+    // Of a turn by the chord t at the end of a segment of 1 the curve beside it may leave that by k / 8.
+    let most = |from: Vector, to: Vector| {
+        let along = to - from;
+        let turn = (along / along.length() - Vector::Z).length();
+        turn / (0.5 * (1.0 + along.length())) / 8.0
+    };
+    let speck_beside = |points: &[Vector]| {
+        let tube = Tube::with_constant_radius(points, 0.2, None).unwrap();
+        let at = Vector::new(3.0, 0.0, 4.5);
+        super::speck(at).clearance(&tube, &Pose::IDENTITY, 0.01).unwrap().lower
+    };
+    let at = Vector::Z * 5.0;
+    let straight = |x: f64, range: std::ops::Range<u32>| range.map(move |k| Vector::new(x, 0.0, k.into()));
+    // Once more at one place, and a little off.
+    let off = Vector::new(0.004, 0.0, 5.01);
+    let twin = Vector::new(1e-14, 0.0, 5.0);
+    let points: Vec<_> = straight(0.0, 0..6).chain([twin, off]).chain(straight(0.0, 6..12)).collect();
+    let (lower, covered) = (speck_beside(&points), 2.8 - most(at, off));
+    assert!(lower <= covered, "{lower} {covered}");
+    // By half a radian, which is the most there may be.
+    let (apart, angle) = (1.0 / 33.0, 2.0 * (0.5 * 0.501_f64).asin());
+    let off = at + Vector::new(angle.sin(), 0.0, angle.cos()) * apart;
+    let points: Vec<_> = straight(0.0, 0..6).chain([off]).chain(straight(off.x, 6..12)).collect();
+    let (lower, covered) = (speck_beside(&points), 2.8 - most(at, off));
+    assert!(lower <= covered, "{lower} {covered}");
+}

@@ -190,3 +190,24 @@ fn short_links_do_not_reach_beyond_a_flat_tip() {
         assert_eq!(answer.decision, Decision::Contact, "{gap}: {answer:?}");
     }
 }
+
+/// Segments without length are no links, and are counted all the same where an answer names the segment of the input.
+#[test]
+fn the_segment_of_an_answer_is_that_of_the_input() {
+    let from = [Vector::Z * 2.0, Vector::Z * 2.0, Vector::new(1.0, 0.0, 2.0), Vector::new(2.0, 0.0, 1.5)];
+    let to = from.map(|point| point - Vector::Z);
+    let floor = [Vector::new(-9.0, -9.0, 0.0), Vector::new(9.0, -9.0, 0.0), Vector::new(0.0, 9.0, 0.0)];
+    let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]]).unwrap();
+    for motion in [LinearMotion::chain, LinearMotion::capsules].map(|new| new(&from, &to, &[0.1; 3]).unwrap())
+    {
+        // The last of three segments comes to 0.4.
+        let contact = search.clears_motion(&motion, 0.5, 1e-3).unwrap().contact.unwrap();
+        assert_eq!(contact.segment, 2);
+        let first = search.time_of_contact(&motion, 0.5, 1e-3).unwrap().contact.unwrap();
+        assert_eq!(first.segment, 2);
+        assert_eq!(search.clearance_of_motion(&motion, 0.01).unwrap().segment, 2);
+    }
+    let shapes = [&from, &to].map(|points| Chain::capsules(points, &[0.1; 3]).unwrap());
+    let contact = search.clears_path(&shapes, 0.01, 0.5, 1e-3).unwrap().contact.unwrap();
+    assert_eq!(contact.segment, 2);
+}

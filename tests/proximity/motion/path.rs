@@ -144,7 +144,15 @@ fn paths_that_are_none_are_refused() {
     let none = refused(&mut search, &[], 0.0);
     assert_eq!(none, ProximityError::Motion(RobotError::NoMotions { parameter: "shapes" }));
     let differ = refused(&mut search, &[chain(0.1), chain(0.1), chain(0.2)], 0.0);
-    assert_eq!(differ, ProximityError::Motion(RobotError::SectionsChange { t: 1.0 }));
+    assert_eq!(differ, ProximityError::Motion(RobotError::ShapesDiffer { index: 2 }));
+    // Segments without length in other places: between the two, links would stand for other stretches.
+    let turning = |points: [[Real; 2]; 4]| {
+        Chain::capsules(&points.map(|[y, z]| Vector::new(0.0, y, z)), &[0.5; 3]).unwrap()
+    };
+    let first = turning([[0.0, 0.0], [0.0, 0.0], [20.0, 0.0], [40.0, 0.0]]);
+    let second = turning([[0.0, 20.0], [20.0, 20.0], [20.0, 20.0], [40.0, 20.0]]);
+    let differ = refused(&mut search, &[first, second], 0.0);
+    assert_eq!(differ, ProximityError::Motion(RobotError::ShapesDiffer { index: 1 }));
     for deviation in [-1.0, Real::NAN] {
         let refused = refused(&mut search, &[chain(0.1)], deviation);
         assert!(matches!(refused, ProximityError::Negative { parameter: "deviation", .. }), "{refused}");

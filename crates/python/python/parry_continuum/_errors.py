@@ -12,7 +12,7 @@ class ContinuumError(ValueError):
     ----------
     kind : str
         What is wrong in one word, for programs. The words are those of the Rust library's ``kind()``, and
-        ``"bad_shape"``, ``"bad_type"``, ``"bad_caps"``, ``"file"`` and ``"no_threads"``. ``"defect"`` is an error
+        ``"bad_shape"``, ``"bad_type"``, ``"bad_caps"``, ``"nested_too_deep"``, ``"file"`` and ``"no_threads"``. ``"defect"`` is an error
         of the library itself.
     robot : int or None
         Which robot of a batch it is about.

@@ -94,6 +94,13 @@ impl Sections {
         let numbers = Numbers::new(given, name)?;
         let (count, each) = match *numbers.shape() {
             [each, 3] => (None, each),
+            [1.., 0, 3] => {
+                let text = format!(
+                    "`{name}` has the shape {}, no sections; give at least one",
+                    shape_text(numbers.shape())
+                );
+                return Err(Refused::other("no_sections", text).raise(given.py(), None));
+            }
             [count, each, 3] => (Some(count), each),
             ref shape => {
                 let text = format!(

@@ -30,6 +30,7 @@ use std::sync::Arc;
 #[pyclass(frozen, subclass, module = "parry_continuum")]
 pub(crate) struct Motion {
     motions: Arc<Vec<Moving>>,
+    size: Size,
     /// How many there are; none where one motion was given, without a first index.
     count: Option<usize>,
 }
@@ -78,7 +79,12 @@ impl Motion {
             }
             py.check_signals()?;
         }
-        Ok(Self { motions: Arc::new(motions), count })
+        Ok(Self { motions: Arc::new(motions), size: Size::ONE, count })
+    }
+
+    /// The same, made of others.
+    fn of(self, size: Size) -> Self {
+        Self { size, ..self }
     }
 
     /// An object of a class of motions.
@@ -89,6 +95,38 @@ impl Motion {
     /// How many motions there are, and those: one stands for all of a batch.
     fn parts(&self) -> (Option<usize>, Arc<Vec<Moving>>) {
         (self.count, Arc::clone(&self.motions))
+    }
+}
+
+/// How many motions each of a batch is made of, and how deep they are in one another.
+#[derive(Clone, Copy)]
+struct Size {
+    parts: usize,
+    depth: usize,
+}
+
+impl Size {
+    const ONE: Self = Self { parts: 1, depth: 1 };
+
+    /// The size of what is made of these. Each level asks the one below it several times, so that no more of them are taken.
+    fn of(py: Python<'_>, parts: impl Iterator<Item = Self>) -> PyResult<Self> {
+        const MOST_PARTS: usize = 1 << 20;
+        const MOST_DEEP: usize = 6;
+        let mut size = Self { parts: 0, depth: 0 };
+        for part in parts {
+            size.parts = size.parts.saturating_add(part.parts);
+            size.depth = size.depth.max(part.depth);
+        }
+        size.depth += 1;
+        if size.depth <= MOST_DEEP && size.parts <= MOST_PARTS {
+            return Ok(size);
+        }
+        let text = format!(
+            "there are {} motions, {} deep in one another, more than {MOST_PARTS} or deeper than {MOST_DEEP}; make one path of all \
+             motions, and move the base of that",
+            size.parts, size.depth
+        );
+        Err(Refused::other("nested_too_deep", text).raise(py, None))
     }
 }
 
@@ -124,6 +162,9 @@ pub(crate) struct SomeMotions {
 impl Asked for Motion {
     type Block = SomeMotions;
     type One<'a> = &'a Moving;
+
+    // One may take as long as thousands of robots.
+    const FEW: usize = 2;
 
     fn count(&self) -> Option<usize> {
         self.count

@@ -1,6 +1,6 @@
 //! Motions one after another.
 
-use super::{Motion, Moving, at, together};
+use super::{Motion, Moving, Size, at, together};
 use pyo3::prelude::*;
 
 /// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
@@ -39,10 +39,11 @@ impl MotionPath {
     fn new(py: Python<'_>, motions: Vec<Bound<'_, Motion>>) -> PyResult<PyClassInitializer<Self>> {
         let parts: Vec<_> = motions.iter().map(|motion| motion.get().parts()).collect();
         let count = together(py, parts.iter().map(|(count, _)| ("motions", *count)))?;
+        let size = Size::of(py, motions.iter().map(|motion| motion.get().size))?;
         let motion = Motion::new(py, count, |place| {
             let legs = parts.iter().map(|(_, motions)| at(motions, place).clone());
             Ok(Moving::Path(parry_continuum::MotionPath::new(legs.collect())?))
         })?;
-        Ok(motion.into_class(Self))
+        Ok(motion.of(size).into_class(Self))
     }
 }

@@ -1,7 +1,7 @@
 //! A motion whose base moves as well.
 
 use super::way::Way;
-use super::{Motion, Moving, at};
+use super::{Motion, Moving, Size, at};
 use pyo3::prelude::*;
 
 /// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is pushed or rolled while its
@@ -51,11 +51,12 @@ impl MovingBase {
         let way = Way::new(start_pose, end_pose)?;
         let (count, motions) = motion.get().parts();
         let count = way.count(py, "motion", count)?;
-        let motion = Motion::new(py, count, |place| {
+        let size = Size::of(py, std::iter::once(motion.get().size))?;
+        let moved = Motion::new(py, count, |place| {
             let motion = at(&motions, place).clone();
             let moved = parry_continuum::MovingBase::new(motion, way.poses(place)?)?;
             Ok(Moving::OnBase(Box::new(moved)))
         })?;
-        Ok(motion.into_class(Self))
+        Ok(moved.of(size).into_class(Self))
     }
 }

@@ -109,8 +109,8 @@ impl Mesh {
     ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
     ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.
     /// turn : float, optional
-    ///     How far the robot's direction may be, in rad, from the curve's near its flat ends: at its two ends, and at steps in
-    ///     radius. With a ``deviation`` nothing is known of that otherwise, and the bounds are a radius apart at flat ends.
+    ///     The largest angle, in rad, between the robot's true direction and the curve's at flat ends: its two ends, and steps in
+    ///     radius. Without it, a ``deviation`` leaves the bounds a radius apart there.
     ///
     /// Returns
     /// -------

@@ -19,8 +19,8 @@ impl Mesh {
     /// what the kinematics or a sensor errs.
     ///
     /// ``Decision.CLEAR`` is proven for every such tube at every time. ``Decision.CONTACT`` says that every such tube is at most the
-    /// margin away at the time that is named: of S shapes the first one is at 0, the next at 1 / (S - 1). At flat ends, whose
-    /// direction a deviation does not tell, the tube counts as a ball, and touches for certain only where the ball's centre does.
+    /// margin away at the time that is named: of S shapes the first one is at 0, the next at 1 / (S - 1). The deviation
+    /// says nothing of how a flat end is turned. So for ``CLEAR`` a flat end counts as a whole ball, and for ``CONTACT`` as its centre.
     ///
     /// Parameters
     /// ----------
@@ -43,7 +43,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     A number is negative or NaN, the resolution is finer than rounding, there are no shapes, or one is no robot.
+    ///     A number is negative or NaN, the resolution is finer than rounding, there are no shapes, one is no robot, or segments
+    ///     without length are others in one shape than in the first.
     ///
     /// Examples
     /// --------

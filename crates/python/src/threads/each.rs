@@ -8,9 +8,6 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Fewer robots are answered on the thread that asks: to wake others would take longer.
-const FEW: usize = 16;
-
 /// A worker takes so many robots at a time, or fewer: enough that taking them costs nothing.
 const SHARE: usize = 8;
 
@@ -26,6 +23,9 @@ pub(crate) trait Asked {
     type Block: Default + Sync;
     /// One of a block.
     type One<'a>;
+
+    /// Fewer are answered on the thread that asks: to wake others would take longer.
+    const FEW: usize = 16;
 
     /// How many the batch has; none where one was given by itself.
     fn count(&self) -> Option<usize>;
@@ -84,7 +84,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
 ) -> PyResult<()> {
     let of_batch = |robot: usize| asked.count().map(|_| robot);
     let (count, mut block, mut answers) = (asked.len(), Q::Block::default(), Vec::new());
-    let (mut start, mut chunk) = (0, 4 * FEW);
+    let (mut start, mut chunk) = (0, Q::FEW);
     while start < count {
         let end = count.min(start + chunk);
         let begin = Instant::now();
@@ -92,7 +92,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
         answers.resize((end - start) * width, empty.clone());
         asked.copy(start..end, &mut block);
         let rows = Rows::<Q, _> { block: &block, width, answer: &answer };
-        let refused = if count < FEW {
+        let refused = if count < Q::FEW {
             alone(py, lender, |session| rows.ask(session, 0, &mut answers))?
         } else {
             rows.ask_on_all_cores(py, lender, &mut answers)?
@@ -108,7 +108,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
             break;
         }
         let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
-        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(FEW, LARGEST_CHUNK);
+        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(2, LARGEST_CHUNK);
         start = end;
     }
     Ok(())
