@@ -218,3 +218,16 @@ fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
         self_clears(&robot, 0.99 * apart.distance).unwrap() && !self_clears(&robot, apart.distance).unwrap()
     );
 }
+
+/// A link that comes back along the one before, whichever way rounding turns its axis.
+#[test]
+fn a_robot_that_is_folded_is_refused() {
+    let mut random = Random::new(7);
+    for _ in 0..200 {
+        let (start, joint) = (random.point() * 50.0, random.point() * 50.0);
+        for radius in [0.0, 0.1, 5.0] {
+            let robot = Chain::capsules(&[start, joint, start], &[radius; 2]).unwrap();
+            assert_eq!(self_minimum(&robot).unwrap_err().kind(), "joint_too_sharp");
+        }
+    }
+}

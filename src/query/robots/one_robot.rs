@@ -84,8 +84,10 @@ impl Turns {
             let (sine, cosine) = (last.cross(axis).length(), last.dot(axis));
             let radius = pair[0].radius().max(pair[1].radius());
             let length = pair[0].length().min(pair[1].length());
-            // tan(angle / 2) = sin / (1 + cos), without a division.
-            if 2.0 * radius * sine > length * (1.0 + cosine) || cosine <= -1.0 {
+            // tan(angle / 2) = sin / (1 + cos), without a division. Of a link that comes back along the one before, rounding
+            // leaves neither.
+            let is_folded = 1.0 + cosine <= 16.0 * Real::UNIT_ROUNDOFF;
+            if 2.0 * radius * sine > length * (1.0 + cosine) || is_folded {
                 let angle = libm::atan2(sine, cosine);
                 return Err(ProximityError::JointTooSharp { joint: joint + 1, angle, radius, length });
             }
@@ -276,9 +278,9 @@ impl<'a> OneRobot<'a> {
     }
 }
 
-/// Pairs of links, the second after the first, with a turn of at least pi between them.
+/// Pairs of links that share no joint, the second after the first, with a turn of at least pi between them.
 fn asks(turns: &Turns) -> impl Fn([Range<usize>; 2]) -> bool {
-    |[first, second]| turns.reach(PI, first.start, second.end - 1)
+    |[first, second]| second.end > first.start + 2 && turns.reach(PI, first.start, second.end - 1)
 }
 
 fn limit(best: &Option<RobotProximity>) -> Limit {
