@@ -33,15 +33,30 @@ impl PlacedLink {
         self.nearest_of_links(unit, &pair.closest(&pair.axes(), |mask| mask))
     }
 
-    /// The nearest points of the flat face at one of its ends and another link.
+    /// The nearest points of the flat face at one of its ends and another link. A link whose length vanishes beside the other
+    /// has no direction: it is measured whole.
     pub(crate) fn face_to_link(&self, end: usize, other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
-        self.nearest_of_links(unit, &pair.closest_to_cap(end_of(&pair.first, end), |mask| mask))
+        let has_direction = pair.first.axis.norm_squared() > 0.0;
+        let closest = if has_direction {
+            pair.closest_to_cap(end_of(&pair.first, end), |mask| mask)
+        } else {
+            pair.closest(&pair.axes(), |mask| mask)
+        };
+        self.nearest_of_links(unit, &closest)
     }
 
-    /// The nearest points of the flat faces at one end of each link.
+    /// The nearest points of the flat faces at one end of each link. A link without direction is measured whole.
     pub(crate) fn face_to_face(&self, ends: [usize; 2], other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
+        let [first, second] = [pair.first.axis, pair.second.axis].map(|axis| axis.norm_squared() > 0.0);
+        if !second {
+            return self.face_to_link(ends[0], other);
+        }
+        if !first {
+            let turned = other.face_to_link(ends[1], self);
+            return NearestOfLinks { on_first: turned.on_second, on_second: turned.on_first, ..turned };
+        }
         let centres = [end_of(&pair.first, ends[0]), pair.second_start + end_of(&pair.second, ends[1])];
         self.nearest_of_links(unit, &pair.closest_caps(centres))
     }
