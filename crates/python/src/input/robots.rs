@@ -77,7 +77,7 @@ fn points<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Numbers<'py>,
     match *numbers.shape() {
         [each, 3] => Ok((numbers, None, each)),
         // An array without numbers may have any number of rows.
-        [1.., 0, 3] => {
+        [(1..), 0, 3] => {
             let text = format!(
                 "`{name}` has the shape {}, robots without points; give at least two points for each",
                 shape_text(numbers.shape())
@@ -117,7 +117,7 @@ impl<'py> Robots<'py> {
     pub(crate) fn paths(name: &str, given: &Bound<'py, PyAny>, radii: &Bound<'py, PyAny>) -> PyResult<Self> {
         let points = Numbers::new(given, name)?;
         let (count, points_each) = match *points.shape() {
-            [.., 1.., 0, 3] | [1.., 0, _, 3] => {
+            [.., (1..), 0, 3] | [(1..), 0, _, 3] => {
                 let text = format!(
                     "`{name}` has the shape {}, paths without shapes or shapes without points; give at least one shape, of at least \
                      two points",

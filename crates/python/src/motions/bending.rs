@@ -94,7 +94,7 @@ impl Sections {
         let numbers = Numbers::new(given, name)?;
         let (count, each) = match *numbers.shape() {
             [each, 3] => (None, each),
-            [1.., 0, 3] => {
+            [(1..), 0, 3] => {
                 let text = format!(
                     "`{name}` has the shape {}, no sections; give at least one",
                     shape_text(numbers.shape())
