@@ -57,6 +57,7 @@ pub(crate) struct Block {
 }
 
 /// One robot of a block.
+#[derive(Clone, Copy)]
 pub(crate) struct Given<'a> {
     /// Its place in the batch.
     pub number: usize,

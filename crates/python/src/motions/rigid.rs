@@ -5,7 +5,7 @@ use super::{Motion, Moving};
 use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Robots};
 use crate::queries::clearance::{Stated, tube, tubes};
-use crate::queries::distance::{no_chain, set_chain};
+use crate::queries::distance::set_chain;
 use crate::threads::Asked;
 use parry_continuum::Tube;
 use pyo3::prelude::*;
@@ -57,9 +57,7 @@ impl RigidMotion {
     ) -> PyResult<PyClassInitializer<Self>> {
         let robots = Robots::new("points", points, radii, None)?;
         let motion = rigid(points.py(), &robots, &Way::new(start_pose, end_pose)?, |robot| {
-            let mut chain = None;
-            set_chain(&mut chain, robot, caps)?;
-            Ok(Tube::from(&chain.ok_or_else(no_chain)?))
+            Ok(Tube::from(set_chain(&mut None, robot, caps)?))
         })?;
         Ok(motion.into_class(Self))
     }

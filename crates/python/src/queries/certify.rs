@@ -1,6 +1,6 @@
 //! Proofs of answers.
 
-use super::distance::no_chain;
+use super::distance::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Numbers, Robots, shape_text};
 use crate::mesh::Mesh;
@@ -70,8 +70,7 @@ impl Mesh {
         let triangles = triangles.values().to_vec();
         let mut bounds: Vec<[f64; 2]> = Vec::with_capacity(triangles.len());
         let ask = |session: &mut Session, robot: &Given<'_>, rows: &mut [[f64; 2]]| {
-            session.set_chain(robot, caps)?;
-            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let chain = set_chain(&mut session.chain, robot, caps)?;
             let pose = robot.pose()?;
             let named = &triangles[segments * robot.number..segments * (robot.number + 1)];
             let asked: Vec<_> = (0..named.len()).filter(|&segment| named[segment] >= 0.0).collect();

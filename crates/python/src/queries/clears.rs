@@ -1,6 +1,6 @@
 //! Whether a robot keeps a margin.
 
-use super::distance::no_chain;
+use super::distance::set_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, members, side_value};
@@ -47,8 +47,7 @@ impl Mesh {
         let robots = Robots::new("points", points, radii, pose)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            session.set_chain(robot, caps)?;
-            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let chain = set_chain(&mut session.chain, robot, caps)?;
             row[0] = session.search.clears(chain, &robot.pose()?, margin)?;
             Ok(())
         };
@@ -90,8 +89,7 @@ impl Mesh {
         let robots = Robots::new("points", points, radii, pose)?;
         let (mut clears, mut bases) = (Vec::new(), Vec::new());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [(bool, i8)]| {
-            session.set_chain(robot, caps)?;
-            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let chain = set_chain(&mut session.chain, robot, caps)?;
             let found = session.search.clears_inside(chain, &robot.pose()?, margin)?;
             row[0] = (found.clears, side_value(found.base));
             Ok(())

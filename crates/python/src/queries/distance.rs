@@ -6,43 +6,33 @@ use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::Chain;
-use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{LinkProximity, Proximity};
 use pyo3::prelude::*;
 
 impl Session {
-    /// Makes the session's chain that of a robot.
-    pub(crate) fn set_chain(&mut self, robot: &Given<'_>, caps: Caps) -> Result<(), Refused> {
-        set_chain(&mut self.chain, robot, caps)
-    }
-
     /// The closest link and triangle of a robot.
-    pub(crate) fn minimum(
-        &mut self,
-        robot: &Given<'_>,
-        caps: Caps,
-    ) -> Result<(LinkProximity, Pose), Refused> {
-        self.set_chain(robot, caps)?;
-        let pose = robot.pose()?;
-        let chain = self.chain.as_ref().ok_or_else(no_chain)?;
-        Ok((self.search.minimum(chain, &pose)?, pose))
+    pub(crate) fn minimum(&mut self, robot: &Given<'_>, caps: Caps) -> Result<LinkProximity, Refused> {
+        let chain = set_chain(&mut self.chain, robot, caps)?;
+        Ok(self.search.minimum(chain, &robot.pose()?)?)
     }
 }
 
 /// Makes a chain that of a robot, in the memory that it has.
-pub(crate) fn set_chain(chain: &mut Option<Chain>, robot: &Given<'_>, caps: Caps) -> Result<(), Refused> {
-    match (chain, caps) {
-        (Some(chain), Caps::Fitted) => chain.set_centreline(robot.points, robot.radii)?,
-        (chain, Caps::Fitted) => *chain = Some(Chain::from_centreline(robot.points, robot.radii)?),
-        (chain, Caps::Capsules) => *chain = Some(Chain::capsules(robot.points, robot.radii)?),
-        (chain, Caps::Cylinders) => *chain = Some(Chain::cylinders(robot.points, robot.radii)?),
-    }
-    Ok(())
-}
-
-/// `set_chain` leaves one.
-pub(crate) fn no_chain() -> Refused {
-    Refused::other("defect", "no chain was made; this is a defect of parry-continuum, please report it")
+pub(crate) fn set_chain<'a>(
+    chain: &'a mut Option<Chain>,
+    robot: &Given<'_>,
+    caps: Caps,
+) -> Result<&'a Chain, Refused> {
+    Ok(match (chain, caps) {
+        (Some(chain), Caps::Fitted) => {
+            chain.set_centreline(robot.points, robot.radii)?;
+            chain
+        }
+        (chain, Caps::Fitted) => chain.insert(Chain::from_centreline(robot.points, robot.radii)?),
+        (chain, Caps::Capsules) => chain.insert(Chain::capsules(robot.points, robot.radii)?),
+        (chain, Caps::Cylinders) => chain.insert(Chain::cylinders(robot.points, robot.radii)?),
+    })
 }
 
 #[pymethods]
@@ -94,7 +84,7 @@ impl Mesh {
         let robots = Robots::new("points", points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [f64]| {
-            row[0] = session.minimum(robot, caps)?.0.distance;
+            row[0] = session.minimum(robot, caps)?.distance;
             Ok(())
         };
         ask_each(py, &self.engine(py), &robots, (f64::NAN, 1), ask, |_, found| distances.extend(found))?;
@@ -138,7 +128,7 @@ impl Mesh {
         let robots = Robots::new("points", points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<LinkProximity>]| {
-            row[0] = Some(session.minimum(robot, caps)?.0);
+            row[0] = Some(session.minimum(robot, caps)?);
             Ok(())
         };
         ask_each(py, &self.engine(py), &robots, (None, 1), ask, |_, found| {

@@ -5,7 +5,7 @@
 //! respect to p, that with respect to t is the sum over the two ends, and that with respect to R is the sum of g a^T, with g
 //! the derivative with respect to an end. All other points and radii do not count: only the closest link moves the distance.
 
-use super::distance::no_chain;
+use super::distance::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
@@ -36,8 +36,9 @@ const NOTHING: Row = Row {
 };
 
 fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refused> {
-    let (closest, pose) = session.minimum(robot, caps)?;
-    let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+    let chain = set_chain(&mut session.chain, robot, caps)?;
+    let pose = robot.pose()?;
+    let closest = session.search.minimum(chain, &pose)?;
     let contact = session.search.contact(chain, &pose, &closest)?;
     let segment = closest.segment as usize;
     let mut row = Row { value: contact.depth.unwrap_or(closest.distance), segment, ..NOTHING };

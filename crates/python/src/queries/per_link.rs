@@ -1,6 +1,6 @@
 //! How near each link of a robot is.
 
-use super::distance::no_chain;
+use super::distance::set_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, array};
@@ -72,8 +72,7 @@ impl Mesh {
         let (mut on_robot, mut on_mesh) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut triangle = Vec::with_capacity(count);
         let ask = |session: &mut Session, robot: &Given<'_>, rows: &mut [Row]| {
-            session.set_chain(robot, caps)?;
-            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let chain = set_chain(&mut session.chain, robot, caps)?;
             session.search.per_link(chain, &robot.pose()?, &mut session.links)?;
             for found in &session.links {
                 rows[found.segment as usize] = Row {

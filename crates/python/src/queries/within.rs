@@ -1,6 +1,6 @@
 //! Every contact of a robot.
 
-use super::distance::no_chain;
+use super::distance::set_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
 use crate::output::{answer, rows};
@@ -67,8 +67,7 @@ impl Mesh {
         let mut offsets = Vec::with_capacity(robots.len() + 1);
         offsets.push(0_i64);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<(Contact, i64)>]| {
-            session.set_chain(robot, caps)?;
-            let chain = session.chain.as_ref().ok_or_else(no_chain)?;
+            let chain = set_chain(&mut session.chain, robot, caps)?;
             session.search.within(chain, &robot.pose()?, margin, prominence, &mut session.contacts)?;
             row[0] = session.contacts.iter().map(|contact| (*contact, robot.number as i64)).collect();
             Ok(())

@@ -2,7 +2,7 @@
 
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
-use crate::queries::distance::{no_chain, set_chain};
+use crate::queries::distance::set_chain;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use pyo3::prelude::*;
@@ -16,28 +16,12 @@ pub(super) fn place<'a>(
     robot: &Given<'a>,
     caps: Caps,
 ) -> Result<Vec<Placed<'a>>, Refused> {
-    set_chain_at(chains, 0, robot, caps)?;
-    let mut placed = vec![(robot.points, robot.pose()?)];
-    let mut other = robot.other();
-    while let Some(robot) = other {
-        set_chain_at(chains, placed.len(), &robot, caps)?;
-        placed.push((robot.points, robot.pose()?));
-        other = robot.other();
+    let robots: Vec<_> = std::iter::successors(Some(*robot), Given::other).collect();
+    if chains.len() < robots.len() {
+        chains.resize_with(robots.len(), || None);
     }
-    let chains = chains.iter().map(|chain| chain.as_ref().ok_or_else(no_chain));
-    placed.into_iter().zip(chains).map(|((points, pose), chain)| Ok((chain?, pose, points))).collect()
-}
-
-fn set_chain_at(
-    chains: &mut Vec<Option<Chain>>,
-    place: usize,
-    robot: &Given<'_>,
-    caps: Caps,
-) -> Result<(), Refused> {
-    if chains.len() <= place {
-        chains.resize_with(place + 1, || None);
-    }
-    set_chain(&mut chains[place], robot, caps)
+    let placed = chains.iter_mut().zip(&robots);
+    placed.map(|(chain, robot)| Ok((set_chain(chain, robot, caps)?, robot.pose()?, robot.points))).collect()
 }
 
 /// Each robot of a list holds the next one.

@@ -1,11 +1,10 @@
 //! How near two curved tubes are, between bounds.
 
-use super::{Pairs, RobotPair, Session};
+use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
 use crate::input::{Given, Robots};
 use crate::output::{answer, array, array_or_number, decision_value, flat, members, texts};
 use crate::queries::clearance::{Stated, tube, tubes};
-use crate::queries::distance::no_chain;
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
@@ -23,7 +22,7 @@ impl Session {
         stated: Both,
         ask: impl FnOnce(&mut proximity::RobotPair, [(&Tube, &Pose); 2]) -> Result<A, ProximityError>,
     ) -> Result<A, Refused> {
-        let other = robot.other().ok_or_else(no_chain)?;
+        let other = second(robot)?;
         let [first, second] = [tube(robot, stated[0])?, tube(&other, stated[1])?];
         let poses = [robot.pose()?, other.pose()?];
         Ok(ask(&mut self.pair, [(&first, &poses[0]), (&second, &poses[1])])?)

@@ -9,14 +9,14 @@ pub(crate) use answers::segment_of;
 pub(crate) use functions::{between, clears_between, self_clears, self_minimum};
 pub(crate) use robot_pair::RobotPair;
 
-use super::distance::{no_chain, set_chain};
+use super::distance::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
 use crate::output::array_or_number;
 use crate::threads::{Asked, Held, Lender, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
 use parry_continuum::Chain;
-use parry_continuum::parry::math::Pose;
+use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{self, RobotProximity};
 use pyo3::prelude::*;
 
@@ -43,27 +43,34 @@ impl Lender for Pairs {
     }
 }
 
-impl Session {
-    fn place(&mut self, robot: &Given<'_>, caps: Caps) -> Result<[Pose; 2], Refused> {
-        let other = robot.other().ok_or_else(no_chain)?;
-        let [first, second] = &mut self.chains;
-        set_chain(first, robot, caps)?;
-        set_chain(second, &other, caps)?;
-        Ok([robot.pose()?, other.pose()?])
-    }
+/// A pair of robots in the chains of a session: who is asked about them, their poses and points, and memory for the answers.
+struct Placed<'a> {
+    pair: &'a mut proximity::RobotPair,
+    chains: [&'a Chain; 2],
+    poses: [Pose; 2],
+    points: [&'a [Vector]; 2],
+    found: &'a mut Vec<RobotProximity>,
+}
 
-    fn parts(&mut self) -> Result<Parts<'_>, Refused> {
-        let Self { pair, chains, found } = self;
-        match chains {
-            [Some(first), Some(second)] => Ok((pair, [first, second], found)),
-            [Some(first), None] => Ok((pair, [first, first], found)),
-            _ => Err(no_chain()),
-        }
+impl Session {
+    fn place<'a>(&'a mut self, robot: &Given<'a>, caps: Caps) -> Result<Placed<'a>, Refused> {
+        let other = second(robot)?;
+        let Self { pair, chains: [one, two], found } = self;
+        let chains = [set_chain(one, robot, caps)?, set_chain(two, &other, caps)?];
+        let (poses, points) = ([robot.pose()?, other.pose()?], [robot.points, other.points]);
+        Ok(Placed { pair, chains, poses, points, found })
     }
 }
 
-/// Who is asked, about which chains, and memory for the answers.
-type Parts<'a> = (&'a mut proximity::RobotPair, [&'a Chain; 2], &'a mut Vec<RobotProximity>);
+/// The second robot of a pair.
+fn second<'a>(robot: &Given<'a>) -> Result<Given<'a>, Refused> {
+    robot.other().ok_or_else(|| {
+        Refused::other(
+            "defect",
+            "a pair has one robot; this is a defect of parry-continuum, please report it",
+        )
+    })
+}
 
 /// Two robots or two batches, or one robot and a batch.
 fn pairs<'py>(
@@ -78,11 +85,9 @@ impl Pairs {
     fn minimum<'py>(&self, py: Python<'py>, robots: &Robots<'py>, caps: Caps) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
-            let poses = session.place(robot, caps)?;
-            let other = robot.other().ok_or_else(no_chain)?;
-            let (pair, chains, _) = session.parts()?;
+            let Placed { pair, chains, poses, points, .. } = session.place(robot, caps)?;
             let found = pair.minimum(chains[0], &poses[0], chains[1], &poses[1])?;
-            row[0] = Some(Row::new(found, chains, [robot.points, other.points]));
+            row[0] = Some(Row::new(found, chains, points));
             Ok(())
         };
         ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;
@@ -98,12 +103,10 @@ impl Pairs {
         let segments = robots.segments_each();
         let mut rows = Vec::with_capacity(robots.len() * segments);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
-            let poses = session.place(robot, caps)?;
-            let other = robot.other().ok_or_else(no_chain)?;
-            let (pair, chains, found) = session.parts()?;
+            let Placed { pair, chains, poses, points, found } = session.place(robot, caps)?;
             pair.per_link(chains[0], &poses[0], chains[1], &poses[1], found)?;
             for found in found.iter() {
-                let found = Row::new(*found, chains, [robot.points, other.points]);
+                let found = Row::new(*found, chains, points);
                 if let Some(row) =
                     usize::try_from(found.segments[0]).ok().and_then(|place| row.get_mut(place))
                 {
@@ -125,12 +128,9 @@ impl Pairs {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (mut rows, mut offsets) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<Row>]| {
-            let poses = session.place(robot, caps)?;
-            let other = robot.other().ok_or_else(no_chain)?;
-            let (pair, chains, found) = session.parts()?;
+            let Placed { pair, chains, poses, points, found } = session.place(robot, caps)?;
             pair.within(chains[0], &poses[0], chains[1], &poses[1], margin, found)?;
-            row[0] =
-                found.iter().map(|found| Row::new(*found, chains, [robot.points, other.points])).collect();
+            row[0] = found.iter().map(|found| Row::new(*found, chains, points)).collect();
             Ok(())
         };
         ask_each(py, self, robots, (Vec::new(), 1), ask, |_, found| {
@@ -151,8 +151,7 @@ impl Pairs {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            let poses = session.place(robot, caps)?;
-            let (pair, chains, _) = session.parts()?;
+            let Placed { pair, chains, poses, .. } = session.place(robot, caps)?;
             row[0] = pair.clears(chains[0], &poses[0], chains[1], &poses[1], margin)?;
             Ok(())
         };
@@ -168,9 +167,9 @@ impl Pairs {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
-            set_chain(&mut session.chains[0], robot, caps)?;
-            let (pair, [chain, _], _) = session.parts()?;
-            row[0] = pair.self_minimum(chain)?.map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
+            let chain = set_chain(&mut session.chains[0], robot, caps)?;
+            row[0] =
+                session.pair.self_minimum(chain)?.map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
             Ok(())
         };
         ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;
@@ -186,9 +185,8 @@ impl Pairs {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            set_chain(&mut session.chains[0], robot, caps)?;
-            let (pair, [chain, _], _) = session.parts()?;
-            row[0] = pair.self_clears(chain, margin)?;
+            let chain = set_chain(&mut session.chains[0], robot, caps)?;
+            row[0] = session.pair.self_clears(chain, margin)?;
             Ok(())
         };
         ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;
