@@ -16,6 +16,18 @@ pub fn between<'a>(page: &'a str, mark: &str) -> Option<&'a str> {
     parted(page, mark).map(|[_, between, _]| between)
 }
 
+/// What is written alone needs its place in a page.
+///
+/// # Errors
+/// The page has no such marks.
+pub fn check_chapter(mark: &str, path: &Path) -> Result<(), String> {
+    if fs::read_to_string(path).is_ok_and(|page| between(&page, mark).is_some()) {
+        Ok(())
+    } else {
+        Err(format!("{} has no such chapter; write it whole, without --only", path.display()))
+    }
+}
+
 /// Puts `text` between two marks of the README beside the directory `docs`, if there is one
 /// that has these marks.
 ///

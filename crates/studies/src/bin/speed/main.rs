@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
-//! `--out` of its own, is a rehearsal. `--only rare` and `--only robots` measure that
-//! chapter again and leave the others as they are.
+//! `--out` of its own, is a rehearsal. `--only rare` and `--only robots` measure that chapter
+//! again and leave the others as they are.
 
 mod exhaustive;
 mod goals;
@@ -90,10 +90,7 @@ fn measure(options: &Options) -> Result<(), String> {
             Chapter::Rare => rare::MARK,
             Chapter::Robots => robots::MARK,
         };
-        let is_there = fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, mark).is_some());
-        if !is_there {
-            return Err(format!("{} has no such chapter; write it whole, without --only", file.display()));
-        }
+        quote::check_chapter(mark, &file)?;
         let chapter = match only {
             Chapter::Rare => rare::chapter(effort, &written, &mut Goals::default())?,
             Chapter::Robots => robots::chapter(effort, &written)?,

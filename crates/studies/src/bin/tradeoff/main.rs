@@ -93,11 +93,7 @@ fn measure(options: &Options) -> Result<(), String> {
 
     let file = out.join("TRADEOFF.md");
     if options.only == Some(Chapter::Motions) {
-        let is_there =
-            fs::read_to_string(&file).is_ok_and(|page| quote::between(&page, motions::MARK).is_some());
-        if !is_there {
-            return Err(format!("{} has no such chapter; write it whole, without --only", file.display()));
-        }
+        quote::check_chapter(motions::MARK, &file)?;
         let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
         quote::in_page(&motions, motions::MARK, &file)?;
         println!("{}", file.display());
