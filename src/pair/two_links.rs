@@ -72,8 +72,7 @@ impl PlacedLink {
     pub(crate) fn measure_link_within(&self, bound: Real, other: &Self) -> Option<NearestOfLinks> {
         let (pair, unit) = self.with_link(other);
         let axes = pair.axes();
-        let apart = axes.gap.norm() - pair.first.radius - pair.second.radius - SLACK;
-        if apart * unit > bound {
+        if capsules_apart(&pair, axes.gap.norm()) * unit > bound {
             return None;
         }
         let nearest = self.nearest_of_links(unit, &pair.closest(&axes, |mask| mask));
@@ -83,8 +82,7 @@ impl PlacedLink {
     /// Whether the capsules around two links may be at most `bound` apart.
     pub(crate) fn may_be_within(&self, bound: Real, other: &Self) -> bool {
         let (pair, unit) = self.with_link(other);
-        let apart = pair.axes().gap.norm() - pair.first.radius - pair.second.radius - SLACK;
-        apart * unit <= bound
+        capsules_apart(&pair, pair.axes().gap.norm()) * unit <= bound
     }
 
     /// Where the axes of two links are nearest, and how far they are apart there.
@@ -109,6 +107,11 @@ impl PlacedLink {
         let second_start = Vec3::from(start * scale);
         (TwoLinks { first: link(self), second: link(other), second_start }, 1.0 / scale)
     }
+}
+
+/// How far the capsules around two links are apart at least, whose axes are so far apart.
+fn capsules_apart(pair: &TwoLinks<Real>, axes: Real) -> Real {
+    axes - pair.first.radius - pair.second.radius - SLACK
 }
 
 /// An end of a link, seen from its start.

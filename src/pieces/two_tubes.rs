@@ -6,8 +6,8 @@
 //! y is to the shortest way between the tubes; where they overlap, a y that is in both shows it. So y begins between the
 //! bodies, and moves to the middle between the two points of the tubes that are found from there.
 //!
-//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first upper bound is none to
-//! begin with, since it cannot change either bound of the answer.
+//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first upper bound, or than the
+//! margin that is asked about, is none to begin with, since it cannot change the answer.
 
 use super::divided::{Body, Bound, Divided};
 use super::outer::Outer;
