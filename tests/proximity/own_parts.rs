@@ -3,7 +3,7 @@
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::point_modified_cylinder;
 use parry_continuum::distance::{Vec3, segment_segment};
-use parry_continuum::parry::math::Vector;
+use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{RobotPair, self_clears, self_minimum};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::f64::consts::PI;
@@ -141,6 +141,34 @@ fn two_steps_face_one_another() {
 }
 
 /// Two axes that are nearest at places within both are a local minimum, whatever the joints between them.
+/// A thick tube, and a thin one that comes back between a quarter and half a turn later and runs into its end: points of both in one
+/// place, which rounding leaves some units in the last place apart, in any direction.
+#[test]
+fn a_tip_that_runs_into_a_face_is_never_lost() {
+    let points = [
+        [0.0, 0.0, 0.0],
+        [8.609375037926096, 2.1540864029459943, -4.608532654216331],
+        [15.496875068266972, 3.87735552530279, -8.295358777589396],
+        [16.610797475342583, 2.330033529409117, -7.691230056174417],
+        [14.309283972373123, 0.6608991322890376, -5.740535266297684],
+    ]
+    .map(Vector::from_array);
+    let radii = [5.0, 1.0, 1.0, 1.0];
+    let mut random = Random::new(41);
+    let mut apart = 0;
+    for turned in 0..2000 {
+        let pose = if turned == 0 { Pose::IDENTITY } else { random.pose(0.0) };
+        let points = points.map(|point| pose * point);
+        let robot = Chain::capsules(&points, &radii).unwrap();
+        let found = self_minimum(&robot).unwrap().expect("the last link meets the first");
+        assert_eq!(found.links, [0, 3]);
+        assert!(found.distance < 1e-13, "{found:?}");
+        apart += usize::from(found.distance > 0.0);
+        assert!(!self_clears(&robot, 0.5).unwrap() && !self_clears(&robot, 1e-13).unwrap());
+    }
+    assert!(apart > 100, "rounding parted only {apart}");
+}
+
 #[test]
 fn no_local_minimum_is_left_out() {
     let mut random = Random::new(1);

@@ -34,7 +34,15 @@
 //! overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near whom, and
 //! the robot is refused.
 //!
-//! **Rounding.** An angle between two axes errs by less than 16 u, since the axes are unit vectors to 4 u and a sine and a
+//! **Rounding of the way.** The two points that are found belong to the two parts and are at most e farther apart than the
+//! nearest two, at the distance d. So the way w between them lies in the parts' difference, a convex set, whose point nearest to
+//! 0 is the shortest way w*. There w . w* >= |w*|^2, and |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e): of a pair that
+//! touches the way is noise, and of one that is nearly parallel it errs by far more than e. Let S be the largest coordinate of
+//! both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most 2 S; the links' coordinates in
+//! their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: e = 64 u S is
+//! enough. A way that leaves a face by no more than sqrt(e (2 d + e)) on its inner side counts as one that leaves it outside.
+//!
+//! **Rounding of turns.** An angle between two axes errs by less than 16 u, since the axes are unit vectors to 4 u and a sine and a
 //! cosine of them to 8 u, and so the sum over n joints by less than 16 n u and n^2 u for its own additions. [`Turns`] takes
 //! as much off what is asked for.
 
@@ -133,6 +141,11 @@ impl Face {
     fn outward(&self, robot: &PlacedRobot) -> Vector {
         let axis = robot.links()[self.link].axis();
         if self.end == 0 { -axis } else { axis }
+    }
+
+    /// Whether a way to a point leaves it on its outer side, up to rounding.
+    fn sees(&self, robot: &PlacedRobot, way: Vector, slack: Real) -> bool {
+        way.dot(self.outward(robot)) >= -slack
     }
 
     /// The ball around its centre, which is all of it that is asked for if it is round.
@@ -237,10 +250,6 @@ impl<'a> OneRobot<'a> {
     ) -> bool {
         for (number, face) in faces.iter().enumerate() {
             let (on_face, ball) = (self.robot.link(face.link), face.ball(&self.robot));
-            let outward = face.outward(&self.robot);
-            let leaves = |nearest: &NearestOfLinks| {
-                nearest.distance <= 0.0 || (nearest.on_second - nearest.on_first).dot(outward) >= 0.0
-            };
             // Those of the links that are asked for at a turn of pi anyway are left to that.
             let before = (0..face.link.saturating_sub(1))
                 .filter(|&link| turns.reach(0.5 * PI, link, face.link) && !turns.reach(PI, link, face.link));
@@ -253,7 +262,8 @@ impl<'a> OneRobot<'a> {
                     continue;
                 }
                 let nearest = face.nearest_to_link(&self.robot, &other);
-                if leaves(&nearest) {
+                let (way, slack) = way(&nearest, [&on_face, &other]);
+                if face.sees(&self.robot, way, slack) {
                     let found = in_order([face.link, link], [&on_face, &other], &nearest);
                     let Some(next) = keep(found) else { return false };
                     bound = next;
@@ -265,9 +275,8 @@ impl<'a> OneRobot<'a> {
                 }
                 let other = self.robot.link(facing.link);
                 let nearest = face.nearest_to_face(&self.robot, facing);
-                let way = nearest.on_first - nearest.on_second;
-                let meets = nearest.distance <= 0.0 || way.dot(facing.outward(&self.robot)) >= 0.0;
-                if meets && leaves(&nearest) {
+                let (way, slack) = way(&nearest, [&on_face, &other]);
+                if face.sees(&self.robot, way, slack) && facing.sees(&self.robot, -way, slack) {
                     let found = in_order([face.link, facing.link], [&on_face, &other], &nearest);
                     let Some(next) = keep(found) else { return false };
                     bound = next;
@@ -276,6 +285,15 @@ impl<'a> OneRobot<'a> {
         }
         true
     }
+}
+
+/// The way from the first of two links to the second, and by how much it may err in any direction.
+fn way(nearest: &NearestOfLinks, links: [&PlacedLink; 2]) -> (Vector, Real) {
+    let reach = |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
+    let error = 64.0 * Real::UNIT_ROUNDOFF * reach(links[0]).max(reach(links[1]));
+    // Two roots, so that no product leaves the range of numbers.
+    let slack = error.sqrt() * (2.0 * nearest.distance + error).sqrt();
+    (nearest.on_second - nearest.on_first, slack)
 }
 
 /// Pairs of links that share no joint, the second after the first, with a turn of at least pi between them.
