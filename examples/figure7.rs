@@ -142,8 +142,8 @@ fn draw(panels: &[Panel]) -> Canvas {
     }
     let [x, y] = [(GAP + 3 * (CARD[0] + GAP) + 30) as f32, (HEAD + CARD[1] + GAP + 150) as f32];
     let legend = [
-        (INADEQUATE, ["not the robot's shape,", "for the reason that is named"]),
-        (ADEQUATE, ["the robot's shape,", "as fitted caps make it"]),
+        (INADEQUATE, ["a to d: not the robot's shape,", "for the reason that is named"]),
+        (ADEQUATE, ["e to g: the robot's shape,", "as fitted caps make it"]),
     ];
     for (row, (verdict, lines)) in legend.into_iter().enumerate() {
         let y = y - 60.0 + 92.0 * row as f32;
@@ -153,7 +153,8 @@ fn draw(panels: &[Panel]) -> Canvas {
         }
     }
     canvas.text("radius 1; of three tubes 1.5, 1 and 0.5", [x, y + 150.0], Align::Left, 16.5, PALE);
-    canvas.text("links 1.5 long, short ones 0.4, of three tubes 1", [x, y + 186.0], Align::Left, 16.5, PALE);
+    canvas.text("links 1.5 long, short ones 0.4,", [x, y + 182.0], Align::Left, 16.5, PALE);
+    canvas.text("of three tubes 1", [x, y + 214.0], Align::Left, 16.5, PALE);
     canvas
 }
 

@@ -209,5 +209,10 @@ fn draw(
     );
     canvas.text(&apart, [40.0, 926.0], Align::Left, 19.0, INK);
     canvas.text(&format!("the least room: {}", tightest.trim_start()), [40.0, 956.0], Align::Left, 19.0, INK);
+    for (robot, colour) in COLOURS.into_iter().enumerate() {
+        let y = 926.0 + 30.0 * robot as f32;
+        canvas.panel([1250.0, y - 16.0, 1268.0, y + 2.0], 9.0, colour, 1.0);
+        canvas.text(&format!("robot {robot}"), [1282.0, y], Align::Left, 19.0, INK);
+    }
     Ok(canvas)
 }

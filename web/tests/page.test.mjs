@@ -140,6 +140,8 @@ test("a small window shows picture and answer", async () => {
 test("nothing went wrong on the way, and a picture is drawn", async () => {
   assert.deepEqual(complaints, []);
   const pictures = process.env.PICTURE;
+  await page.reload();
+  await page.waitForSelector("body[data-ready]", { timeout: 60_000 });
   const drawn = await page.screenshot(pictures ? { path: pictures } : {});
   assert.ok(drawn.length > 20_000);
 });

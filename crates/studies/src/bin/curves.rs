@@ -15,6 +15,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Clearance};
 use parry_continuum::{RobotError, Tube, TubeSection};
 use plotters::prelude::*;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -147,7 +148,7 @@ enum Spacing {
 
 /// A normally distributed number.
 fn normal(random: &mut Random) -> f64 {
-    (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (std::f64::consts::TAU * random.unit()).cos()
+    (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (TAU * random.unit()).cos()
 }
 
 /// Arc lengths of the samples, and their points.
@@ -437,51 +438,72 @@ fn number(value: f64, digits: usize) -> String {
     }
 }
 
+/// The fewest samples in the plot.
+const FEWEST: f64 = 50.0;
+
 /// Noise against density: how many are resolved.
 fn plot(
     refused: &[(bool, usize, f64, usize)],
     robots: u64,
     path: &Path,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::new(path, (640, 360)).into_drawing_area();
+    let root = SVGBackend::new(path, (720, 360)).into_drawing_area();
     root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&root)
+    let (left, right) = root.split_horizontally(540);
+    // Every tick has twice the samples of the one before.
+    let mut chart = ChartBuilder::on(&left)
         .caption(format!("resolved within 0.1 mm, of {robots} robots of 80 mm"), ("sans-serif", 16))
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(44)
-        .build_cartesian_2d((40.0_f64..1_000.0).log_scale(), 0.0..1.03 * robots as f64)?;
+        .build_cartesian_2d(-0.3..4.3, 0.0..1.03 * robots as f64)?;
     chart
         .configure_mesh()
         .x_desc("samples")
         .y_desc("resolved")
-        .x_label_formatter(&|samples| format!("{samples:.0}"))
+        .light_line_style(TRANSPARENT)
+        .x_labels(5)
+        .y_labels(6)
+        .x_label_formatter(&|doubled: &f64| format!("{:.0}", FEWEST * doubled.exp2()))
+        .y_label_formatter(&|resolved| format!("{resolved:.0}"))
         .draw()?;
     let colours =
         [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), BLACK];
-    for (noise, colour) in [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours) {
+    let mut below = 60;
+    for (number, (noise, colour)) in [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours).enumerate() {
         for fit in [true, false] {
             let line: Vec<_> = refused
                 .iter()
                 .filter(|(by_fit, _, of, _)| *by_fit == fit && *of == noise)
-                .map(|&(_, samples, _, resolved)| (samples as f64, resolved as f64))
+                .map(|&(_, samples, _, resolved)| ((samples as f64 / FEWEST).log2(), resolved as f64))
                 .collect();
             if line.is_empty() {
                 continue;
             }
             let style =
                 ShapeStyle { color: colour.to_rgba(), filled: false, stroke_width: if fit { 3 } else { 1 } };
-            let name = format!("noise {noise}, {}", if fit { "fit" } else { "from_samples" });
+            chart.draw_series(LineSeries::new(line.clone(), style))?;
             chart
-                .draw_series(LineSeries::new(line.clone(), style))?
-                .label(name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
-            chart.draw_series(
-                line.into_iter().map(|at| Circle::new(at, if fit { 4 } else { 2 }, colour.filled())),
-            )?;
+                .draw_series(line.into_iter().map(|at| EmptyElement::at(at) + mark((0, 0), number, style)))?;
+            let name = format!("noise {noise}, {}", if fit { "fit" } else { "from_samples" });
+            right.draw(&PathElement::new([(0, below), (24, below)], style))?;
+            right.draw(&mark((12, below), number, style))?;
+            right.draw(&Text::new(name, (32, below - 6), ("sans-serif", 12)))?;
+            below += 24;
         }
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
     root.present()?;
     Ok(())
+}
+
+/// A shape for each noise, for whoever sees no colours: so many corners, or a star.
+fn mark(at: (i32, i32), number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
+    let (corners, inner) = [(24, 1.0), (3, 1.0), (4, 1.0), (10, 0.4), (8, 0.3)][number];
+    let size = 2.0 + f64::from(style.stroke_width);
+    let corner = |k: i32| {
+        let (sine, cosine) = (TAU * f64::from(k) / f64::from(corners)).sin_cos();
+        let size = if k % 2 == 0 { size } else { size * inner };
+        (at.0 + (size * sine).round() as i32, at.1 - (size * cosine).round() as i32)
+    };
+    Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), style.filled())
 }
