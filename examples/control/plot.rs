@@ -15,7 +15,8 @@ pub fn draw(free: &Run, kept: &Run, margin: Real, tick: Real) -> Canvas {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, _| hex(0xff_ff_ff));
     canvas.text("A tip that is sent into the wall, and back", [70.0, 46.0], Align::Left, 22.0, INK);
     for (x, name, colour) in [(700.0, "without the fixture", FREE), (960.0, "with the fixture", KEPT)] {
-        canvas.stroke(&[vec![[x - 44.0, 40.0], [x - 12.0, 40.0]]], 3.0, colour, 1.0);
+        let points = (0..=32).map(|k| [x - 44.0 + k as f32, 40.0]).collect::<Vec<_>>();
+        draw_curve(&mut canvas, &points, 3.0, colour);
         canvas.text(name, [x, 46.0], Align::Left, 15.0, INK);
     }
     panel(&mut canvas, 80.0, "clearance, mm", [&free.clearance, &kept.clearance], Some(margin), tick);
@@ -24,6 +25,15 @@ pub fn draw(free: &Run, kept: &Run, margin: Real, tick: Real) -> Canvas {
                 turned stay turned.";
     canvas.text(note, [70.0, SIZE[1] as f32 - 24.0], Align::Left, 13.0, INK);
     canvas
+}
+
+/// The free run is dashed, for whoever sees no colours.
+fn draw_curve(canvas: &mut Canvas, points: &[[f32; 2]], width: f32, colour: Colour) {
+    for (place, piece) in points.windows(2).enumerate() {
+        if colour == KEPT || place % 12 < 8 {
+            canvas.stroke(&[piece.to_vec()], width, colour, 1.0);
+        }
+    }
 }
 
 fn panel(canvas: &mut Canvas, top: f32, title: &str, curves: [&[Real]; 2], limit: Option<Real>, tick: Real) {
@@ -50,7 +60,7 @@ fn panel(canvas: &mut Canvas, top: f32, title: &str, curves: [&[Real]; 2], limit
         let every = (curve.len() / 1000).max(1);
         let points = curve.iter().enumerate().step_by(every);
         let points: Vec<_> = points.map(|(place, &value)| [x(place as Real / last), y(value)]).collect();
-        points.windows(2).for_each(|piece| canvas.stroke(&[piece.to_vec()], 2.0, colour, 1.0));
+        draw_curve(canvas, &points, 2.0, colour);
     }
     if let Some(limit) = limit {
         // Below the line, where no curve of a robot that keeps the margin goes.

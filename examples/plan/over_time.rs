@@ -113,9 +113,9 @@ impl OverTime {
         }
         line([left, y(margin)], [right, y(margin)], 1.5, INK);
         canvas.text("How near the way comes to the wall, mm", [left, 44.0], Align::Left, 22.0, INK);
-        let note = format!("the least of each part, between two proven bounds {TOLERANCE} mm apart");
+        let note = format!("lines: the least of each part, between two proven bounds {TOLERANCE} mm apart");
         canvas.text(&note, [left, 76.0], Align::Left, 15.0, BOUNDS);
-        canvas.text(&format!("what steps of {STEP} mm see"), [right, 76.0], Align::Right, 15.0, STEPS);
+        canvas.text(&format!("ticks: what steps of {STEP} mm see"), [right, 76.0], Align::Right, 15.0, STEPS);
         // Below the line, where no way that keeps the margin comes.
         canvas.text("margin", [right, y(margin) + 19.0], Align::Right, 13.0, INK);
         for value in levels {
