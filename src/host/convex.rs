@@ -3,21 +3,18 @@
 //! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of 1e-2 they may say that
 //! there is no contact however far one looks, or that GJK has not converged. For any unit vector `n` the gap between the
 //! two shapes' supports along `n` is at most their distance, and where it is below 0 a translation by it along `n` separates
-//! them. So all that is missing is a good `n`, and the link without its outermost layer gives one: the layer of depth
-//! `t` leaves a link again, shorter by `t` at each flat end and thinner by `t`, which the other shape does not touch. For
-//! all that it meets but a rim aslant, the nearest point of what is left has the very normal of the link's own surface, and
-//! at a rim one that is off by about `t`, which costs the gap about its square. The layers are tried from thin to thick; what
+//! them. So all that is missing is a good `n`, and the link without its outermost [layer](super::layers) gives one; where it is
+//! off, by about the layer's depth, that costs the gap about its square. The layers are tried from thin to thick; what
 //! still meets the innermost is parted along the best of a few directions that both shapes have.
 
 use super::axial::{perpendicular, unit};
+use super::layers::layers;
 use super::range::largest;
-use crate::robot::{Cap, ModifiedCylinder};
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, QueryDispatcher, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap};
 
-/// The layers that are taken off, as shares of the largest that there is.
-const LAYERS: [Real; 5] = [1e-5, 1e-3, 0.03, 0.3, 1.0];
 /// What rounding leaves of the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
@@ -149,8 +146,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
         let mut best: Option<(Real, Vector, Vector)> = None;
         let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
-        for share in LAYERS {
-            let (core, depth) = self.without_layer(share);
+        for (core, depth) in layers(self.link) {
             let [first, second]: [&dyn Shape; 2] =
                 if self.link_is_first { [&core, self.shapes[1]] } else { [self.shapes[0], &core] };
             let points = self.inner.closest_points(self.pos12, first, second, Real::MAX)?;
@@ -181,21 +177,6 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let ways = ways.into_iter().chain(Vector::AXES).filter_map(unit).flat_map(|normal| [normal, -normal]);
         let widest = ways.map(|normal| (self.gap(normal), normal)).max_by(|a, b| a.0.total_cmp(&b.0));
         widest.map(|(gap, normal)| (gap, normal, middle))
-    }
-
-    /// The link without its outermost layer, and how thick that is: such a share of what there is.
-    fn without_layer(&self, share: Real) -> (ModifiedCylinder, Real) {
-        let link = self.link;
-        let flats = link.caps().into_iter().filter(|&cap| cap == Cap::Flat).count() as Real;
-        let most = if flats > 0.0 { link.radius().min(0.5 * link.length()) } else { link.radius() };
-        let depth = share * most;
-        let [back, front] = link.caps().map(|cap| if cap == Cap::Flat { depth } else { 0.0 });
-        let (start, end) = (link.start() + link.axis() * back, link.end() - link.axis() * front);
-        // What is no link any more is its axis' middle.
-        let core = ModifiedCylinder::new(start, end, (link.radius() - depth).max(0.0), link.caps());
-        let middle = 0.5 * start + 0.5 * end;
-        let core = core.or_else(|_| ModifiedCylinder::capsule(middle, middle, 0.0));
-        (core.unwrap_or(*link), depth)
     }
 
     /// Whether the two are apart and a plane across the unit vector from one to the other keeps them so by what GJK says, but

@@ -3,6 +3,7 @@
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
 use super::elements::{self, FieldPair};
+use super::link_cast;
 use super::link_pair::LinkPair;
 use super::link_triangle::LinkTrianglePair;
 use super::parts::{Parts, has_parts};
@@ -13,7 +14,6 @@ use super::straight_cast;
 use super::thin::Thin;
 use super::voxels;
 use super::watched::Watched;
-use super::{link_ball, link_cast};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
@@ -29,19 +29,19 @@ use parry3d_f64::shape::Shape;
 ///
 /// What is answered for a link or a chain against another shape, in either order:
 ///
-/// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | `Ball` | link, chain, `Capsule`, `Cylinder` | other convex shape |
-/// |---|---|---|---|---|---|
-/// | `distance`, `closest_points` | exact | exact | exact | exact | parry's GJK: within 1e-5 |
-/// | `intersection_test` | exact | exact | exact | exact | parry's GJK |
-/// | `contact`, apart | exact | exact | exact | exact, but where two flat caps meet: parry's GJK, within 1e-5 | parry's GJK: within 1e-5 |
-/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | exact | separates, to rounding; round links exact; the shortest translation but for what stands below | separates, to rounding; the shortest translation but for what stands below |
-/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-5 at most | never late but for GJK; early by 1e-5 | never late but for GJK; early by 1e-5 |
-/// | `cast_shapes_nonlinear` | never late | never late | never late but for GJK | never late but for GJK | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | one exact point | exact points of two links of which at most one meets the other with a flat cap; otherwise the contact's own, and those of polygons that stand for the surfaces along its normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
+/// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | link, chain, `Ball`, `Capsule`, `Cylinder` | other convex shape |
+/// |---|---|---|---|---|
+/// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `intersection_test` | exact | exact | exact | parry's GJK |
+/// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | separates, to rounding; round links and balls exact; the shortest translation but for what stands below | separates, to rounding; the shortest translation but for what stands below |
+/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-9 of the link's size at most | never late but for GJK; early by 1e-5 |
+/// | `cast_shapes_nonlinear` | never late | never late | never late | never late but for GJK |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | exact points along the contact's normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
 /// Numbers are for shapes of size one. parry's tolerances are absolute, so in another unit of length the relative error is
-/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column, and for contacts and
-/// casts of the one before, links too large or too small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
+/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column, links too large or too
+/// small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
 ///
 /// **The shortest translation.** The one that separates a link from another convex shape may be longer than the shortest that
 /// a search of all directions finds. It is longer by at most
@@ -50,7 +50,9 @@ use parry3d_f64::shape::Shape;
 /// - 1e-6 for other links, and for a `Cylinder`, a `Cuboid`, a `ConvexPolyhedron` and a `RoundCuboid`;
 /// - 0.01 for a `Cone` and a `RoundCylinder`.
 ///
-/// A shape that is no more than a line, such as a capsule of radius 0, counts as a segment, and any other capsule as a link.
+/// A `Ball`, a `Capsule` and a `Cylinder` are links: one without length, one with two round caps, one with two flat caps. A
+/// `Cylinder` without height is not, and stays in the last column. Another shape that is no more than a line, such as a cone
+/// of radius 0, counts as a segment.
 ///
 /// **Distances** are to the triangles themselves and unsigned: 0 for a link that touches or crosses one. Touching is
 /// `Intersecting`, and a margin is kept only by what is farther away than it.
@@ -133,11 +135,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
             Parts::None => {
-                if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
-                    return Ok(ShapeIntersection::new(contact.dist <= 0.0));
-                }
-                if let Some(links) = LinkPair::of(pos12, g1, g2) {
-                    return Ok(ShapeIntersection::new(links.distance()? <= 0.0));
+                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
+                    return Ok(ShapeIntersection::new(links.distance() <= 0.0));
                 }
                 self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2)
             }
@@ -166,11 +165,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::Voxels(_) => Err(Unsupported),
             Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
             Parts::None => {
-                if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
-                    return Ok(ShapeDistance::new(contact.dist.max(0.0)));
-                }
-                if let Some(links) = LinkPair::of(pos12, g1, g2) {
-                    return links.distance().map(ShapeDistance::new);
+                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
+                    return Ok(ShapeDistance::new(links.distance()));
                 }
                 let inner = self.inner(pos12, g1, g2)?;
                 let answer = match ConvexPair::of(inner, pos12, g1, g2) {
@@ -248,11 +244,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
             Parts::None => {
-                if let Some(points) = link_ball::closest_points(pos12, g1, g2, max_dist)? {
-                    return Ok(points);
-                }
-                if let Some(links) = LinkPair::of(pos12, g1, g2) {
-                    return links.closest_points(pos12, max_dist);
+                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
+                    return Ok(links.closest_points(pos12, max_dist));
                 }
                 let inner = self.inner(pos12, g1, g2)?;
                 match ConvexPair::of(inner, pos12, g1, g2) {
@@ -296,6 +289,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             Parts::None => {
                 if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
                     return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
+                }
+                if let Some(hit) = straight_cast::cast_link(pos12, local_vel12, (g1, g2), options)? {
+                    return Ok(hit);
                 }
                 if let Some(hit) = straight_cast::cast_convex(self, pos12, local_vel12, (g1, g2), options)? {
                     return Ok(hit);
@@ -399,15 +395,12 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        if let Some(contact) = link_ball::contact(pos12, g1, g2)? {
-            return Ok(Some(contact));
+        if let Some(links) = LinkPair::of(pos12, g1, g2)? {
+            return Ok(links.contact(pos12, prediction));
         }
         let inner = self.inner(pos12, g1, g2)?;
         match ConvexPair::of(inner, pos12, g1, g2) {
-            Some(pair) => match LinkPair::of(pos12, g1, g2) {
-                Some(links) => links.contact(&pair, pos12, prediction),
-                None => Ok(pair.contact(prediction)?.map(|contact| pair.shallowest(contact))),
-            },
+            Some(pair) => Ok(pair.contact(prediction)?.map(|contact| pair.shallowest(contact))),
             None => inner.contact(pos12, g1, g2, prediction),
         }
     }

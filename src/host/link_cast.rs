@@ -18,7 +18,8 @@
 use super::axial::unit;
 use super::closing::{Closing, Reach, Support};
 use super::footing::{centre, outward};
-use super::link_triangle::{self, LinkTrianglePair};
+use super::link_pair::{LinkPair, links_of_pair};
+use super::link_triangle::{self, LinkContact, LinkTrianglePair};
 use super::range::in_range;
 use super::robot_surface::links_of;
 use super::straight_cast::iterated_contact;
@@ -27,7 +28,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 
-/// The share of a link's size at which it counts as touching a triangle or a half-space.
+/// The share of a link's size at which it counts as touching a triangle, a half-space or another link.
 const TOUCHING: Real = 1e-9;
 /// The same for other shapes, whose contacts come from iterations.
 const ITERATED: Real = 1e-5;
@@ -75,6 +76,9 @@ fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<
             let normal = unit(half_space.normal).ok_or(Unsupported)?;
             return Ok(Some((links, MovingWall::HalfSpace(normal), robot_is_first)));
         }
+        if let (Some(link), Some([_, other])) = (robot.as_shape(), links_of_pair(robot, wall)) {
+            return Ok(Some((std::slice::from_ref(link), MovingWall::Link(other), robot_is_first)));
+        }
         if let (Some(link), Some(support)) = (robot.as_shape(), wall.as_support_map()) {
             return Ok(Some((std::slice::from_ref(link), MovingWall::Convex(wall, support), robot_is_first)));
         }
@@ -86,6 +90,7 @@ enum MovingWall<'a> {
     Triangle(&'a Triangle),
     /// Its unit normal.
     HalfSpace(Vector),
+    Link(ModifiedCylinder),
     Convex(&'a dyn Shape, &'a dyn SupportMap),
 }
 
@@ -194,19 +199,21 @@ impl<D: QueryDispatcher> Cast<'_, D> {
                 distance = (pos12.translation - on_link).dot(normal);
                 (on_wall, share) = (on_link + normal * distance, TOUCHING);
             }
+            MovingWall::Link(other) => {
+                share = TOUCHING;
+                let other = other.transformed(&pos12);
+                largest =
+                    largest.max(other.radius()).max(in_range(other.start())?).max(in_range(other.end())?);
+                let contact = LinkPair::between(link, &other)?.link_contact().ok_or(Unsupported)?;
+                (on_link, normal) = (contact.on_link, contact.normal);
+                (on_wall, distance) = touched_plane(link, &contact, |n| other.local_support_point_toward(n));
+            }
             MovingWall::Convex(shape, support) => {
                 share = ITERATED;
                 let contact = iterated_contact(self.dispatcher, link, (shape, support), &pos12)?;
                 (on_link, normal) = (contact.on_link, contact.normal);
-                if contact.distance > 0.0 {
-                    // The two themselves say how far apart they are along it.
-                    let before =
-                        (support.support_point_toward(&pos12, -normal) - contact.on_triangle).dot(normal);
-                    on_wall = contact.on_triangle + normal * before;
-                    distance = (on_wall - link.local_support_point_toward(normal)).dot(normal);
-                } else {
-                    (on_wall, distance) = (contact.on_triangle, 0.0);
-                }
+                let support = |n| support.support_point_toward(&pos12, n);
+                (on_wall, distance) = touched_plane(link, &contact, support);
             }
         }
         let touching = share * size + ROUNDING * largest;
@@ -257,6 +264,22 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         }
         clear
     }
+}
+
+/// A point of the plane across a contact's normal that the wall touches, and how far the link is from that plane: the two
+/// themselves say so. 0 where they overlap.
+fn touched_plane(
+    link: &ModifiedCylinder,
+    contact: &LinkContact,
+    wall: impl Fn(Vector) -> Vector,
+) -> (Vector, Real) {
+    if contact.distance <= 0.0 {
+        return (contact.on_triangle, 0.0);
+    }
+    let normal = contact.normal;
+    let before = (wall(-normal) - contact.on_triangle).dot(normal);
+    let on_wall = contact.on_triangle + normal * before;
+    (on_wall, (on_wall - link.local_support_point_toward(normal)).dot(normal))
 }
 
 impl CastMoment {

@@ -7,7 +7,7 @@
 //!
 //! [`foot`](super::foot) derives where that is exact. Where the axes of two round links come so close that the way between
 //! them gives no direction, the normal is that of [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the
-//! other link, have no closed form here.
+//! other link, have no closed form here: [`LinkPair`](super::link_pair::LinkPair) measures them.
 
 use super::axial::unit;
 use super::foot::AxisFoot;
@@ -20,9 +20,9 @@ use parry3d_f64::math::{Real, Vector};
 /// What rounding can do to a distance, as a share of the largest coordinate.
 const ROUNDING: Real = 8.0 * Real::EPSILON;
 /// Axes closer than this share of the largest coordinate give no direction: half of its digits would be rounding.
-const DIRECTION: Real = 1.5e-8;
+pub(super) const DIRECTION: Real = 1.5e-8;
 /// Axes closer than this share of the largest coordinate give a direction that has lost digits; features have them all.
-const FINE_DIRECTION: Real = 1e-2;
+pub(super) const FINE_DIRECTION: Real = 1e-2;
 
 /// Where two links meet.
 pub(super) struct Touch {
@@ -37,10 +37,8 @@ pub(super) enum Answer {
     /// Further apart than the margin.
     Apart,
     Touch(Touch),
-    /// No closed form; whether an axis says already that they overlap.
-    Unknown {
-        overlap: bool,
-    },
+    /// No closed form.
+    Unknown,
 }
 
 /// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0: where an axis lies in the other
@@ -68,29 +66,27 @@ pub(super) fn touch(
         let pair = pair(first, second);
         let way = unit(feet[1] - feet[0]).filter(|_| axes.distance > DIRECTION * extent);
         let normal = match way {
-            Some(normal) if axes.distance > FINE_DIRECTION * extent => normal,
             Some(normal) => pair.refined(normal).normal,
-            None => pair.widest(None).normal,
+            None => pair.widest([]).normal,
         };
         return Answer::Touch(Touch { dist, normal, on_first: feet[0] + normal * first.radius() });
     }
-    let mut overlap = false;
     for (solid, swollen, is_swapped) in [(first, second, false), (second, first, true)] {
         let (apart, on_solid, on_axis) = closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
-        overlap |= apart <= 0.0;
         let dist = apart - swollen.radius();
         if dist > margin + rounding {
             return Answer::Apart;
         }
         let is_exact = AxisFoot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
         if let (Some(out), true) = (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent) {
-            let out = if apart > FINE_DIRECTION * extent {
-                out
+            let first_out = if is_swapped { -out } else { out };
+            let pair = pair(first, second);
+            let gap = if apart > FINE_DIRECTION * extent {
+                pair.refined(first_out)
             } else {
-                let first_out = if is_swapped { -out } else { out };
-                let normal = pair(first, second).widest(Some(first_out)).normal;
-                if is_swapped { -normal } else { normal }
+                pair.widest([first_out])
             };
+            let out = if is_swapped { -gap.normal } else { gap.normal };
             let on_swollen = on_axis - out * swollen.radius();
             return Answer::Touch(if is_swapped {
                 Touch { dist, normal: -out, on_first: on_swollen }
@@ -99,7 +95,7 @@ pub(super) fn touch(
             });
         }
     }
-    Answer::Unknown { overlap }
+    Answer::Unknown
 }
 
 /// The two links as the narrow phase knows them.

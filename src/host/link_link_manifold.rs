@@ -1,47 +1,44 @@
-//! The contact manifold of two links that [`link_link`](super::link_link) has a closed form for.
+//! The contact manifold of two links.
 //!
 //! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal, exactly:
 //!
 //! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel, near its own crest.
 //! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in [`rim`](super::rim).
-//! 3. **The closest points themselves**, if none of the others are as close: barrels that cross, a round cap.
+//! 3. **Of two flat caps**, points around what they have in common, by [`lens`](super::lens).
+//! 4. **The closest points themselves**, if none of the others are as close: barrels that cross, a round cap.
+//!
+//! No pair of points is closer along the normal than the contact says: it is the gap between the two links along it.
 
 use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
-use super::link_link::{self, Answer};
+use super::lens;
 use super::link_pair::LinkPair;
 use super::meeting::{Meeting, ROUNDING};
 use super::{footing, rim};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::{ContactManifold, TrackedContact};
+use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape};
 
 /// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges of parry's polygons.
 /// Where they cross at a larger angle they roll on one point, and a second would come and go.
 const ALONG: Real = 0.924;
 
-/// Brings the manifold up to date, if the shapes are two links that this closed form is for. Returns whether they are.
+/// Brings the manifold up to date, if the shapes are two links. Returns whether they are.
+///
+/// # Errors
+/// [`Unsupported`] for numbers out of range.
 pub(super) fn update<M, C: Default + Copy>(
     pos12: &Pose,
     (g1, g2): (&dyn Shape, &dyn Shape),
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
-) -> bool {
-    let Some(LinkPair { links: [first, second], origin, extent, .. }) = LinkPair::of(pos12, g1, g2) else {
-        return false;
-    };
-    let touch = match link_link::touch(&first, &second, extent, prediction) {
-        Answer::Apart => {
-            manifold.points.clear();
-            return true;
-        }
-        Answer::Unknown { .. } => return false,
-        Answer::Touch(touch) => touch,
-    };
-    let normal = touch.normal;
-
+) -> Result<bool, Unsupported> {
+    let Some(pair) = LinkPair::of(pos12, g1, g2)? else { return Ok(false) };
     let before = std::mem::take(&mut manifold.points);
+    let Some(touch) = pair.touch(prediction) else { return Ok(true) };
+    let LinkPair { links: [first, second], extent, .. } = pair;
+    let normal = touch.normal;
     let mut meeting = LinkLinkMeeting { points: Vec::new(), extent };
     if first.axis().dot(second.axis()).abs() >= ALONG {
         meeting.add_ends(&first, &second, normal, false);
@@ -49,19 +46,17 @@ pub(super) fn update<M, C: Default + Copy>(
     }
     meeting.add_across_cap(&first, &second, normal, false);
     meeting.add_across_cap(&second, &first, -normal, true);
+    lens::collect(&first, &second, normal, |on_first, dist, names| meeting.add(on_first, dist, names));
     meeting.add_closest(touch.on_first, touch.dist);
-    for point in meeting.points {
-        manifold.points.push(TrackedContact::new(
-            origin + point.on_first,
-            pos12.inverse_transform_point(origin + point.on_first + normal * point.dist),
-            point.names[0],
-            point.names[1],
-            point.dist,
-        ));
+    for LinkLinkPoint { on_first, dist, names } in meeting.points {
+        let [point1, point2] = [on_first, on_first + normal * dist].map(|point| pair.place(point));
+        let point2 = pos12.inverse_transform_point(point2);
+        let contact = TrackedContact::new(point1, point2, names[0], names[1], pair.length(dist));
+        manifold.points.push(contact);
     }
     (manifold.local_n1, manifold.local_n2) = (normal, pos12.rotation.inverse() * -normal);
     manifold.match_contacts(&before);
-    true
+    Ok(true)
 }
 
 /// The link as it is seen from `origin`.
@@ -126,7 +121,7 @@ impl LinkLinkMeeting {
         }
     }
 
-    /// Case 3. Of others that are all but as close the nearest stands for them, with their distance; the rest keep theirs.
+    /// Case 4. Of others that are all but as close the nearest stands for them, with their distance; the rest keep theirs.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > dist + SAME_POINT * self.extent {

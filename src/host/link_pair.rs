@@ -1,120 +1,185 @@
-//! Two links, or a link and one of parry's shapes that is a link too: a capsule or a cylinder.
+//! Two links, or a link and one of parry's shapes that is a link too: a ball, a capsule or a cylinder.
 //!
-//! Their distance is that of the narrow phase, exact for all caps.
+//! How far they are apart, and where, is what the narrow phase says, exact for all caps.
 //!
-//! Their contact is that of the [closed forms](super::link_link) where there is one. Otherwise the two are two flat caps, or a
-//! flat cap deep in the other link. While they are apart parry's iterations answer, and where they overlap
-//! [`depth`](crate::distance::depth) does.
+//! Their contact is that of the [closed forms](super::link_link) where there is one. Otherwise two flat caps meet, or a flat cap
+//! is deep in the other link. While the two are apart, the contact is at their nearest points. Where they overlap it is the
+//! widest gap of [`depth`](crate::distance::depth).
+//!
+//! **The direction between points that are close to one another**, or one, is rounding. Then the directions of the features are
+//! tried, and those from the one link without its outermost [layers](super::layers) to the other, which the narrow phase
+//! measures as well: whatever the rims do, the thinnest layer whose loss parts the two shows a way out.
 
-use super::convex::ConvexPair;
-use super::link_link::{self, Answer};
+use super::axial::unit;
+use super::layers::{layers, thickest};
+use super::link_link::{self, Answer, DIRECTION, FINE_DIRECTION, Touch};
+use super::link_triangle::LinkContact;
 use super::range::in_range;
+use crate::distance::Scalar;
 use crate::pair::{NearestOfLinks, PlacedLink};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::{ClosestPoints, Contact, QueryDispatcher, Unsupported};
+use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
 use parry3d_f64::shape::{Shape, TypedShape};
 
-/// Two links in one frame, which is the first shape's but for its origin.
+/// Two links in one frame.
 pub(super) struct LinkPair {
     /// Both in the frame of the first shape: what is moved to another origin is rounded once more.
     placed: [ModifiedCylinder; 2],
+    /// Both as seen from the first link's start, with numbers near one.
     pub links: [ModifiedCylinder; 2],
-    /// The frame's origin in that of the first shape: the first link's start.
-    pub origin: Vector,
-    /// The largest coordinate or radius.
+    /// The largest coordinate or radius of these.
     pub extent: Real,
+    /// The first link's start.
+    origin: Vector,
+    /// What 1 is in the shapes' unit: a power of two.
+    unit: Real,
 }
 
 impl LinkPair {
     /// The pair, if the shapes are one and one of them is a link of this crate.
-    pub fn of(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Option<Self> {
-        let is_own = |shape: &dyn Shape| shape.as_shape::<ModifiedCylinder>().is_some();
-        if !is_own(g1) && !is_own(g2) {
-            return None;
-        }
-        let (link1, link2) = (link_of(g1)?, link_of(g2)?);
-        let origin = link1.start();
-        let placed = [link1, link2.transformed(pos12)];
-        let links = placed.map(|link| link.transformed(&Pose::from_translation(-origin)));
-        let ends = links.iter().flat_map(|link| [link.start(), link.end()]);
-        let largest = ends.fold(Vector::ZERO, |most, end| most.max(end.abs())).max_element();
-        let extent = links.iter().fold(largest, |most, link| most.max(link.radius()));
-        Some(Self { placed, links, origin, extent })
-    }
-
-    /// # Errors
-    /// [`Unsupported`] for numbers out of range.
-    pub fn distance(&self) -> Result<Real, Unsupported> {
-        self.nearest().map(|nearest| nearest.distance)
-    }
-
-    /// # Errors
-    /// [`Unsupported`] for numbers out of range.
-    pub fn closest_points(&self, pos12: &Pose, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
-        let nearest = self.nearest()?;
-        Ok(if nearest.distance <= 0.0 {
-            ClosestPoints::Intersecting
-        } else if nearest.distance <= max_dist {
-            let point2 = pos12.inverse_transform_point(nearest.on_second);
-            ClosestPoints::WithinMargin(nearest.on_first, point2)
-        } else {
-            ClosestPoints::Disjoint
-        })
-    }
-
-    fn nearest(&self) -> Result<NearestOfLinks, Unsupported> {
-        for link in &self.placed {
-            in_range(link.start()).and(in_range(link.end()))?;
-        }
-        let [first, second] = self.placed.each_ref().map(PlacedLink::of);
-        Ok(first.measure_link(&second))
-    }
-
-    /// Their contact, if they are at most `prediction` apart. `convex` is the same pair to parry.
     ///
     /// # Errors
-    /// [`Unsupported`] for what the inner dispatcher refuses.
-    pub fn contact<L: QueryDispatcher>(
-        &self,
-        convex: &ConvexPair<L>,
-        pos12: &Pose,
-        prediction: Real,
-    ) -> Result<Option<Contact>, Unsupported> {
-        let [first, second] = &self.links;
-        // An overlap is found first, then measured.
-        let overlap = match link_link::touch(first, second, self.extent, prediction.max(0.0)) {
-            Answer::Apart => return Ok(None),
-            Answer::Touch(touch) => {
-                return Ok(Some(self.report(pos12, touch.on_first, touch.normal, touch.dist))
-                    .filter(|contact| contact.dist <= prediction));
-            }
-            Answer::Unknown { overlap } => overlap,
-        };
-        let mut hint = None;
-        if !overlap {
-            match convex.contact(prediction)? {
-                Some(found) if found.dist <= 0.0 => hint = Some(found.normal1),
-                found => return Ok(found),
-            }
-        }
-        let pair = link_link::pair(first, second);
-        let gap = pair.widest(hint);
-        let on_first = pair.touching_point(gap);
-        Ok(Some(self.report(pos12, on_first, gap.normal, gap.width))
-            .filter(|contact| contact.dist <= prediction))
+    /// [`Unsupported`] for numbers out of range.
+    pub fn of(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<Option<Self>, Unsupported> {
+        let Some([first, second]) = links_of_pair(g1, g2) else { return Ok(None) };
+        Self::between(&first, &second.transformed(pos12)).map(Some)
     }
 
-    fn report(&self, pos12: &Pose, on_first: Vector, normal: Vector, dist: Real) -> Contact {
-        let (point1, point2) = (self.origin + on_first, self.origin + on_first + normal * dist);
-        let normal2 = pos12.rotation.inverse() * -normal;
-        Contact::new(point1, pos12.inverse_transform_point(point2), normal, normal2, dist)
+    /// Two links where they are.
+    ///
+    /// # Errors
+    /// [`Unsupported`] for numbers out of range.
+    pub fn between(first: &ModifiedCylinder, second: &ModifiedCylinder) -> Result<Self, Unsupported> {
+        let placed = [*first, *second];
+        for link in &placed {
+            in_range(link.start()).and(in_range(link.end()))?;
+        }
+        let origin = first.start();
+        let moved = placed.map(|link| link.transformed(&Pose::from_translation(-origin)));
+        let ends = moved.iter().flat_map(|link| [link.start(), link.end()]);
+        let largest = ends.fold(Vector::ZERO, |most, end| most.max(end.abs())).max_element();
+        let extent = moved.iter().fold(largest, |most, link| most.max(link.radius()));
+        let scale = extent.power_of_two_to_unity();
+        let links = moved.map(|link| {
+            let (start, end) = (link.start() * scale, link.end() * scale);
+            ModifiedCylinder::unchecked(start, end, link.radius() * scale, link.caps())
+        });
+        Ok(Self { placed, links, extent: extent * scale, origin, unit: 1.0 / scale })
     }
+
+    pub fn distance(&self) -> Real {
+        self.nearest().distance
+    }
+
+    pub fn closest_points(&self, pos12: &Pose, max_dist: Real) -> ClosestPoints {
+        let nearest = self.nearest();
+        if nearest.distance <= 0.0 {
+            ClosestPoints::Intersecting
+        } else if nearest.distance <= max_dist {
+            ClosestPoints::WithinMargin(nearest.on_first, pos12.inverse_transform_point(nearest.on_second))
+        } else {
+            ClosestPoints::Disjoint
+        }
+    }
+
+    /// Their contact, if they are at most `prediction` apart.
+    pub fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
+        // An overlap is found first, then measured.
+        let touch = self.touch(prediction.max(0.0))?;
+        let (point1, dist) = (self.place(touch.on_first), self.length(touch.dist));
+        let point2 = self.place(touch.on_first + touch.normal * touch.dist);
+        let normal2 = pos12.rotation.inverse() * -touch.normal;
+        let contact =
+            Contact::new(point1, pos12.inverse_transform_point(point2), touch.normal, normal2, dist);
+        (dist <= prediction).then_some(contact)
+    }
+
+    /// Their contact however far they are apart, in the first shape's frame.
+    pub fn link_contact(&self) -> Option<LinkContact> {
+        let touch = self.touch(Real::INFINITY)?;
+        let [on_link, on_triangle] =
+            [touch.on_first, touch.on_first + touch.normal * touch.dist].map(|point| self.place(point));
+        Some(LinkContact { distance: self.length(touch.dist), on_link, on_triangle, normal: touch.normal })
+    }
+
+    /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in the shapes' unit and 0 at
+    /// least. What is about as far may be found or not.
+    pub fn touch(&self, margin: Real) -> Option<Touch> {
+        let [first, second] = &self.links;
+        let margin = margin / self.unit;
+        match link_link::touch(first, second, self.extent, margin) {
+            Answer::Apart => None,
+            Answer::Touch(touch) => Some(touch),
+            Answer::Unknown => self.touch_of_caps(margin),
+        }
+    }
+
+    /// A point of the links' in the first shape's frame.
+    pub fn place(&self, point: Vector) -> Vector {
+        self.origin + point * self.unit
+    }
+
+    /// A length of the links' in the shapes' unit.
+    pub fn length(&self, length: Real) -> Real {
+        length * self.unit
+    }
+
+    fn touch_of_caps(&self, margin: Real) -> Option<Touch> {
+        let nearest = self.nearest();
+        let dist = nearest.distance / self.unit;
+        if dist > margin {
+            return None;
+        }
+        let way = unit((nearest.on_second - nearest.on_first) / self.unit);
+        let on_first = (nearest.on_first - self.origin) / self.unit;
+        let [first, second] = &self.links;
+        let pair = link_link::pair(first, second);
+        let normal = match way.filter(|_| dist > 0.0) {
+            Some(normal) if dist > FINE_DIRECTION * self.extent => pair.refined(normal).normal,
+            way => {
+                let gap = pair.widest([way, self.way_of_layers()].into_iter().flatten());
+                if dist <= 0.0 {
+                    // Rounding may say of what touches that it does not.
+                    let dist = gap.width.min(0.0);
+                    return Some(Touch { dist, normal: gap.normal, on_first: pair.touching_point(gap) });
+                }
+                gap.normal
+            }
+        };
+        Some(Touch { dist, normal, on_first })
+    }
+
+    /// The way out of the first link that a layer's loss shows.
+    fn way_of_layers(&self) -> Option<Vector> {
+        let [first, second] = &self.links;
+        let is_swapped = thickest(first) < thickest(second);
+        let (peeled, other) = if is_swapped { (second, first) } else { (first, second) };
+        let other = PlacedLink::of(other);
+        let out = layers(peeled).find_map(|(core, _)| {
+            let nearest = PlacedLink::of(&core).measure_link(&other);
+            let has_direction = nearest.distance > DIRECTION * self.extent;
+            unit(nearest.on_second - nearest.on_first).filter(|_| has_direction)
+        })?;
+        Some(if is_swapped { -out } else { out })
+    }
+
+    fn nearest(&self) -> NearestOfLinks {
+        let [first, second] = self.placed.each_ref().map(PlacedLink::of);
+        first.measure_link(&second)
+    }
+}
+
+/// Both shapes as links, if they are some and one of them is a link of this crate.
+pub(super) fn links_of_pair(g1: &dyn Shape, g2: &dyn Shape) -> Option<[ModifiedCylinder; 2]> {
+    let is_own = |shape: &dyn Shape| shape.as_shape::<ModifiedCylinder>().is_some();
+    if is_own(g1) || is_own(g2) { Some([link_of(g1)?, link_of(g2)?]) } else { None }
 }
 
 /// The link that a shape is.
 fn link_of(shape: &dyn Shape) -> Option<ModifiedCylinder> {
     match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, ball.radius).ok(),
         TypedShape::Capsule(capsule) => ModifiedCylinder::try_from(capsule).ok(),
         TypedShape::Cylinder(cylinder) => {
             let half = Vector::Y * cylinder.half_height;

@@ -5,11 +5,10 @@
 //! one step to the next. What is left is
 //! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
 //! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
-//! - two links of which at most one meets the other with a flat cap, answered [here](super::link_link_manifold), in
-//!   closed form;
-//! - a link against another convex shape, and two flat caps, answered [here](super::link_convex_manifold), along the
-//!   contact's normal with the polygons that stand for the surfaces;
-//! - a link against a ball and against what has no polygons, answered by `L`. parry keeps a manifold while it has drifted
+//! - two links, or a link and a ball, a capsule or a cylinder, answered [here](super::link_link_manifold), exactly;
+//! - a link against another convex shape, answered [here](super::link_convex_manifold), along the contact's normal with the
+//!   polygons that stand for the surfaces;
+//! - a link against what has no polygons, answered by `L`. parry keeps a manifold while it has drifted
 //!   by less than 1e-3, whatever the unit; so that a small link does not rest on a stale one, it is told each time that the
 //!   shapes have changed.
 
@@ -94,17 +93,16 @@ where
         if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
             return Ok(());
         }
-        let inner = self.inner(pos12, g1, g2)?;
         // An overlap is found first, then measured.
         let within = prediction.max(0.0);
         let is_link = links_of(g1).or(links_of(g2)).is_some();
-        let is_answered = is_free
-            && (link_link_manifold::update(pos12, (g1, g2), within, manifold)
-                || is_link
-                    && !is_ball(g1)
-                    && !is_ball(g2)
-                    && link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?);
+        let is_answered = is_free && link_link_manifold::update(pos12, (g1, g2), within, manifold)?
+            || is_free && is_link && {
+                self.inner(pos12, g1, g2)?;
+                link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?
+            };
         if !is_answered {
+            let inner = self.inner(pos12, g1, g2)?;
             if is_link {
                 manifold.mark_shapes_deformed();
             }
@@ -124,10 +122,6 @@ where
         }
         Ok(())
     }
-}
-
-fn is_ball(shape: &dyn Shape) -> bool {
-    shape.as_ball().is_some()
 }
 
 /// Takes the points out of the manifolds whose nearest point is beyond the prediction.

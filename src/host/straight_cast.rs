@@ -1,4 +1,4 @@
-//! When a link that moves straight meets a triangle or another convex shape: Newton's steps, never late.
+//! When a link that moves straight meets a triangle, another link or another convex shape: Newton's steps, never late.
 //!
 //! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit vector from the link to the
 //! wall that separates them, and g the gap between them along it. After a time s the gap along the same n is g + s <n, v>,
@@ -18,6 +18,7 @@
 //! link beside the flat side of a box, it may panic.)
 
 use super::axial::unit;
+use super::link_pair::{LinkPair, links_of_pair};
 use super::link_triangle::{self, LinkContact, LinkTrianglePair};
 use super::range::{in_range, largest};
 use crate::robot::COORDINATE_LIMIT;
@@ -62,6 +63,21 @@ pub(super) fn cast_triangle(
     let way = WallsWay::new(pair.link, pair.link_is_first, pos12, local_vel12);
     let corners = pair.triangle.vertices().map(|vertex| way.pose * vertex);
     way.cast(&TriangleWall { link: pair.link, corners }, options)
+}
+
+/// The same of two links, or a link and a shape of parry's that is a link. Nothing if the shapes are no such pair.
+///
+/// # Errors
+/// [`Unsupported`] for what is out of range.
+pub(super) fn cast_link(
+    pos12: &Pose,
+    local_vel12: Vector,
+    (g1, g2): (&dyn Shape, &dyn Shape),
+    options: ShapeCastOptions,
+) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
+    let Some([first, second]) = links_of_pair(g1, g2) else { return Ok(None) };
+    let way = WallsWay::new(&first, true, pos12, local_vel12);
+    way.cast(&LinkWall { link: &first, wall: second.transformed(pos12) }, options).map(Some)
 }
 
 /// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no such pair.
@@ -109,6 +125,30 @@ impl CastWall for TriangleWall<'_> {
 
     fn largest(&self) -> Result<Real, Unsupported> {
         self.corners.into_iter().try_fold(0.0, |most: Real, corner| Ok(most.max(in_range(corner)?)))
+    }
+}
+
+/// Another link.
+struct LinkWall<'a> {
+    link: &'a ModifiedCylinder,
+    wall: ModifiedCylinder,
+}
+
+impl CastWall for LinkWall<'_> {
+    const TOUCHING: Real = 1e-9;
+
+    fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported> {
+        let moved = self.wall.transformed(&Pose::from_translation(shift));
+        LinkPair::between(self.link, &moved)?.link_contact().ok_or(Unsupported)
+    }
+
+    fn begins(&self, normal: Vector) -> Real {
+        self.wall.local_support_point_toward(-normal).dot(normal)
+    }
+
+    fn largest(&self) -> Result<Real, Unsupported> {
+        let mut ends = [self.wall.start(), self.wall.end()].into_iter();
+        ends.try_fold(self.wall.radius(), |most, end| Ok(most.max(in_range(end)?)))
     }
 }
 

@@ -1,59 +1,35 @@
 //! Segments, and shapes that are no more than a segment or a triangle, as triangles.
 //!
-//! Such shapes are a capsule of radius 0, a rounded triangle with a border of 0, or a box that is a line. parry's iterations
+//! Such shapes are a rounded triangle with a border of 0, or a box or a cone that is a line. parry's iterations
 //! build tetrahedra from the difference of two shapes. With these the tetrahedra have no volume, and parry may panic. To
 //! this crate they are triangles, most of them without an area, and triangles are answered exactly. A thickness of up to
 //! [`LEAST_SHARE`] of the shape's size is left out, and the answers are off by that much.
-//!
-//! A capsule of parry's is a link with two round caps, and answered as one.
 
 use super::range::LEAST_SHARE;
 use super::robot_surface::links_of;
-use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};
 
 /// What stands for the other shape of a pair with a robot.
 pub(super) struct Thin {
-    stand_ins: [Option<StandIn>; 2],
-}
-
-enum StandIn {
-    Triangle(Triangle),
-    Link(ModifiedCylinder),
-}
-
-impl StandIn {
-    fn of(shape: &dyn Shape) -> Option<Self> {
-        if let Some(triangle) = triangle_of(shape) {
-            return Some(Self::Triangle(triangle));
-        }
-        let capsule = shape.as_capsule()?;
-        ModifiedCylinder::capsule(capsule.segment.a, capsule.segment.b, capsule.radius).ok().map(Self::Link)
-    }
-
-    fn shape(&self) -> &dyn Shape {
-        match self {
-            Self::Triangle(triangle) => triangle,
-            Self::Link(link) => link,
-        }
-    }
+    stand_ins: [Option<Triangle>; 2],
 }
 
 impl Thin {
     pub fn of(g1: &dyn Shape, g2: &dyn Shape) -> Self {
         let stand_ins = match [links_of(g1), links_of(g2)] {
-            [Some(_), None] => [None, StandIn::of(g2)],
-            [None, Some(_)] => [StandIn::of(g1), None],
+            [Some(_), None] => [None, triangle_of(g2)],
+            [None, Some(_)] => [triangle_of(g1), None],
             _ => [None, None],
         };
         Self { stand_ins }
     }
 
-    /// The pair, with a triangle or a link in the place of the other shape, if it is one.
+    /// The pair, with a triangle in the place of the other shape, if it is one.
     pub fn pair<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> [&'a dyn Shape; 2] {
         let [first, second] = &self.stand_ins;
-        let or = |stand_in: &'a Option<StandIn>, shape| stand_in.as_ref().map_or(shape, StandIn::shape);
+        let or =
+            |stand_in: &'a Option<Triangle>, shape| stand_in.as_ref().map_or(shape, |it| it as &dyn Shape);
         [or(first, g1), or(second, g2)]
     }
 }
@@ -71,13 +47,12 @@ fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
     };
     match shape.as_typed_shape() {
         TypedShape::Segment(segment) => line(segment.a, segment.b),
-        TypedShape::Capsule(capsule) if is_thin(capsule.radius) => line(capsule.segment.a, capsule.segment.b),
         TypedShape::RoundTriangle(round) if is_thin(round.border_radius) => Some(round.inner_shape),
         TypedShape::Cuboid(cuboid) => line_of_box(cuboid.half_extents, is_thin),
         TypedShape::RoundCuboid(round) if is_thin(round.border_radius) => {
             line_of_box(round.inner_shape.half_extents, is_thin)
         }
-        TypedShape::Cylinder(cylinder) if is_thin(cylinder.radius) => upright(cylinder.half_height),
+        TypedShape::Cylinder(cylinder) if cylinder.radius == 0.0 => upright(cylinder.half_height),
         TypedShape::RoundCylinder(round)
             if is_thin(round.border_radius) && is_thin(round.inner_shape.radius) =>
         {

@@ -16,7 +16,8 @@ const PLACEMENTS: usize = 400;
 fn tolerance(kind: Wall) -> Real {
     match kind {
         Wall::Triangle | Wall::Plate | Wall::BoxMesh | Wall::HeightField => 1e-11,
-        Wall::Segment | Wall::Polyline | Wall::HalfSpace | Wall::Ball => 1e-11,
+        Wall::Segment | Wall::Polyline | Wall::HalfSpace => 1e-11,
+        Wall::Ball | Wall::Capsule | Wall::Cylinder | Wall::Link | Wall::Chain => 1e-11,
         _ => 3e-5,
     }
 }
@@ -182,7 +183,7 @@ fn has_constraints(placement: &Placement) -> bool {
 
 #[test]
 fn the_least_distance_of_a_manifold_is_the_contacts() {
-    for kind in Wall::ALL.into_iter().filter(|kind| ![Wall::Voxels, Wall::Chain, Wall::Link].contains(kind)) {
+    for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {
         let slack = tolerance(kind);
         let mut compared = 0;
         each(kind, 304, |asked, _| {

@@ -113,8 +113,9 @@ impl LinkLink {
         between.dot(n) - (reach[0] + reach[1])
     }
 
-    /// The widest gap: where the links overlap, minus the least translation that separates them. `hint` is considered too.
-    pub(crate) fn widest(&self, hint: Option<Vector>) -> Gap {
+    /// The widest gap: where the links overlap, minus the least translation that separates them. The hints, which are unit
+    /// vectors, are considered too.
+    pub(crate) fn widest(&self, hints: impl IntoIterator<Item = Vector>) -> Gap {
         let some = self.first.axis.or(self.second.axis).map_or(Vector::X, perpendicular);
         let mut best = Gap { width: self.gap(some), normal: some };
         self.directions(&mut |n| best = self.wider(best, n));
@@ -130,15 +131,15 @@ impl LinkLink {
                 }
             }
         }
-        if let Some(n) = hint {
+        for n in hints {
             let from = Gap { width: self.gap(n), normal: n };
             best = if both_flat { self.climbed(best, from) } else { self.wider(best, n) };
         }
         if both_flat { self.climbed(best, best) } else { best }
     }
 
-    /// The widest of the gap along `n` and along `n` made perpendicular to either axis or both: what `n` has lost to rounding,
-    /// where barrels decide.
+    /// The widest of the gap along `n`, along `n` made perpendicular to either axis or both, and along the axes: what `n` has
+    /// lost to rounding, where barrels or flat caps decide.
     pub(crate) fn refined(&self, n: Vector) -> Gap {
         let [a, b] = [self.first.axis, self.second.axis];
         let mut best = Gap { width: self.gap(n), normal: n };
@@ -146,6 +147,9 @@ impl LinkLink {
         let both = a.zip(b).and_then(|(a, b)| unit_across(a.cross(b), a));
         for n in [across(a), across(b), both, both.map(|n| -n)].into_iter().flatten() {
             best = self.wider(best, n);
+        }
+        for n in [a, b].into_iter().flatten() {
+            best = self.wider(self.wider(best, n), -n);
         }
         best
     }

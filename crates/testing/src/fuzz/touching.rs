@@ -35,20 +35,10 @@ pub fn touching(bytes: &[u8]) {
     }
     let Placement { robot, wall, pose, .. } = Random::new(source.bits()).placement(kind);
     let pose = source.nudged(pose);
-    let is_exact = !matches!(
-        kind,
-        Wall::Cuboid
-            | Wall::Capsule
-            | Wall::Cylinder
-            | Wall::Cone
-            | Wall::ConvexPolyhedron
-            | Wall::Link
-            | Wall::Chain
-            | Wall::Compound
-    );
+    let is_exact = !matches!(kind, Wall::Cuboid | Wall::Cone | Wall::ConvexPolyhedron | Wall::Compound);
     // What parry's iterations answer is stated in the dispatcher's table, for shapes of size one.
     let (apart, overlapping) = if is_exact { (1e-11, 1e-9) } else { (1e-4, 0.1) };
-    let early = if is_exact && kind != Wall::Ball { 1e-8 } else { 1e-4 };
+    let early = if is_exact { 1e-8 } else { 1e-4 };
     let constraints = TriMeshFlags::FIX_INTERNAL_EDGES;
     let is_free = wall.as_trimesh().is_none_or(|mesh| !mesh.flags().contains(constraints));
     let pair = |g1, g2| Pair { g1, g2, apart, overlapping, early, is_free };
