@@ -1,12 +1,15 @@
 //! Two trees of links at once, the nearer pair of nodes first.
 //!
 //! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
-//! divided. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it
+//! divided, until both are so few that their links are compared all at once, in packs: the nodes of a coil are as near as its
+//! links, and a pack costs no more than a pair of nodes. The nearest link of them is looked at first. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it
 //! is looked at, unless that distance is 0 and its lowest links come after those that were found.
 
+use super::outline_rows::Block;
 use super::outlines::{Outlines, SearchFrame};
-use crate::pair::PlacedRobot;
+use crate::pair::{PlacedRobot, TOGETHER};
 use crate::robot::LinkNode;
+use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
@@ -43,19 +46,32 @@ impl Limit {
         Self { distance, links: None }
     }
 
-    fn leaves_out(&self, entry: &Entry) -> bool {
-        let firsts = entry.places.map(|place| place.first);
-        entry.at_least > self.distance
-            || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
+    /// Whether what is at least so far apart needs no look, if these are its lowest links.
+    fn leaves_out(&self, at_least: Real, firsts: [usize; 2]) -> bool {
+        at_least > self.distance || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
     }
 }
 
 /// What a descent keeps from one to the next.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Descent {
+    level: Level,
     stack: Vec<Entry>,
     outlines: [Outlines; 2],
     frame: SearchFrame,
+    block: Block,
+}
+
+impl Default for Descent {
+    fn default() -> Self {
+        Self {
+            level: Level::new(),
+            stack: Vec::new(),
+            outlines: Default::default(),
+            frame: SearchFrame::default(),
+            block: Block::default(),
+        }
+    }
 }
 
 impl Descent {
@@ -106,17 +122,40 @@ impl Descent {
         asks: impl Fn([Range<usize>; 2]) -> bool,
         mut visit: impl FnMut([usize; 2]) -> Limit,
     ) {
-        let Self { stack, outlines, frame } = self;
+        let Self { level, stack, outlines, frame, block } = self;
         stack.clear();
         stack.push(Entry { places, at_least: 0.0 });
         while let Some(entry) = stack.pop() {
-            if limit.leaves_out(&entry) {
+            let firsts = entry.places.map(|place| place.first);
+            if limit.leaves_out(entry.at_least, firsts) {
                 continue;
             }
             let nodes = [0, 1].map(|robot: usize| robots[robot].link_tree()[entry.places[robot].node]);
             let counts = nodes.map(|node| node.links());
-            if counts == [1, 1] {
-                limit = visit(entry.places.map(|place| place.first));
+            if counts.iter().all(|&count| count <= TOGETHER) {
+                let [first, second] = &mut *outlines;
+                let rows = [
+                    first.of_links(frame, robots[0], entry.places[0].node),
+                    second.of_links(frame, robots[1], entry.places[1].node),
+                ];
+                block.compare(*level, rows, firsts, counts, [frame.unit(), limit.distance]);
+                let asked = |limit: &Limit, [i, j]: [usize; 2]| {
+                    let links = [firsts[0] + i, firsts[1] + j];
+                    let is_asked = !limit.leaves_out(block.at_least[i][j], links)
+                        && asks(links.map(|link| link..link + 1));
+                    is_asked.then_some(links)
+                };
+                let near = || block.near().filter_map(|pair| Some((pair, asked(&limit, pair)?)));
+                let nearest = near().min_by(|(a, _), (b, _)| {
+                    block.at_least[a[0]][a[1]].total_cmp(&block.at_least[b[0]][b[1]])
+                });
+                let Some((nearest, links)) = nearest else { continue };
+                limit = visit(links);
+                for pair in block.near().filter(|pair| *pair != nearest) {
+                    if let Some(links) = asked(&limit, pair) {
+                        limit = visit(links);
+                    }
+                }
                 continue;
             }
             let divided = usize::from(counts[1] > counts[0]);
@@ -135,11 +174,10 @@ impl Descent {
                 let Place { node, first } = entry.places[robot];
                 first..first + robots[robot].link_tree()[node].links()
             };
-            stack.extend(
-                nearer_last
-                    .into_iter()
-                    .filter(|entry| !limit.leaves_out(entry) && asks([links(entry, 0), links(entry, 1)])),
-            );
+            stack.extend(nearer_last.into_iter().filter(|entry| {
+                !limit.leaves_out(entry.at_least, entry.places.map(|place| place.first))
+                    && asks([links(entry, 0), links(entry, 1)])
+            }));
         }
     }
 }

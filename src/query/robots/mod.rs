@@ -3,6 +3,7 @@
 mod descent;
 mod local_minima;
 mod one_robot;
+mod outline_rows;
 mod outlines;
 mod tubes;
 mod two_robots;

@@ -197,22 +197,22 @@ impl<'a> OneRobot<'a> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
         let remembered = remembered.filter(|links| turns.reach(PI, links[0], links[1]));
-        let known = remembered.and_then(|links| self.measure_within(Real::INFINITY, links));
-        let bound = known.map_or(Real::INFINITY, |known| known.distance);
-        let mut best = None;
-        self.between_faces(turns, faces, bound, |found| {
-            let least = nearer(best, found);
-            best = Some(least);
-            Some(least.distance.min(bound))
-        });
-        // After the faces, as in the descent: of two that are as near the first counts, whatever is remembered.
-        best = known.map(|known| nearer(best, known)).or(best);
+        let mut best = remembered.and_then(|links| self.measure_within(Real::INFINITY, links));
         descent.run([&self.robot; 2], limit(&best), asks(turns), |links| {
             let bound = best.map_or(Real::INFINITY, |best| best.distance);
-            if let Some(found) = self.measure_within(bound, links) {
+            if !best.is_some_and(|best| best.is_of(links))
+                && let Some(found) = self.measure_within(bound, links)
+            {
                 best = Some(nearer(best, found));
             }
             limit(&best)
+        });
+        // Last, since faces cost most: what is near already spares most of them.
+        let bound = best.map_or(Real::INFINITY, |best| best.distance);
+        self.between_faces(turns, faces, bound, |found| {
+            let least = nearer(best, found);
+            best = Some(least);
+            Some(least.distance)
         });
         *nearest = best.map(|best| best.links.map(|link| link as usize));
         best

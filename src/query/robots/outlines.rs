@@ -4,8 +4,10 @@
 //! brings the largest of both robots near one, so that nothing overflows. A difference of two capsules' coordinates errs by
 //! a few u of that, and so does the distance between their axes: [`SLACK`] is more than it can be.
 
+use super::outline_rows::OutlineRows;
 use crate::distance::{Scalar, Vec3, segment_parameters};
 use crate::pair::PlacedRobot;
+use crate::robot::LinkNode;
 use parry3d_f64::math::{Real, Vector};
 
 /// What rounding can add to the distance between two capsules, where all coordinates are below 2.
@@ -14,19 +16,20 @@ use parry3d_f64::math::{Real, Vector};
 /// the foot on either axis and the length of the way between them by less than 16 u. Both radii are exact but for u.
 const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
-/// A capsule around links, or the one around a single link.
+/// A capsule around links, or the one around a single link; or a pack of them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outline {
-    start: Vec3<Real>,
-    along: Vec3<Real>,
-    radius: Real,
+pub(super) struct Outline<T = Real> {
+    pub start: Vec3<T>,
+    pub along: Vec3<T>,
+    pub radius: T,
 }
 
-impl Outline {
+impl<T: Scalar> Outline<T> {
     /// A lower bound on the distance between what two capsules hold.
-    pub fn at_least(&self, other: &Self) -> Real {
+    #[inline(always)]
+    pub fn at_least(&self, other: &Self) -> T {
         let axes = segment_parameters(self.start - other.start, self.along, other.along);
-        axes.gap.norm() - self.radius - other.radius - SLACK
+        axes.gap.norm() - self.radius - other.radius - self.radius.lit(SLACK)
     }
 }
 
@@ -55,6 +58,11 @@ impl SearchFrame {
         length / self.scale
     }
 
+    /// What 1 of the search is outside.
+    pub fn unit(&self) -> Real {
+        1.0 / self.scale
+    }
+
     pub fn outline(&self, robot: &PlacedRobot, node: usize) -> Outline {
         let ([start, end], radius, _) = robot.outline(&robot.link_tree()[node]);
         let [start, end] = [start, end].map(|end| Vec3::from((end - self.origin) * self.scale));
@@ -66,6 +74,8 @@ impl SearchFrame {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outlines {
     placed: Vec<Option<Outline>>,
+    /// Those of single links that are placed.
+    links: OutlineRows,
 }
 
 impl Outlines {
@@ -73,9 +83,28 @@ impl Outlines {
     pub fn start(&mut self, robot: &PlacedRobot) {
         self.placed.clear();
         self.placed.resize(robot.link_tree().len(), None);
+        self.links.start(robot.links().len());
     }
 
     pub fn get(&mut self, frame: &SearchFrame, robot: &PlacedRobot, node: usize) -> Outline {
-        *self.placed[node].get_or_insert_with(|| frame.outline(robot, node))
+        let links = &mut self.links;
+        *self.placed[node].get_or_insert_with(|| {
+            let outline = frame.outline(robot, node);
+            if let LinkNode::Leaf(link) = robot.link_tree()[node] {
+                links.put(link, &outline);
+            }
+            outline
+        })
+    }
+
+    /// Those of the links below a node, in rows.
+    pub fn of_links(&mut self, frame: &SearchFrame, robot: &PlacedRobot, node: usize) -> &OutlineRows {
+        let below = 2 * robot.link_tree()[node].links() - 1;
+        for node in node..node + below {
+            if matches!(robot.link_tree()[node], LinkNode::Leaf(_)) {
+                self.get(frame, robot, node);
+            }
+        }
+        &self.links
     }
 }

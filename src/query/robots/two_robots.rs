@@ -75,7 +75,8 @@ impl<'a> TwoRobots<'a> {
             links: Some(best.links.map(|link| link as usize)),
         };
         memory.descent.run(self.both(), limit(&best), all, |links| {
-            if let Some(found) = self.measure_within(best.distance, links)
+            if !best.is_of(links)
+                && let Some(found) = self.measure_within(best.distance, links)
                 && found.comes_before(&best)
             {
                 best = found;
@@ -103,7 +104,8 @@ impl<'a> TwoRobots<'a> {
                 return limit(&best);
             };
             let Some(best) = out.last_mut() else { return Limit::NOTHING };
-            if let Some(found) = self.measure_within(best.distance, [link, other])
+            if !best.is_of([link, other])
+                && let Some(found) = self.measure_within(best.distance, [link, other])
                 && found.comes_before(best)
             {
                 *best = found;
