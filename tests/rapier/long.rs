@@ -119,6 +119,19 @@ impl Pile {
         self.bodies.iter().map(depth).fold(0.0, Real::max)
     }
 
+    /// The deepest overlap of two bodies, in radii.
+    fn depth_between(&self) -> Real {
+        let dispatcher = ContinuumDispatcher::default();
+        let depth = |pair: &ContactPair| {
+            let [first, second] =
+                [pair.collider1, pair.collider2].map(|handle| &self.world.colliders[handle]);
+            let pos12 = first.position().inv_mul(second.position());
+            let contact = dispatcher.contact(&pos12, first.shape(), second.shape(), 0.0).unwrap();
+            contact.map_or(0.0, |contact| -contact.dist / RADIUS)
+        };
+        self.world.narrow_phase.contact_pairs().map(depth).fold(0.0, Real::max)
+    }
+
     /// What a step costs where nothing may fall asleep, in milliseconds: the median, which other work on the machine
     /// disturbs least.
     fn cost_awake(mut self, steps: usize) -> f64 {
@@ -150,6 +163,26 @@ fn piles_stay_above_the_floor_as_parrys_do() {
         assert!(ours.depth < (1.5 * parrys.depth).max(0.01), "{ours:?} {parrys:?}");
         assert!(ours.awake <= parrys.awake + count / 4, "{ours:?} {parrys:?}");
     }
+}
+
+/// Thrown on a heap they hold one another as parry's do.
+#[test]
+fn a_hundred_chains_are_as_thick_in_a_heap_as_parrys() {
+    let [ours, parrys] = [chain as Make, capsules].map(|shape| {
+        let mut pile = Pile::new(100, shape);
+        let mut depth: Real = 0.0;
+        for step in 0..300 {
+            pile.world.step();
+            if step >= 150 && step % 30 == 0 {
+                depth = depth.max(pile.depth_between());
+            }
+        }
+        let bodies = || pile.bodies.iter().map(|&handle| pile.world.bodies[handle].translation());
+        assert!(bodies().all(|place| place.is_finite() && place.y > -0.5));
+        (depth, pile.world.narrow_phase.contact_pairs().filter(|pair| pair.has_any_active_contact()).count())
+    });
+    assert!(ours.1 > 100 && parrys.1 > 100, "{ours:?} {parrys:?}");
+    assert!(ours.0 < (1.5 * parrys.0).max(0.1), "{ours:?} {parrys:?}");
 }
 
 /// Pressed into a wall for ten seconds with a hundred times its weight: how deep it gets, in radii, and how deep it is

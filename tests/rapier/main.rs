@@ -8,6 +8,7 @@ mod drop;
 mod fast;
 mod long;
 mod rest;
+mod robots;
 mod setup;
 mod soft;
 mod units;
