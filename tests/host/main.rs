@@ -20,6 +20,7 @@ mod mass;
 mod nonlinear;
 mod overlap;
 mod pairs;
+mod parrys;
 mod placements;
 mod point_ray;
 mod points;

@@ -44,7 +44,7 @@ fn walls(random: &mut Random) -> Vec<(&'static str, SharedShape)> {
 }
 
 /// The distance from above.
-fn projected(link: &ModifiedCylinder, wall: &dyn Shape, pose: &Pose) -> Real {
+pub fn projected(link: &ModifiedCylinder, wall: &dyn Shape, pose: &Pose) -> Real {
     let mut p = link.start();
     let mut distance = Real::INFINITY;
     for _ in 0..40000 {
