@@ -162,22 +162,25 @@ impl Descent {
             let kept = 1 - divided;
             let other = outlines[kept].get(frame, robots[kept], entry.places[kept].node);
             let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|half| {
-                let outline = outlines[divided].get(frame, robots[divided], half.node);
                 let mut places = entry.places;
                 places[divided] = half;
-                Entry { places, at_least: frame.outside(outline.at_least(&other)) }
+                let links = [0, 1].map(|robot: usize| {
+                    let Place { node, first } = places[robot];
+                    first..first + robots[robot].link_tree()[node].links()
+                });
+                asks(links).then(|| {
+                    let outline = outlines[divided].get(frame, robots[divided], half.node);
+                    Entry { places, at_least: frame.outside(outline.at_least(&other)) }
+                })
             });
-            let [low, high] = halves;
             // The nearer one is taken first, and of equals that with the lower links.
-            let nearer_last = if high.at_least < low.at_least { [low, high] } else { [high, low] };
-            let links = |entry: &Entry, robot: usize| {
-                let Place { node, first } = entry.places[robot];
-                first..first + robots[robot].link_tree()[node].links()
-            };
-            stack.extend(nearer_last.into_iter().filter(|entry| {
-                !limit.leaves_out(entry.at_least, entry.places.map(|place| place.first))
-                    && asks([links(entry, 0), links(entry, 1)])
-            }));
+            let [low, high] = halves;
+            let is_high_nearer =
+                matches!((low, high), (Some(low), Some(high)) if high.at_least < low.at_least);
+            let nearer_last = if is_high_nearer { [low, high] } else { [high, low] };
+            let is_left =
+                |entry: &Entry| !limit.leaves_out(entry.at_least, entry.places.map(|place| place.first));
+            stack.extend(nearer_last.into_iter().flatten().filter(is_left));
         }
     }
 }
