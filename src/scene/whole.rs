@@ -57,6 +57,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub struct Scene {
     structures: Vec<Structure>,
     robot_margin: Option<Real>,
+    /// The lower number first.
+    nested: Vec<[usize; 2]>,
     pair: RobotPair,
     /// Structure and robot that were tightest, and that did not keep a margin.
     tightest: Option<[usize; 2]>,
@@ -150,6 +152,14 @@ impl Scene {
         Ok(())
     }
 
+    /// Names the pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not
+    /// held against one another. The numbers are those of the robots that are given to a question, in any order; a pair that
+    /// is not there changes nothing. What was named before is forgotten.
+    pub fn set_nested(&mut self, pairs: &[[usize; 2]]) {
+        self.nested.clear();
+        self.nested.extend(pairs.iter().map(|&[a, b]| [a.min(b), a.max(b)]));
+    }
+
     /// Whether all robots keep all margins: true exactly when the slack of [`tightest`](Self::tightest) is more than 0, or
     /// there is none. The first margin that is not kept ends the query.
     ///
@@ -173,6 +183,9 @@ impl Scene {
         let Some(margin) = self.robot_margin else { return Ok(true) };
         for second in 0..robots.len() {
             for first in 0..second {
+                if self.nested.contains(&[first, second]) {
+                    continue;
+                }
                 let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
                 if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(between([first, second]))? {
                     return Ok(false);
@@ -215,6 +228,9 @@ impl Scene {
         let Some(margin) = self.robot_margin else { return Ok(best.map(|(_, best)| best)) };
         for first in 0..robots.len() {
             for second in first + 1..robots.len() {
+                if self.nested.contains(&[first, second]) {
+                    continue;
+                }
                 let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
                 let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(between([first, second]))?;
                 let slack = slack(nearest.distance, margin);

@@ -157,6 +157,30 @@ fn robots_are_held_against_one_another_where_they_have_a_margin() {
 }
 
 #[test]
+fn a_tube_inside_another_does_not_collide_with_it() {
+    let outer = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[1.0]).unwrap();
+    let inner = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 9.0], &[0.5]).unwrap();
+    let robots =
+        [(&outer, Pose::IDENTITY), (&inner, Pose::IDENTITY), (&outer, Pose::translation(4.0, 0.0, 0.0))];
+    let mut scene = Scene::new();
+    scene.set_robot_margin(Some(0.25)).unwrap();
+    assert!(!scene.clears(&robots).unwrap());
+    for nested in [[0, 1], [1, 0]] {
+        scene.set_nested(&[nested, [7, 8]]);
+        assert!(scene.clears(&robots).unwrap());
+        // The others are held against one another as before.
+        let tightest = scene.tightest(&robots).unwrap().unwrap();
+        assert_eq!(tightest.slack, 1.75);
+        assert!(matches!(tightest.between, Between::Robots { robots: [0, 2], .. }));
+        scene.set_robot_margin(Some(2.0)).unwrap();
+        assert!(!scene.clears(&robots).unwrap());
+        scene.set_robot_margin(Some(0.25)).unwrap();
+    }
+    scene.set_nested(&[]);
+    assert_eq!(scene.tightest(&robots).unwrap().unwrap().slack, -0.25);
+}
+
+#[test]
 fn a_structure_moves_with_its_vertices() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     let robots = [(&robot, Pose::IDENTITY)];

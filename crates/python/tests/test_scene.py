@@ -61,6 +61,20 @@ def test_scenes(robot_margin: float | None) -> None:
         assert scene.clears([(A[k], 0.1, POSES[k]), (B[k], 0.1)]) is bool(found.slack[k] > 0)
 
 
+def test_a_tube_inside_another_does_not_collide_with_it() -> None:
+    outer, inner = [[0, 0, 0], [0, 0, 5]], [[0, 0, 0], [0, 0, 9]]
+    beside = np.eye(4)
+    beside[0, 3] = 4
+    robots = [(outer, 1.0), (inner, 0.5), (outer, 1.0, beside)]
+    assert Scene(robot_margin=0.25).tightest(robots).slack == -0.25
+    scene = Scene(robot_margin=0.25, nested=[(1, 0)])
+    found = scene.tightest(robots)
+    assert scene.clears(robots) is True and found.slack == 1.75
+    assert_array_equal(found.robots, [0, 2])
+    with pytest.raises((TypeError, OverflowError)):
+        Scene(nested=[(0, -1)])
+
+
 def test_per_structure() -> None:
     scene = made()
     found = scene.per_structure([(A, 0.1, POSES), (B, 0.1)])

@@ -25,6 +25,9 @@ use std::sync::Arc;
 /// ----------
 /// robot_margin : float, optional
 ///     What robots keep from one another. Without it they are not held against one another.
+/// nested : sequence of (int, int), optional
+///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not held
+///     against one another. The numbers are places in the list of robots.
 ///
 /// Raises
 /// ------
@@ -45,6 +48,7 @@ use std::sync::Arc;
 pub(crate) struct Scene {
     structures: Held<Vec<Structure>>,
     robot_margin: Option<f64>,
+    nested: Vec<[usize; 2]>,
 }
 
 struct Structure {
@@ -58,6 +62,7 @@ struct Structure {
 struct Snapshot {
     structures: Vec<(String, Arc<Engine>, Option<f64>, Pose)>,
     robot_margin: Option<f64>,
+    nested: Vec<[usize; 2]>,
 }
 
 struct Session {
@@ -80,6 +85,7 @@ impl Lender for Snapshot {
                 scene.add(name.clone(), session.search.clone(), *margin)?;
                 scene.set_pose(number, pose)?;
             }
+            scene.set_nested(&self.nested);
             Ok(scene.set_robot_margin(self.robot_margin)?)
         };
         build().map_err(|refused| refused.raise(py, None))?;
@@ -106,7 +112,11 @@ impl Scene {
         let engines = structures
             .into_iter()
             .map(|(name, mesh, margin, pose)| (name, mesh.get().engine(py), margin, pose));
-        Snapshot { structures: engines.collect(), robot_margin: self.robot_margin }
+        Snapshot {
+            structures: engines.collect(),
+            robot_margin: self.robot_margin,
+            nested: self.nested.clone(),
+        }
     }
 }
 
@@ -123,10 +133,10 @@ fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResu
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (*, robot_margin = None))]
-    fn new(py: Python<'_>, robot_margin: Option<f64>) -> PyResult<Self> {
+    #[pyo3(signature = (*, robot_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, nested=())")]
+    fn new(py: Python<'_>, robot_margin: Option<f64>, nested: Vec<[usize; 2]>) -> PyResult<Self> {
         check(py, "robot_margin", robot_margin)?;
-        Ok(Self { structures: Held::new(Vec::new()), robot_margin })
+        Ok(Self { structures: Held::new(Vec::new()), robot_margin, nested })
     }
 
     /// Adds a structure, and returns its number: structures count from 0.
