@@ -8,6 +8,7 @@ mod least;
 mod left_out;
 mod moving_base;
 mod moving_mesh;
+mod narrow;
 mod path;
 mod refused;
 mod speeds;
