@@ -108,7 +108,7 @@ fn the_unit_of_length_does_not_matter_to_links() {
             let other = as_link(&*wall);
             flat += usize::from(link.caps() == CAPS[0] && other.caps() == CAPS[0]);
             let plain = said(&pose, &link, &other, 1.0);
-            for exponent in [-300, -200, -51, -10, 1, 51, 300] {
+            for exponent in [-480, -300, -200, -51, -10, 1, 51, 300, 480] {
                 let unit = Real::powi(2.0, exponent);
                 let larger = Pose::from_parts(pose.translation * unit, pose.rotation);
                 let said = said(&larger, &scaled(&link, unit), &scaled(&other, unit), unit);
