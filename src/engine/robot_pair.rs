@@ -170,7 +170,7 @@ impl RobotPair {
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
-    /// [`clearance`](Self::clearance).
+    /// [`clearance`](Self::clearance). A contact that is found first is the answer, whatever the curves do elsewhere.
     pub fn tubes_clear(
         &mut self,
         a: &Tube,
