@@ -301,8 +301,8 @@ impl LocalMinima {
             };
             let near = self.triangles.between(*triangles);
             self.index.number(near, wall.mesh.len());
-            let around = Surroundings { link, wall, near, index: &self.index };
-            self.prominence.choose(level, around, asked, of_link, &mut self.keep);
+            let around = Surroundings { link, wall, near, index: &self.index, margin: asked.margin };
+            self.prominence.choose(level, around, asked.prominence, of_link, &mut self.keep);
         }
         let mut keep = std::iter::repeat_n(true, first).chain(self.keep.iter().copied());
         contacts.retain(|_| keep.next().unwrap_or(true));

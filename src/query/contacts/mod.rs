@@ -2,7 +2,9 @@
 
 mod across;
 mod feet;
+mod flood;
 mod gathering;
+mod lists;
 mod local_minima;
 mod long_rings;
 mod near_triangle;

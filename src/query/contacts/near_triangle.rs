@@ -98,44 +98,15 @@ impl NearLink<'_> {
         self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// How many places there are for those in question and those on slopes.
-    pub(crate) fn places(&self) -> usize {
-        self.in_question.len() + BLOCK * self.slopes.len()
-    }
-
-    /// The place of a triangle: where it stands among those in question, or behind them if it is on a slope.
-    #[inline(always)]
-    pub(crate) fn place(&self, index: &Index, place_of: &[u32], triangle: u32) -> Option<usize> {
-        self.index(index, triangle).or_else(|| {
-            let (at, lane) = self.slope(index, place_of, triangle)?;
-            Some(self.in_question.len() + BLOCK * at + lane)
-        })
-    }
-
-    /// The leaves, lanes and places of those on slopes.
-    pub(crate) fn slopes(&self) -> impl Iterator<Item = (u32, usize, usize)> {
-        let firsts = (self.in_question.len()..).step_by(BLOCK);
-        firsts.zip(self.slopes).flat_map(|(first, &Slopes { leaf, lanes })| {
-            let lanes = (0..BLOCK).filter(move |lane| lanes >> lane & 1 == 1);
-            lanes.map(move |lane| (leaf, lane, first + lane))
-        })
-    }
-
     /// Whether a triangle certainly lies on a slope. `place_of` says where each triangle of the mesh stands in the leaves
     /// of the search; where there are none, nothing does.
     #[inline(always)]
     pub(crate) fn is_on_slope(&self, index: &Index, place_of: &[u32], triangle: u32) -> bool {
-        self.slope(index, place_of, triangle).is_some()
-    }
-
-    /// Where a triangle stands among the slopes, and its lane there, if it certainly lies on one.
-    #[inline(always)]
-    fn slope(&self, index: &Index, place_of: &[u32], triangle: u32) -> Option<(usize, usize)> {
-        let place = *place_of.get(triangle as usize)?;
+        let Some(&place) = place_of.get(triangle as usize) else { return false };
         let (leaf, lane) = (place / BLOCK as u32, place as usize % BLOCK);
-        let at = *index.of_leaf.get(leaf as usize)? as usize;
-        let slopes = self.slopes.get(at)?;
-        (slopes.leaf == leaf && slopes.lanes >> lane & 1 == 1).then_some((at, lane))
+        let at = index.of_leaf.get(leaf as usize);
+        let slopes = at.and_then(|&at| self.slopes.get(at as usize));
+        slopes.is_some_and(|slopes| slopes.leaf == leaf && slopes.lanes >> lane & 1 == 1)
     }
 }
 

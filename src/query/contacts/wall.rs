@@ -22,9 +22,4 @@ impl<'a> Wall<'a> {
     pub(super) fn place_of(&self) -> &'a [u32] {
         self.tree.map_or(&[], |tree| &tree.place_of)
     }
-
-    /// The triangle in a lane of a leaf.
-    pub(super) fn triangle_at(&self, leaf: u32, lane: usize) -> Option<u32> {
-        Some(self.tree?.leaves[leaf as usize].triangles[lane])
-    }
 }
