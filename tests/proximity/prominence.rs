@@ -447,3 +447,71 @@ fn a_pass_of_very_many_triangles_is_asked_in_time() {
     }
     assert!(best[1] < 4 * best[0], "{best:?}");
 }
+
+/// Pages that hang from one edge like those of a book, half of them from below. Those above reach up to 1 from it, at angles of up
+/// to 60 degrees with the vertical.
+fn book(count: u32) -> TriMesh {
+    let page = |k: u32| {
+        let (sin, cos) = page_angle(k / 2, count / 2).sin_cos();
+        let side = [1.0, -1.0][k as usize % 2];
+        Vector::new(0.0, sin, cos) * side
+    };
+    let spine = [Vector::new(-4.0, 0.0, 0.0), Vector::new(4.0, 0.0, 0.0)];
+    let vertices = spine.into_iter().chain((0..count).map(page)).collect();
+    let turned = |k: u32| [[0, 1, 2 + k], [1, 2 + k, 0], [2 + k, 1, 0]][k as usize % 3];
+    TriMesh::new(vertices, (0..count).map(turned).collect()).unwrap()
+}
+
+fn page_angle(page: u32, pages: u32) -> f64 {
+    (f64::from(page) + 0.3) / f64::from(pages) * (2.0 * std::f64::consts::FRAC_PI_3)
+        - std::f64::consts::FRAC_PI_3
+}
+
+/// Each page above is nearest at its tip, and the way from one to another leads over the edge, which is nearest in its
+/// middle: its ends are beyond the margin. With 16 times the pages it takes less than 4 times as long as to ask 16 times.
+#[test]
+fn very_many_pages_at_an_edge_are_as_prominent_as_they_are_high() {
+    let robot = Chain::capsules(&[Vector::new(-0.2, 0.0, 2.5), Vector::new(0.2, 0.0, 2.5)], &[0.05]).unwrap();
+    // How much higher the edge is than the tip of each page: 0.32 to 1.
+    let rises = |pages: u32| {
+        let rise = move |page: u32| {
+            let (sin, cos) = page_angle(page, pages).sin_cos();
+            2.5 - sin.hypot(2.5 - cos)
+        };
+        (0..pages).map(rise).collect::<Vec<_>>()
+    };
+    let expected = |rises: &[f64], margin: f64, prominence: f64| {
+        assert!(rises.iter().all(|rise| (rise - prominence).abs() > 1e-9), "a tie");
+        let is_kept = |rise: &&f64| **rise > prominence || margin < 2.45;
+        // The nearest of all stays, however low it is.
+        rises.iter().filter(is_kept).count().max(1)
+    };
+    let meshes = [(16, 1_000), (1, 16_000)].map(|(times, count)| (times, book(count), rises(count / 2)));
+    let mut engines = meshes.map(|(times, mesh, rises)| {
+        let engines = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
+        (times, engines, rises)
+    });
+    let mut best = [Duration::MAX; 2];
+    for round in 0..30 {
+        if round >= 3 && best[1] < 4 * best[0] {
+            break;
+        }
+        for ((times, (search, exhaustive), rises), best) in engines.iter_mut().zip(&mut best) {
+            let begin = Instant::now();
+            for time in 0..*times {
+                for (margin, prominence) in [(3.0, 0.1), (3.0, 0.55), (3.0, 0.9), (3.0, 2.0), (2.44, 2.0)] {
+                    let expected = expected(rises, margin, prominence);
+                    let found = within(search, &robot, margin, prominence);
+                    assert_eq!(found.len(), expected, "{margin} {prominence}");
+                    if time == 0 && round == 0 {
+                        assert_eq!(found, within(exhaustive, &robot, margin, prominence));
+                        let is_some = expected > 1 && expected < rises.len();
+                        assert_eq!(is_some, matches!(prominence, 0.55 | 0.9), "{expected}");
+                    }
+                }
+            }
+            *best = (*best).min(begin.elapsed());
+        }
+    }
+    assert!(best[1] < 4 * best[0], "{best:?}");
+}
