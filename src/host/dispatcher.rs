@@ -35,7 +35,7 @@ use parry3d_f64::shape::Shape;
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
 /// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | separates, to rounding; round links and balls exact; the shortest translation but for what stands below | separates, to rounding; the shortest translation but for what stands below |
-/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-9 of the link's size at most | never late but for GJK; early by 1e-5 |
+/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-9 of the smaller link's size at most | never late but for GJK; early by 1e-5 |
 /// | `cast_shapes_nonlinear` | never late | never late | never late | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | exact points along the contact's normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///

@@ -64,6 +64,22 @@ fn from(link: &ModifiedCylinder, origin: Vector) -> ModifiedCylinder {
     link.transformed(&Pose::from_translation(-origin))
 }
 
+/// The name on the other link of what lies over a cap: a corner or an edge of the triangle that stands for its crest, which goes
+/// there and back. Both ends may lie over one cap, and where one is on the rim, to rounding, the way there may have one
+/// crossing and the way back the other: each has a name of its own.
+fn of_crest(of_triangle: PackedFeatureId) -> PackedFeatureId {
+    let is = |corner| of_triangle == PackedFeatureId::vertex(corner);
+    if is(0) {
+        feature::crest_end(0)
+    } else if is(1) || is(2) {
+        feature::crest_end(1)
+    } else if of_triangle == PackedFeatureId::edge(0) {
+        feature::BARREL.into()
+    } else {
+        PackedFeatureId::edge(feature::BARREL_LINE)
+    }
+}
+
 struct LinkLinkPoint {
     on_first: Vector,
     dist: Real,
@@ -112,7 +128,8 @@ impl LinkLinkMeeting {
         let mut below = Meeting::new(link, [v, w, w], normal, self.extent);
         rim::collect(&mut below);
         for point in below.points {
-            let names = [point.of_link, feature::BARREL.into()];
+            let of_other = of_crest(point.of_triangle);
+            let names = [point.of_link, of_other];
             if is_second {
                 self.add(point.on_link + normal * point.dist, point.dist, [names[1], names[0]]);
             } else {

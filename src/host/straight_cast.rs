@@ -36,7 +36,7 @@ const MOST_STEPS: usize = 200;
 
 /// What a link may meet, in the link's frame.
 trait CastWall {
-    /// The share of a link's size at which it counts as touching.
+    /// The share of the smaller link's size at which it counts as touching.
     const TOUCHING: Real;
 
     /// The contact with the wall after it has moved.
@@ -47,6 +47,11 @@ trait CastWall {
 
     /// The largest coordinate before it has moved.
     fn largest(&self) -> Result<Real, Unsupported>;
+
+    /// Its length and radius where it is a link, of which the smaller of both counts.
+    fn size(&self) -> Real {
+        Real::INFINITY
+    }
 }
 
 /// The first hit of a link and a triangle, of which the second of the pair moves at `local_vel12` in the frame of the
@@ -144,6 +149,10 @@ impl CastWall for LinkWall<'_> {
 
     fn begins(&self, normal: Vector) -> Real {
         self.wall.local_support_point_toward(-normal).dot(normal)
+    }
+
+    fn size(&self) -> Real {
+        self.wall.length() + self.wall.radius()
     }
 
     fn largest(&self) -> Result<Real, Unsupported> {
@@ -250,6 +259,7 @@ impl<'a> WallsWay<'a> {
         let (link, velocity) = (self.link, self.velocity);
         let (mut time, mut status) = (0.0, ShapeCastStatus::OutOfIterations);
         let largest = link.radius().max(wall.largest()?);
+        let size = wall.size().min(link.length() + link.radius());
         let mut contact = finite(wall.contact(Vector::ZERO)?)?;
         for step in 0..MOST_STEPS {
             let normal = contact.normal;
@@ -259,8 +269,7 @@ impl<'a> WallsWay<'a> {
             let begins = wall.begins(normal) + shift.dot(normal);
             let gap = begins - link.local_support_point(normal).dot(normal);
             let ahead = gap.min(contact.distance) - options.target_distance;
-            let (rounding, touching) =
-                (self.rounding(largest, shift)?, W::TOUCHING * (link.length() + link.radius()));
+            let (rounding, touching) = (self.rounding(largest, shift)?, W::TOUCHING * size);
             if step == 0 && (excess <= 0.0 || ahead <= rounding) {
                 let is_known = contact.distance < 0.0 || gap >= contact.distance - touching - rounding;
                 let may_go = if options.stop_at_penetration { excess > 0.0 && ahead > 0.0 } else { is_known };

@@ -6,6 +6,7 @@ use crate::answer::{
 };
 use crate::distance::{DoubleDouble, Scalar};
 use crate::engine::{BvhSearch, Proximity, RobotPair};
+use crate::pair::PlacedRobot;
 use crate::query::{check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -166,6 +167,7 @@ impl Scene {
     /// # Errors
     /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's number.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
+        check_poses(robots)?;
         if let Some([structure, robot]) = self.met.filter(|met| self.have(*met, robots))
             && !self.clears_one(structure, robot, robots)?
         {
@@ -203,6 +205,7 @@ impl Scene {
     /// # Errors
     /// As [`clears`](Self::clears).
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
+        check_poses(robots)?;
         let mut best: Best = None;
         if let Some([structure, robot]) = self.tightest.filter(|last| self.have(*last, robots)) {
             self.tighter(structure, robot, robots, &mut best)?;
@@ -412,6 +415,14 @@ fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
 
 fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
+}
+
+/// Whoever is held against nothing has a pose that can be used all the same.
+fn check_poses(robots: &[(&Chain, Pose)]) -> Result<(), SceneError> {
+    for (robot, (chain, pose)) in robots.iter().enumerate() {
+        PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
+    }
+    Ok(())
 }
 
 /// Of an error about two robots, which one it is about.

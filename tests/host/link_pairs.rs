@@ -6,7 +6,7 @@ use continuum_testing::Random;
 use continuum_testing::placements::Wall;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::*;
-use parry_continuum::parry::shape::{Capsule, Shape};
+use parry_continuum::parry::shape::{Ball, Capsule, Shape};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
 /// All that is said of a pair, in words: numbers are written so that they are read back as they were.
@@ -95,6 +95,47 @@ fn a_ball_a_capsule_and_a_cylinder_are_links() {
         }
     }
     assert!(overlapping > 300, "{overlapping}");
+}
+
+/// Hosts find a point again by its names, and start its force from what it was.
+#[test]
+fn no_two_points_of_a_manifold_have_the_same_names() {
+    let dispatcher = ContinuumDispatcher::default();
+    let names = |pos12: &Pose, g1: &ModifiedCylinder, g2: &ModifiedCylinder| {
+        let mut manifold = ContactManifold::<(), ()>::new();
+        dispatcher.contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.3, &mut manifold).unwrap();
+        let names: Vec<_> = manifold.points.iter().map(|point| (point.fid1, point.fid2)).collect();
+        let are_all_new = names.iter().enumerate().all(|(k, name)| !names[..k].contains(name));
+        assert!(are_all_new, "{names:?}: {g1:?} {g2:?} {pos12:?}");
+        names.len()
+    };
+    // A rod that lies on a cap, both ends of which are over it.
+    let table = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z, 1.0).unwrap();
+    let rod = ModifiedCylinder::capsule(Vector::X * -0.5, Vector::X * 0.5, 0.1).unwrap();
+    let above = Pose::translation(0.0, 0.0, 1.1);
+    assert_eq!([names(&above, &table, &rod), names(&above.inverse(), &rod, &table)], [2, 2]);
+    let mut random = Random::new(456);
+    let mut several = 0;
+    for _ in 0..2000 {
+        let (link, wall, pose) = random.aligned(Wall::Link);
+        several += usize::from(names(&pose, &link, &as_link(&*wall)) > 1);
+    }
+    assert!(several > 200, "{several}");
+}
+
+/// A large ball on the way of a small link: it stops by the small one's measure, whichever of them is named first.
+#[test]
+fn a_cast_stops_by_the_measure_of_the_smaller_link() {
+    let large = Ball::new(1000.0);
+    let small = ModifiedCylinder::capsule(Vector::X * 1e-3, Vector::X * 2e-3, 1e-3).unwrap();
+    let dispatcher = ContinuumDispatcher::default();
+    let place = Pose::translation(1000.5, 0.0, 0.0);
+    let options = ShapeCastOptions::default();
+    let towards = dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
+    let back = dispatcher.cast_shapes(&place.inverse(), Vector::X, &small, &large, options).unwrap().unwrap();
+    for hit in [towards, back] {
+        assert!((0.5 - 1e-10..=0.5 + 1e-12).contains(&hit.time_of_impact), "{:e}", hit.time_of_impact - 0.5);
+    }
 }
 
 /// Multiplied by a power of two, everything is as many times as large, bit for bit.

@@ -176,6 +176,11 @@ fn a_tube_inside_another_does_not_collide_with_it() {
         assert!(!scene.clears(&robots).unwrap());
         scene.set_robot_margin(Some(0.25)).unwrap();
     }
+    // Nothing is asked of the second, but that it be somewhere.
+    let nowhere = [robots[0], (&inner, Pose::from_translation(Vector::splat(f64::NAN)))];
+    scene.set_nested(&[[0, 1]]);
+    assert!(matches!(scene.clears(&nowhere), Err(SceneError::Robot { robot: 1, .. })));
+    assert!(matches!(scene.tightest(&nowhere), Err(SceneError::Robot { robot: 1, .. })));
     scene.set_nested(&[]);
     assert_eq!(scene.tightest(&robots).unwrap().unwrap().slack, -0.25);
 }

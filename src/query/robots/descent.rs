@@ -1,9 +1,10 @@
 //! Two trees of links at once, the nearer pair of nodes first.
 //!
 //! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
-//! divided, until both are so few that their links are compared all at once, in packs: the nodes of a coil are as near as its
-//! links, and a pack costs no more than a pair of nodes. The nearest link of them is looked at first. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it
-//! is looked at, unless that distance is 0 and its lowest links come after those that were found.
+//! divided, until both have so few links that all are compared at once, in packs: the nodes of a coil are as near as its links,
+//! and a pack costs no more than a pair of nodes. The nearest of these pairs is looked at first. Where the limit is a distance that
+//! has been found, a pair that is as far may still hold lower links, so it is looked at, unless that distance is 0 and its
+//! lowest links come after those that were found.
 
 use super::outline_rows::Block;
 use super::outlines::{Outlines, SearchFrame};

@@ -274,6 +274,9 @@ impl<'a> OneRobot<'a> {
                     continue;
                 }
                 let other = self.robot.link(facing.link);
+                if !ball.may_be_within(bound, &other) {
+                    continue;
+                }
                 let nearest = face.nearest_to_face(&self.robot, facing);
                 let (way, slack) = way(&nearest, [&on_face, &other]);
                 if face.sees(&self.robot, way, slack) && facing.sees(&self.robot, -way, slack) {
