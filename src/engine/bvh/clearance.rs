@@ -76,7 +76,7 @@ impl BvhSearch {
     /// Whether a tube keeps more than `margin` away from the mesh.
     ///
     /// `Clear` and `Contact` are proven. `Undecided` is the answer only where the clearance is within `resolution` of
-    /// the margin.
+    /// the margin, or where 65,536 pieces of the tube do not decide it.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};

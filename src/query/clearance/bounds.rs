@@ -7,9 +7,9 @@ use crate::pieces::{
 };
 use parry3d_f64::math::Real;
 
-/// After so many pieces none is halved any more, and the bounds are what they are: a limit on the time that a query takes,
-/// far above what any tolerance needs that the samples allow.
-const MOST_PIECES: u32 = 1 << 16;
+/// After so many pieces none is halved any more, and the bounds are what they are, or a margin stays undecided: a limit on the
+/// time that a query takes, far above what any tolerance needs that the samples allow.
+pub(super) const MOST_PIECES: u32 = 1 << 16;
 
 /// The clearance, with bounds no farther apart than the tolerance where the tube allows that.
 ///

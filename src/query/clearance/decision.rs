@@ -1,5 +1,6 @@
 //! Whether a tube keeps a margin.
 
+use super::bounds::MOST_PIECES;
 use super::memory::TubeMemory;
 use crate::answer::{Decision, ProximityError};
 use crate::pieces::{Body, Bound, Divided, Look, Near, Part, Question, TubeInMesh, Verdict, refine};
@@ -37,7 +38,8 @@ pub(crate) fn keeps<T: Divided<Piece: Part<T>>>(
     resolution: Real,
     start: Option<u32>,
 ) -> Result<(Decision, Option<T::Found>), ProximityError> {
-    let mut question = Keeps { margin, resolution, decision: Decision::Clear, start, contact: None };
+    let mut question =
+        Keeps { margin, resolution, decision: Decision::Clear, start, contact: None, left: MOST_PIECES };
     refine(tube, pieces, &mut question)?;
     Ok((question.decision, question.contact))
 }
@@ -49,6 +51,8 @@ struct Keeps<F> {
     start: Option<u32>,
     /// Where the margin is not kept.
     contact: Option<F>,
+    /// How many pieces may still be halved.
+    left: u32,
 }
 
 impl<T: Divided> Question<T, T::Piece> for Keeps<T::Found> {
@@ -66,7 +70,10 @@ impl<T: Divided> Question<T, T::Piece> for Keeps<T::Found> {
         outer: &T::Body,
     ) -> Result<Look, ProximityError> {
         let Self { margin, resolution, start, .. } = *self;
-        let is_wide = outer.over() > 2.0 * resolution && outer.over() > 0.5 * tube.radius(piece).max(margin);
+        self.left = self.left.saturating_sub(1);
+        let is_wide = self.left > 0
+            && outer.over() > 2.0 * resolution
+            && outer.over() > 0.5 * tube.radius(piece).max(margin);
         Ok(Look { bound: margin, is_wide, aim: resolution, start })
     }
 
@@ -79,7 +86,7 @@ impl<T: Divided> Question<T, T::Piece> for Keeps<T::Found> {
             self.contact = Some(*near.found);
             return Ok(Verdict::Answered);
         }
-        if upper - T::distance(near.nearest) <= self.resolution + tube.stated(near.piece) {
+        if self.left == 0 || upper - T::distance(near.nearest) <= self.resolution + tube.stated(near.piece) {
             self.decision = Decision::Undecided;
             return Ok(Verdict::Settled);
         }

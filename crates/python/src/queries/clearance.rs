@@ -216,7 +216,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     The answer is undecided only where the clearance is within this of the margin.
+    ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
+    ///     pieces do not decide it.
     ///
     /// Returns
     /// -------
