@@ -253,7 +253,7 @@ pub enum RobotError {
     #[error(
         "the centreline turns so sharply at point {index} that it may turn by {turn} rad between point {after} and the next; if the \
          robot bends so, give more points there; if the points are measured, use `Tube::fit`; check the end tangents if there are \
-         any; for a robot of straight links use a Chain"
+         any; give frames at one place one direction; for a robot of straight links use a Chain"
     )]
     TurnsTooSharply {
         /// Position in the input of the point where it turns most.

@@ -1,5 +1,12 @@
 //! A tube from frames: points of the centreline with the directions that it has there. What is assumed between two of them is
 //! told in `arch`.
+//!
+//! **A frame that is taken twice**, as where one section ends and the next begins. The curve arrives in the direction of the first and
+//! leaves in that of the last, so that each arch has its own directions. Let q be by how much these differ. A curve that turned
+//! by q there would have a corner: the discs between the two would sweep the ball around the point, of which no arch knows
+//! and no face. And an arch that left in the other direction would be off by up to 4/27 q l in a segment l long, twice what
+//! `arch` allows for. So what is more than rounding, q > 2^-32, is refused. For less, each of these discs is within r q of one
+//! that the tube has, which counts in all bounds like the gap between the points.
 
 use super::Tube;
 use super::arch::Arch;
@@ -8,7 +15,7 @@ use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
 use crate::robot::scale::direction;
-use crate::robot::steps::is_same;
+use crate::robot::steps::{SAME, is_same};
 use parry3d_f64::math::{Real, Vector};
 
 /// The two neighbours of an arch on either side, as far as there are any.
@@ -29,7 +36,8 @@ impl Tube {
     /// bounds of each answer, and is nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
     /// segment and its neighbours, is not covered: give more frames there.
     ///
-    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them.
+    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them. A frame may be taken twice, its
+    /// directions up to 2^-32 rad apart, which counts in all bounds.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -44,7 +52,8 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero or not finite.
+    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero or not finite; or two frames at
+    /// one place with different directions, between which the curve would have a corner.
     pub fn from_frames(
         points: &[Vector],
         tangents: &[Vector],
@@ -66,17 +75,22 @@ impl Tube {
         let reach = reach * scale;
         let (rounding, one_place) = (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
         let (mut arches, mut last, mut gap) = (Vec::<Arch>::new(), 0, 0.0);
+        let (mut leaving, mut most_turn, mut widest): (_, Real, Real) = (directions[0], 0.0, 0.0);
         for (k, &radius) in segment_radii.iter().enumerate() {
-            let ends = [points[last] * scale, points[k + 1] * scale];
+            let (ends, arriving) = ([points[last] * scale, points[k + 1] * scale], directions[k + 1]);
+            widest = widest.max(radius);
             let apart = (ends[1] - ends[0]).length();
             if apart <= one_place {
-                gap = apart.max(gap);
+                let turn = (arriving - directions[last]).length();
+                if turn > SAME {
+                    let turn = 2.0 * libm::asin((0.5 * turn).min(1.0));
+                    return Err(RobotError::TurnsTooSharply { index: k + 1, after: k, turn });
+                }
+                (gap, leaving, most_turn) = (apart.max(gap), arriving, turn.max(most_turn));
                 continue;
             }
-            let arch =
-                Arch::between(k as u32, radius, ends, [directions[last], directions[k + 1]], rounding + gap);
-            arches.extend(arch);
-            last = k + 1;
+            arches.extend(Arch::between(k as u32, radius, ends, [leaving, arriving], rounding + gap));
+            (last, leaving) = (k + 1, arriving);
         }
         let unscale = 1.0 / scale;
         let curve = std::mem::take(&mut tube.curve);
@@ -100,7 +114,7 @@ impl Tube {
             let end = arches.get(number + 1).map_or(points[last] * scale, |next| next.start);
             laid.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
         }
-        laid.finish(&mut tube, 0.0, stretch, gap * unscale)?;
+        laid.finish(&mut tube, 0.0, stretch, gap * unscale + most_turn * widest)?;
         Ok(tube)
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Seen, discs, judge};
 use continuum_testing::{Arcs, Random};
-use parry_continuum::Tube;
 use parry_continuum::parry::math::Vector;
+use parry_continuum::{RobotError, Tube};
 use std::f64::consts::TAU;
 
 /// How the curvature goes along a stretch.
@@ -98,4 +98,47 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
     }
     assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
     assert!(seen.resolved > 9_000, "{seen:?} {kinds:?}");
+}
+
+/// Two straight arms that meet at a corner, or do not: the frame there is taken twice.
+#[test]
+fn a_corner_between_two_frames_at_one_place_is_refused() {
+    let arms = |turns: &[f64]| {
+        let (mut points, mut tangents) =
+            (vec![Vector::new(-4.0, 0.0, 0.0), Vector::new(-2.0, 0.0, 0.0)], vec![Vector::X; 2]);
+        for &turn in turns {
+            points.push(Vector::ZERO);
+            tangents.push(Vector::new(turn.cos(), turn.sin(), 0.0) * 3.0);
+        }
+        let onwards = tangents[tangents.len() - 1] / 3.0;
+        points.extend([onwards * 2.0, onwards * 4.0]);
+        tangents.extend([onwards; 2]);
+        let radii = vec![0.5; points.len() - 1];
+        Tube::from_frames(&points, &tangents, &radii)
+    };
+    // Rounding is no corner.
+    for turns in [vec![0.0], vec![0.0, 0.0], vec![0.0, 1e-15], vec![0.0, 1e-10, -1e-10, 0.0]] {
+        assert!((arms(&turns).unwrap().length() - 8.0).abs() < 1e-9, "{turns:?}");
+    }
+    // Those below 0.4 rad were taken for bends of the segment behind, which is straight.
+    for corner in [1e-6, 0.01, 0.1, 0.3, 1.0, 2.0, std::f64::consts::PI] {
+        let error = arms(&[0.0, corner]).unwrap_err();
+        let RobotError::TurnsTooSharply { index, after, turn } = error else { panic!("{corner}: {error}") };
+        assert_eq!((index, after), (3, 2), "{error}");
+        assert!((turn - corner).abs() < 1e-7, "{error}");
+        // And where it is between them and one that is the first again.
+        assert!(arms(&[0.0, corner, 0.0]).is_err(), "{corner}");
+    }
+}
+
+/// At the tip, where the face would stand as the first of the two says.
+#[test]
+fn two_directions_of_a_tip_are_refused() {
+    let points = [Vector::ZERO, Vector::Z, Vector::Z * 2.0, Vector::Z * 2.0];
+    let frames = |turn: f64| {
+        let last = Vector::new(0.0, turn.sin(), turn.cos());
+        Tube::from_frames(&points, &[Vector::Z, Vector::Z, Vector::Z, last], &[0.5; 3])
+    };
+    assert!(frames(1e-15).is_ok());
+    assert!(matches!(frames(0.1), Err(RobotError::TurnsTooSharply { index: 3, after: 2, .. })));
 }
