@@ -8,6 +8,6 @@ pub enum Decision {
     Clear,
     /// The clearance is at most the margin. This is proven.
     Contact,
-    /// Neither: the clearance is within the resolution of the margin, or the input leaves it open.
+    /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on the work, leaves it open.
     Undecided,
 }

@@ -166,7 +166,7 @@ impl RobotPair {
     }
 
     /// Whether two tubes keep more than `margin`. `Clear` and `Contact` are proven; `Undecided` is the answer only where the
-    /// clearance is within `resolution` of the margin, or where 65,536 pieces do not decide it.
+    /// clearance is within `resolution` of the margin, or where 65,536 pairs of pieces do not decide it.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as

@@ -140,7 +140,6 @@ fn two_steps_face_one_another() {
     assert_eq!(self_minimum(&robot).unwrap().unwrap().distance, 2.0);
 }
 
-/// Two axes that are nearest at places within both are a local minimum, whatever the joints between them.
 /// A thick tube, and a thin one that comes back between a quarter and half a turn later and runs into its end: points of both in one
 /// place, which rounding leaves some units in the last place apart, in any direction.
 #[test]
@@ -169,6 +168,7 @@ fn a_tip_that_runs_into_a_face_is_never_lost() {
     assert!(apart > 100, "rounding parted only {apart}");
 }
 
+/// Two axes that are nearest at places within both are a local minimum, whatever the joints between them.
 #[test]
 fn no_local_minimum_is_left_out() {
     let mut random = Random::new(1);

@@ -39,8 +39,9 @@
 //! joined yet.
 //!
 //! Only from a minimum that is kept all is followed that is below d(C) + p. A triangle is at the rim of few such pieces: those of
-//! their minima that are in one piece differ in their normals by more than 60 degrees, and no more than a dozen can. So the work
-//! grows with what is less than p above a minimum, and at most with the triangles within the margin. Of those that are
+//! their minima that are in one piece differ in their normals by more than 60 degrees, and no more than a dozen can. So their work
+//! grows with what is less than p above a minimum, and at most with the triangles within the margin. One that is left out may
+//! go around the whole rim of such a piece before it meets what stands for it, but mostly that is beside it. Of those that are
 //! kept in one piece a minimum asks one after another, first the one that answered last: where there are many, most have
 //! such a normal.
 
@@ -95,7 +96,7 @@ impl Prominence {
             };
             let below = contact.distance + prominence;
             let is_left_out = is_near
-                && kept.iter().any(|&other| stands_for_it(other))
+                && one_stands(kept, stands_for_it)
                 && flood.reaches(level, around, contact.triangle, below, stands_for_it);
             if is_near && !is_left_out {
                 flood.keep(around, contact.triangle, minimum);
@@ -104,4 +105,13 @@ impl Prominence {
             keep.push(!is_left_out);
         }
     }
+}
+
+/// Whether one of them stands for a minimum. It is the first to be asked about the next, which mostly is beside this one.
+fn one_stands(kept: &mut [u32], stands_for_it: impl Fn(u32) -> bool) -> bool {
+    let place = kept.iter().position(|&other| stands_for_it(other));
+    if let Some(place) = place {
+        kept.swap(0, place);
+    }
+    place.is_some()
 }

@@ -2,11 +2,12 @@
 //! told in `arch`.
 //!
 //! **A frame that is taken twice**, as where one section ends and the next begins. The curve arrives in the direction of the first and
-//! leaves in that of the last, so that each arch has its own directions. Let q be by how much these differ. A curve that turned
-//! by q there would have a corner: the discs between the two would sweep the ball around the point, of which no arch knows
-//! and no face. And an arch that left in the other direction would be off by up to 4/27 q l in a segment l long, twice what
-//! `arch` allows for. So what is more than rounding, q > 2^-32, is refused. For less, each of these discs is within r q of one
-//! that the tube has, which counts in all bounds like the gap between the points.
+//! leaves in that of the last. Let q be by how much these differ. A curve that turned by q there would have a corner: the discs
+//! between the two would sweep the ball around the point, of which no arch knows and no face. So a corner is refused. But what is
+//! left of one direction by matrices in single precision, q <= 2^-16, is none. Then either direction may be the true one. Each disc
+//! is within r q of one that the tube has; and an arch of length l that left in the other direction would be off by up to
+//! 4/27 q l, the most that a cubic moves by a change of q in one of its end tangents. Both count in all bounds like the gap
+//! between the points.
 
 use super::Tube;
 use super::arch::Arch;
@@ -15,8 +16,11 @@ use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
 use crate::robot::scale::direction;
-use crate::robot::steps::{SAME, is_same};
+use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
+
+/// How far the directions of two frames at one place may be apart.
+const ONE_DIRECTION: Real = 1.0 / (1_u64 << 16) as Real;
 
 /// The two neighbours of an arch on either side, as far as there are any.
 fn around<'a>(number: usize, find: impl Fn(usize) -> Option<&'a Arch>) -> [[Option<&'a Arch>; 2]; 2] {
@@ -37,7 +41,7 @@ impl Tube {
     /// segment and its neighbours, is not covered: give more frames there.
     ///
     /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them. A frame may be taken twice, its
-    /// directions up to 2^-32 rad apart, which counts in all bounds.
+    /// directions up to 2^-16 rad apart, which counts in all bounds.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -75,16 +79,18 @@ impl Tube {
         let reach = reach * scale;
         let (rounding, one_place) = (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
         let (mut arches, mut last, mut gap) = (Vec::<Arch>::new(), 0, 0.0);
-        let (mut leaving, mut most_turn, mut widest): (_, Real, Real) = (directions[0], 0.0, 0.0);
+        let (mut leaving, mut most_turn): (_, Real) = (directions[0], 0.0);
+        let (mut widest, mut longest): (Real, Real) = (0.0, 0.0);
         for (k, &radius) in segment_radii.iter().enumerate() {
             let (ends, arriving) = ([points[last] * scale, points[k + 1] * scale], directions[k + 1]);
             widest = widest.max(radius);
             let apart = (ends[1] - ends[0]).length();
+            longest = longest.max(apart);
             if apart <= one_place {
                 let turn = (arriving - directions[last]).length();
-                if turn > SAME {
+                if turn > ONE_DIRECTION {
                     let turn = 2.0 * libm::asin((0.5 * turn).min(1.0));
-                    return Err(RobotError::TurnsTooSharply { index: k + 1, after: k, turn });
+                    return Err(RobotError::TurnsTooSharply { index: k + 1, after: last, turn });
                 }
                 (gap, leaving, most_turn) = (apart.max(gap), arriving, turn.max(most_turn));
                 continue;
@@ -114,7 +120,9 @@ impl Tube {
             let end = arches.get(number + 1).map_or(points[last] * scale, |next| next.start);
             laid.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
         }
-        laid.finish(&mut tube, 0.0, stretch, gap * unscale + most_turn * widest)?;
+        // 0.15 is more than 4/27, and than an arch is longer than its chord.
+        let turned = most_turn * (widest + 0.15 * longest * unscale);
+        laid.finish(&mut tube, 0.0, stretch, gap * unscale + turned)?;
         Ok(tube)
     }
 }

@@ -104,7 +104,7 @@ impl Mesh {
     /// tangents : (2, 3), (N, 3), (B, 2, 3) or (B, N, 3) array, optional
     ///     The directions of the curve at its two ends or at all points, towards the tip, of any length. Those of the ends tell
     ///     how the flat ends are turned, and those of all points how the curve bends between them: without them the bounds are
-    ///     as wide as the points leave that open.
+    ///     as wide as the points leave that open. A point that is given twice needs one direction.
     /// deviation : float
     ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
     ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.

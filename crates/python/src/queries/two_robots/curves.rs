@@ -198,7 +198,7 @@ impl RobotPair {
     ///     A length, at least 0.
     /// resolution : float
     ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
-    ///     pieces do not decide it.
+    ///     pairs of pieces do not decide it.
     /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
     ///     Of either robot as for `Mesh.clearance`.
     ///
