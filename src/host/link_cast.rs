@@ -191,7 +191,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
                 }
                 let contact = link_triangle::contact(link, corners).ok_or(Unsupported)?;
                 (distance, on_link, normal) = (contact.distance, contact.on_link, contact.normal);
-                (on_wall, share) = (contact.on_triangle, TOUCHING);
+                (on_wall, share) = (contact.on_other, TOUCHING);
             }
             MovingWall::HalfSpace(plane) => {
                 normal = pos12.rotation * -plane;
@@ -274,11 +274,11 @@ fn touched_plane(
     wall: impl Fn(Vector) -> Vector,
 ) -> (Vector, Real) {
     if contact.distance <= 0.0 {
-        return (contact.on_triangle, 0.0);
+        return (contact.on_other, 0.0);
     }
     let normal = contact.normal;
-    let before = (wall(-normal) - contact.on_triangle).dot(normal);
-    let on_wall = contact.on_triangle + normal * before;
+    let before = (wall(-normal) - contact.on_other).dot(normal);
+    let on_wall = contact.on_other + normal * before;
     (on_wall, (on_wall - link.local_support_point_toward(normal)).dot(normal))
 }
 

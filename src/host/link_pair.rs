@@ -98,9 +98,9 @@ impl LinkPair {
     /// Their contact however far they are apart, in the first shape's frame.
     pub fn link_contact(&self) -> Option<LinkContact> {
         let touch = self.touch(Real::INFINITY)?;
-        let [on_link, on_triangle] =
+        let [on_link, on_other] =
             [touch.on_first, touch.on_first + touch.normal * touch.dist].map(|point| self.place(point));
-        Some(LinkContact { distance: self.length(touch.dist), on_link, on_triangle, normal: touch.normal })
+        Some(LinkContact { distance: self.length(touch.dist), on_link, on_other, normal: touch.normal })
     }
 
     /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in the shapes' unit and 0 at

@@ -61,16 +61,16 @@ impl<'a> LinkTrianglePair<'a> {
     }
 }
 
-/// Where a link and a triangle meet, in the frame of both.
+/// Where a link and what it is beside meet, a triangle, another link or a convex shape, in the frame of both.
 #[derive(Clone, Copy)]
 pub(super) struct LinkContact {
     /// Distance, or minus the length of the least separating translation.
     pub distance: Real,
-    /// A point of the link; beyond the triangle if they overlap.
+    /// A point of the link; beyond the other if they overlap.
     pub on_link: Vector,
-    /// A point of the triangle, `distance` from the other along the normal.
-    pub on_triangle: Vector,
-    /// Unit vector from the link to the triangle.
+    /// A point of the other, `distance` from that of the link along the normal.
+    pub on_other: Vector,
+    /// Unit vector from the link to the other.
     pub normal: Vector,
 }
 
@@ -90,7 +90,7 @@ pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<
     Some(LinkContact {
         distance: found.distance * local.unit,
         on_link: local.origin + found.on_link * local.unit,
-        on_triangle: local.origin + found.on_triangle * local.unit,
+        on_other: local.origin + found.on_other * local.unit,
         normal: found.normal,
     })
 }
@@ -144,26 +144,26 @@ impl Local {
             // Cases 1 and 2.
             if distance > 0.0 || (to_axis.distance > ROUNDING && to_flat > ROUNDING - distance) {
                 let normal = pair.widest_gap([Some(outward), None], distance).normal;
-                let (on_link, on_triangle) = (on_axis + normal * radius, on_axis + from_axis);
-                return Some(LinkContact { distance, on_link, on_triangle, normal });
+                let (on_link, on_other) = (on_axis + normal * radius, on_axis + from_axis);
+                return Some(LinkContact { distance, on_link, on_other, normal });
             }
         }
-        let (distance, on_link, on_triangle) = closest(link, self.triangle);
+        let (distance, on_link, on_other) = closest(link, self.triangle);
         if distance > margin {
             return None;
         }
         // Case 1.
         if distance > 0.0 {
-            let mut best = pair.widest_gap([unit(on_triangle - on_link), outward], distance);
+            let mut best = pair.widest_gap([unit(on_other - on_link), outward], distance);
             if best.gap <= 0.0 {
                 best = pair.widest_of_all(best);
             }
-            return Some(LinkContact { distance, on_link, on_triangle, normal: best.normal });
+            return Some(LinkContact { distance, on_link, on_other, normal: best.normal });
         }
         // Case 3.
         let depth::Way { gap, normal } = pair.least_translation(outward);
         let distance = gap.min(0.0);
         let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
-        Some(LinkContact { distance, on_link, on_triangle: on_moved + normal * distance, normal })
+        Some(LinkContact { distance, on_link, on_other: on_moved + normal * distance, normal })
     }
 }

@@ -212,7 +212,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     fn report(&self, contact: &LinkContact) -> Contact {
-        let (point1, point2) = self.points(contact.on_link, contact.on_triangle);
+        let (point1, point2) = self.points(contact.on_link, contact.on_other);
         // Out of the first shape, in the frame that the pair is measured in.
         let outward = if self.robot_is_first { contact.normal } else { -contact.normal };
         let rotation = self.pos12.rotation;

@@ -204,10 +204,10 @@ pub(super) fn iterated_contact(
         ClosestPoints::Disjoint => return Err(Unsupported),
         ClosestPoints::Intersecting => None,
         ClosestPoints::WithinMargin(on_link, on_wall) => {
-            let on_triangle = pose * on_wall;
-            unit(on_triangle - on_link).map(|normal| {
-                let distance = (on_triangle - on_link).dot(normal);
-                LinkContact { distance, on_link, on_triangle, normal }
+            let on_other = pose * on_wall;
+            unit(on_other - on_link).map(|normal| {
+                let distance = (on_other - on_link).dot(normal);
+                LinkContact { distance, on_link, on_other, normal }
             })
         }
     };
@@ -220,12 +220,12 @@ pub(super) fn iterated_contact(
     let contact = dispatcher.contact(pose, link, shape, Real::MAX)?.map(|contact| LinkContact {
         distance: if apart.is_some() { contact.dist } else { contact.dist.min(0.0) },
         on_link: contact.point1,
-        on_triangle: pose * contact.point2,
+        on_other: pose * contact.point2,
         normal: contact.normal1,
     });
     let start = link.start();
     // Where the one says that they meet and the other does not, they touch; nobody knows along what.
-    let touch = LinkContact { distance: 0.0, on_link: start, on_triangle: start, normal: Vector::X };
+    let touch = LinkContact { distance: 0.0, on_link: start, on_other: start, normal: Vector::X };
     Ok(match (contact, apart) {
         (Some(contact), Some(apart)) if gap(contact.normal) < gap(apart.normal) => apart,
         (Some(contact), _) => contact,
@@ -331,7 +331,7 @@ impl<'a> WallsWay<'a> {
         let hit = ShapeCastHit {
             time_of_impact: time,
             witness1: contact.on_link,
-            witness2: to_wall * (contact.on_triangle - shift - self.pose.translation),
+            witness2: to_wall * (contact.on_other - shift - self.pose.translation),
             normal1: contact.normal,
             normal2: to_wall * -contact.normal,
             status,
