@@ -256,6 +256,10 @@ impl<'a> WallsWay<'a> {
         wall: &W,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        // Not even what touches at once comes in a time that has passed.
+        if options.max_time_of_impact < 0.0 {
+            return Ok(None);
+        }
         let (link, velocity) = (self.link, self.velocity);
         let (mut time, mut status) = (0.0, ShapeCastStatus::OutOfIterations);
         let largest = link.radius().max(wall.largest()?);

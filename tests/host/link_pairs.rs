@@ -133,6 +133,11 @@ fn a_cast_stops_by_the_measure_of_the_smaller_link() {
     let options = ShapeCastOptions::default();
     let towards = dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
     let back = dispatcher.cast_shapes(&place.inverse(), Vector::X, &small, &large, options).unwrap().unwrap();
+    // Nothing is met in a time that has passed, be it met already.
+    let passed = ShapeCastOptions { max_time_of_impact: -1.0, ..options };
+    let inside = Pose::translation(999.0, 0.0, 0.0);
+    assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, passed).unwrap().is_none());
+    assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, options).unwrap().is_some());
     for hit in [towards, back] {
         assert!((0.5 - 1e-10..=0.5 + 1e-12).contains(&hit.time_of_impact), "{:e}", hit.time_of_impact - 0.5);
     }
