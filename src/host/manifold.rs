@@ -96,11 +96,12 @@ where
         // An overlap is found first, then measured.
         let within = prediction.max(0.0);
         let is_link = links_of(g1).or(links_of(g2)).is_some();
-        let is_answered = is_free && link_link_manifold::update(pos12, (g1, g2), within, manifold)?
-            || is_free && is_link && {
-                self.inner(pos12, g1, g2)?;
-                link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?
-            };
+        let is_answered = is_free
+            && (link_link_manifold::update(pos12, (g1, g2), within, manifold)?
+                || is_link && {
+                    self.inner(pos12, g1, g2)?;
+                    link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?
+                });
         if !is_answered {
             let inner = self.inner(pos12, g1, g2)?;
             if is_link {

@@ -18,6 +18,11 @@ pub(crate) struct NearestOfLinks {
 }
 
 impl NearestOfLinks {
+    /// The same of the links in the other order.
+    pub(crate) fn swapped(self) -> Self {
+        Self { on_first: self.on_second, on_second: self.on_first, ..self }
+    }
+
     /// The answer about two links with these numbers.
     pub(crate) fn answer(&self, links: [usize; 2], [first, second]: [&PlacedLink; 2]) -> RobotProximity {
         let Self { distance, on_first, on_second } = *self;
@@ -54,8 +59,7 @@ impl PlacedLink {
             return self.face_to_link(ends[0], other);
         }
         if !first {
-            let turned = other.face_to_link(ends[1], self);
-            return NearestOfLinks { on_first: turned.on_second, on_second: turned.on_first, ..turned };
+            return other.face_to_link(ends[1], self).swapped();
         }
         let centres = [end_of(&pair.first, ends[0]), pair.second_start + end_of(&pair.second, ends[1])];
         self.nearest_of_links(unit, &pair.closest_caps(centres))

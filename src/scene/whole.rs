@@ -183,15 +183,10 @@ impl Scene {
             }
         }
         let Some(margin) = self.robot_margin else { return Ok(true) };
-        for second in 0..robots.len() {
-            for first in 0..second {
-                if self.nested.contains(&[first, second]) {
-                    continue;
-                }
-                let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-                if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(between([first, second]))? {
-                    return Ok(false);
-                }
+        for [first, second] in pairs_apart(robots.len(), &self.nested) {
+            let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+            if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
+                return Ok(false);
             }
         }
         Ok(true)
@@ -229,18 +224,13 @@ impl Scene {
             _ => None,
         };
         let Some(margin) = self.robot_margin else { return Ok(best.map(|(_, best)| best)) };
-        for first in 0..robots.len() {
-            for second in first + 1..robots.len() {
-                if self.nested.contains(&[first, second]) {
-                    continue;
-                }
-                let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-                let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(between([first, second]))?;
-                let slack = slack(nearest.distance, margin);
-                if best.as_ref().is_none_or(|(least, _)| slack.lt(*least)) {
-                    let between = Between::Robots { robots: [first as u32, second as u32], nearest };
-                    best = Some((slack, Tightest { slack: slack.rounded(), between }));
-                }
+        for [first, second] in pairs_apart(robots.len(), &self.nested) {
+            let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+            let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(of_robot(second))?;
+            let slack = slack(nearest.distance, margin);
+            if best.as_ref().is_none_or(|(least, _)| slack.lt(*least)) {
+                let between = Between::Robots { robots: [first as u32, second as u32], nearest };
+                best = Some((slack, Tightest { slack: slack.rounded(), between }));
             }
         }
         Ok(best.map(|(_, best)| best))
@@ -417,7 +407,7 @@ fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
 }
 
-/// Whoever is held against nothing has a pose that can be used all the same.
+/// The poses of all robots, also of those that are held against nothing: what is asked afterwards finds no fault with one.
 fn check_poses(robots: &[(&Chain, Pose)]) -> Result<(), SceneError> {
     for (robot, (chain, pose)) in robots.iter().enumerate() {
         PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
@@ -425,12 +415,8 @@ fn check_poses(robots: &[(&Chain, Pose)]) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Of an error about two robots, which one it is about.
-fn between(robots: [usize; 2]) -> impl Fn(ProximityError) -> SceneError {
-    move |error| match error {
-        ProximityError::Placement { parameter: "pose_b", .. } => {
-            SceneError::Robot { robot: robots[1], error }
-        }
-        error => SceneError::Robot { robot: robots[0], error },
-    }
+/// The pairs of so many robots that are held against one another, in order: all but those that are nested.
+fn pairs_apart(robots: usize, nested: &[[usize; 2]]) -> impl Iterator<Item = [usize; 2]> {
+    let pairs = (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
+    pairs.filter(|pair| !nested.contains(pair))
 }

@@ -8,6 +8,7 @@
 
 use super::outline_rows::Block;
 use super::outlines::{Outlines, SearchFrame};
+use crate::answer::RobotProximity;
 use crate::pair::{PlacedRobot, TOGETHER};
 use crate::robot::LinkNode;
 use fearless_simd::Level;
@@ -45,6 +46,11 @@ impl Limit {
 
     pub fn of(distance: Real) -> Self {
         Self { distance, links: None }
+    }
+
+    /// That of what has been found.
+    pub fn at(found: &RobotProximity) -> Self {
+        Self { distance: found.distance, links: Some(found.links.map(|link| link as usize)) }
     }
 
     /// Whether what is at least so far apart needs no look, if these are its lowest links.
@@ -140,23 +146,7 @@ impl Descent {
                     second.of_links(frame, robots[1], entry.places[1].node),
                 ];
                 block.compare(*level, rows, firsts, counts, [frame.unit(), limit.distance]);
-                let asked = |limit: &Limit, [i, j]: [usize; 2]| {
-                    let links = [firsts[0] + i, firsts[1] + j];
-                    let is_asked = !limit.leaves_out(block.at_least[i][j], links)
-                        && asks(links.map(|link| link..link + 1));
-                    is_asked.then_some(links)
-                };
-                let near = || block.near().filter_map(|pair| Some((pair, asked(&limit, pair)?)));
-                let nearest = near().min_by(|(a, _), (b, _)| {
-                    block.at_least[a[0]][a[1]].total_cmp(&block.at_least[b[0]][b[1]])
-                });
-                let Some((nearest, links)) = nearest else { continue };
-                limit = visit(links);
-                for pair in block.near().filter(|pair| *pair != nearest) {
-                    if let Some(links) = asked(&limit, pair) {
-                        limit = visit(links);
-                    }
-                }
+                limit = visit_block(block, firsts, limit, &asks, &mut visit);
                 continue;
             }
             let divided = usize::from(counts[1] > counts[0]);
@@ -171,7 +161,7 @@ impl Descent {
                 });
                 asks(links).then(|| {
                     let outline = outlines[divided].get(frame, robots[divided], half.node);
-                    Entry { places, at_least: frame.outside(outline.at_least(&other)) }
+                    Entry { places, at_least: outline.at_least(&other) * frame.unit() }
                 })
             });
             // The nearer one is taken first, and of equals that with the lower links.
@@ -184,6 +174,32 @@ impl Descent {
             stack.extend(nearer_last.into_iter().flatten().filter(is_left));
         }
     }
+}
+
+/// Shows `visit` the pairs of a block that are asked for and within the limit, the nearest first. Returns the last limit.
+fn visit_block(
+    block: &Block,
+    firsts: [usize; 2],
+    mut limit: Limit,
+    asks: &impl Fn([Range<usize>; 2]) -> bool,
+    visit: &mut impl FnMut([usize; 2]) -> Limit,
+) -> Limit {
+    let asked = |limit: Limit, [i, j]: [usize; 2]| {
+        let links = [firsts[0] + i, firsts[1] + j];
+        let is_left_out = limit.leaves_out(block.at_least[i][j], links);
+        (!is_left_out && asks(links.map(|link| link..link + 1))).then_some(links)
+    };
+    let near = block.near().filter_map(|pair| Some((pair, asked(limit, pair)?)));
+    let at_least = |[i, j]: [usize; 2]| block.at_least[i][j];
+    let nearest = near.min_by(|(one, _), (other, _)| at_least(*one).total_cmp(&at_least(*other)));
+    let Some((nearest, links)) = nearest else { return limit };
+    limit = visit(links);
+    for pair in block.near().filter(|pair| *pair != nearest) {
+        if let Some(links) = asked(limit, pair) {
+            limit = visit(links);
+        }
+    }
+    limit
 }
 
 /// The two children of a node.

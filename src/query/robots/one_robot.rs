@@ -171,8 +171,7 @@ impl Face {
         if self.is_flat {
             link.face_to_face([self.end, other.end], &facing)
         } else {
-            let turned = facing.face_to_link(other.end, &self.ball(robot));
-            NearestOfLinks { on_first: turned.on_second, on_second: turned.on_first, ..turned }
+            facing.face_to_link(other.end, &self.ball(robot)).swapped()
         }
     }
 }
@@ -255,32 +254,22 @@ impl<'a> OneRobot<'a> {
                 .filter(|&link| turns.reach(0.5 * PI, link, face.link) && !turns.reach(PI, link, face.link));
             let after = (face.link + 2..self.robot.links().len())
                 .filter(|&link| turns.reach(0.5 * PI, face.link, link) && !turns.reach(PI, face.link, link));
-            for link in before.chain(after) {
+            let of_links = before.chain(after).map(|link| (link, None));
+            let of_faces = faces[number + 1..].iter().map(|facing| (facing.link, Some(facing)));
+            for (link, facing) in of_links.chain(of_faces.filter(|(link, _)| link.abs_diff(face.link) >= 2)) {
                 let other = self.robot.link(link);
-                // The ball around a face holds it, and spares most links.
+                // The ball around a face holds it, and spares most others.
                 if !ball.may_be_within(bound, &other) {
                     continue;
                 }
-                let nearest = face.nearest_to_link(&self.robot, &other);
+                let nearest = match facing {
+                    Some(facing) => face.nearest_to_face(&self.robot, facing),
+                    None => face.nearest_to_link(&self.robot, &other),
+                };
                 let (way, slack) = way(&nearest, [&on_face, &other]);
-                if face.sees(&self.robot, way, slack) {
+                let meets = facing.is_none_or(|facing| facing.sees(&self.robot, -way, slack));
+                if meets && face.sees(&self.robot, way, slack) {
                     let found = in_order([face.link, link], [&on_face, &other], &nearest);
-                    let Some(next) = keep(found) else { return false };
-                    bound = next;
-                }
-            }
-            for facing in &faces[number + 1..] {
-                if facing.link.abs_diff(face.link) < 2 {
-                    continue;
-                }
-                let other = self.robot.link(facing.link);
-                if !ball.may_be_within(bound, &other) {
-                    continue;
-                }
-                let nearest = face.nearest_to_face(&self.robot, facing);
-                let (way, slack) = way(&nearest, [&on_face, &other]);
-                if face.sees(&self.robot, way, slack) && facing.sees(&self.robot, -way, slack) {
-                    let found = in_order([face.link, facing.link], [&on_face, &other], &nearest);
                     let Some(next) = keep(found) else { return false };
                     bound = next;
                 }
@@ -305,10 +294,7 @@ fn asks(turns: &Turns) -> impl Fn([Range<usize>; 2]) -> bool {
 }
 
 fn limit(best: &Option<RobotProximity>) -> Limit {
-    best.as_ref().map_or(Limit::of(Real::INFINITY), |best| Limit {
-        distance: best.distance,
-        links: Some(best.links.map(|link| link as usize)),
-    })
+    best.as_ref().map_or(Limit::of(Real::INFINITY), Limit::at)
 }
 
 fn nearer(best: Option<RobotProximity>, found: RobotProximity) -> RobotProximity {
@@ -320,6 +306,5 @@ fn in_order(links: [usize; 2], placed: [&PlacedLink; 2], nearest: &NearestOfLink
     if links[0] < links[1] {
         return nearest.answer(links, placed);
     }
-    let turned = NearestOfLinks { on_first: nearest.on_second, on_second: nearest.on_first, ..*nearest };
-    turned.answer([links[1], links[0]], [placed[1], placed[0]])
+    nearest.swapped().answer([links[1], links[0]], [placed[1], placed[0]])
 }

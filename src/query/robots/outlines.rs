@@ -53,12 +53,7 @@ impl SearchFrame {
         Self { origin, scale }
     }
 
-    /// What a length of the search is outside.
-    pub fn outside(&self, length: Real) -> Real {
-        length / self.scale
-    }
-
-    /// What 1 of the search is outside.
+    /// What 1 of the search is outside: a power of two, as the scale is.
     pub fn unit(&self) -> Real {
         1.0 / self.scale
     }

@@ -70,18 +70,14 @@ impl<'a> TwoRobots<'a> {
         let last = memory.nearest.filter(|links| self.have(*links)).unwrap_or([0, 0]);
         let [first, second] = self.links(last);
         let mut best = first.measure_link(&second).answer(last, [&first, &second]);
-        let limit = |best: &RobotProximity| Limit {
-            distance: best.distance,
-            links: Some(best.links.map(|link| link as usize)),
-        };
-        memory.descent.run(self.both(), limit(&best), all, |links| {
+        memory.descent.run(self.both(), Limit::at(&best), all, |links| {
             if !best.is_of(links)
                 && let Some(found) = self.measure_within(best.distance, links)
                 && found.comes_before(&best)
             {
                 best = found;
             }
-            limit(&best)
+            Limit::at(&best)
         });
         memory.nearest = Some(best.links.map(|link| link as usize));
         best
@@ -90,10 +86,6 @@ impl<'a> TwoRobots<'a> {
     /// Of each link of the first robot, the nearest link of the second.
     pub fn per_link(&self, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let last = self.robots[1].links().len() - 1;
-        let limit = |best: &RobotProximity| Limit {
-            distance: best.distance,
-            links: Some(best.links.map(|link| link as usize)),
-        };
         memory.descent.run_per_link(self.both(), |link, other| {
             let Some(other) = other else {
                 // Neighbours have near neighbours: what was nearest to the last link bounds this one.
@@ -101,7 +93,7 @@ impl<'a> TwoRobots<'a> {
                 let [first, second] = self.links([link, guess]);
                 let best = first.measure_link(&second).answer([link, guess], [&first, &second]);
                 out.push(best);
-                return limit(&best);
+                return Limit::at(&best);
             };
             let Some(best) = out.last_mut() else { return Limit::NOTHING };
             if !best.is_of([link, other])
@@ -110,7 +102,7 @@ impl<'a> TwoRobots<'a> {
             {
                 *best = found;
             }
-            limit(best)
+            Limit::at(best)
         });
     }
 
