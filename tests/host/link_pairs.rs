@@ -123,24 +123,31 @@ fn no_two_points_of_a_manifold_have_the_same_names() {
     assert!(several > 200, "{several}");
 }
 
-/// A large ball on the way of a small link: it stops by the small one's measure, whichever of them is named first.
+/// A large ball on the way of a small link, which comes at it more and more aslant: it stops by the small one's measure, whichever
+/// of them is named first.
 #[test]
 fn a_cast_stops_by_the_measure_of_the_smaller_link() {
     let large = Ball::new(1000.0);
-    let small = ModifiedCylinder::capsule(Vector::X * 1e-3, Vector::X * 2e-3, 1e-3).unwrap();
+    let small = ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, 1e-3).unwrap();
     let dispatcher = ContinuumDispatcher::default();
-    let place = Pose::translation(1000.5, 0.0, 0.0);
     let options = ShapeCastOptions::default();
-    let towards = dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
-    let back = dispatcher.cast_shapes(&place.inverse(), Vector::X, &small, &large, options).unwrap().unwrap();
+    for aside in (0..50).map(|k| 20.0 * Real::from(k)) {
+        let reach = large.radius + small.radius();
+        let met = ((reach - aside) * (reach + aside)).sqrt();
+        let place = Pose::translation(met + 0.5, aside, 0.0);
+        let towards = dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
+        let back =
+            dispatcher.cast_shapes(&place.inverse(), Vector::X, &small, &large, options).unwrap().unwrap();
+        for hit in [towards, back] {
+            let late = hit.time_of_impact - 0.5;
+            assert!((-1e-9..=1e-10).contains(&late), "{aside}: {late:e}");
+        }
+    }
     // Nothing is met in a time that has passed, be it met already.
     let passed = ShapeCastOptions { max_time_of_impact: -1.0, ..options };
     let inside = Pose::translation(999.0, 0.0, 0.0);
     assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, passed).unwrap().is_none());
     assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, options).unwrap().is_some());
-    for hit in [towards, back] {
-        assert!((0.5 - 1e-10..=0.5 + 1e-12).contains(&hit.time_of_impact), "{:e}", hit.time_of_impact - 0.5);
-    }
 }
 
 /// Multiplied by a power of two, everything is as many times as large, bit for bit.
