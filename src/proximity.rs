@@ -58,6 +58,7 @@
 //! | every place where two robots are near | [`RobotPair::within`] |
 //! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
 //! | do two tubes keep a margin? | [`RobotPair::tubes_clear`] |
+//! | a proof of an answer | [`RobotProximity::certify`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
 //!
@@ -76,6 +77,7 @@
 //! |---|---|
 //! | ask about many robots on all cores | [`per_link_batch`](Proximity::per_link_batch), [`minimum_batch`](Proximity::minimum_batch), [`clears_batch`](Proximity::clears_batch) |
 //! | about many tubes or motions | [`clearance_batch`](BvhSearch::clearance_batch), [`tube_clears_batch`](BvhSearch::tube_clears_batch), [`clears_motion_batch`](BvhSearch::clears_motion_batch) |
+//! | about many sets of robots in a scene | [`Scene::clears_batch`], [`Scene::tightest_batch`] |
 //! | build beforehand what a first question would build | [`prepare`](BvhSearch::prepare) |
 //! | move the mesh | [`set_vertices`](Proximity::set_vertices) |
 //! | see the mesh as the engine has it now | [`vertices`](Proximity::vertices), [`triangles`](Proximity::triangles) |

@@ -198,6 +198,21 @@ pub enum ProximityError {
         /// How far rounding may put it off.
         limit: Real,
     },
+    /// An answer about two robots is not that of the links that it names, as they are now.
+    #[error(
+        "the answer about the links {links:?} does not fit them: its `{field}` is off by {off:e}, of which rounding explains \
+         {limit:e}; ask again where robots or poses have changed"
+    )]
+    LinksDoNotFit {
+        /// The answer's links.
+        links: [u32; 2],
+        /// The field of the answer that is off: a point that is not in its link, or the distance.
+        field: &'static str,
+        /// How far it is off.
+        off: Real,
+        /// How far rounding may put it off.
+        limit: Real,
+    },
     /// A vertex of the mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -8,9 +8,9 @@
 //! normals of the features (faces, edges, axis) are tried as well.
 
 use super::answered::{corners, link_of, placed_link};
-use super::checks::{check_ends, rigid_pose};
+use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK, largest};
 use crate::answer::{Certificate, LinkProximity, ProximityError};
-use crate::distance::{DoubleDouble, Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
+use crate::distance::{Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
 use crate::mesh::check_vertex;
 use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -100,39 +100,11 @@ impl LinkProximity {
     }
 }
 
-type Number = DoubleDouble;
-type ExactPoint = Vec3<DoubleDouble>;
-
-/// What rounding can do to any bound here, where no coordinate exceeds 2: a hundred operations, each wrong by 2^-102 of
-/// numbers below 16, and what falls below the range.
-const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
-
-/// A link in the mesh's frame.
-struct CertifiedLink {
-    start: Vector,
-    end: Vector,
-    radius: Real,
-    flat: [bool; 2],
-}
-
 impl CertifiedLink {
-    /// `number` is the link's position in its chain.
-    fn new(link: &ModifiedCylinder, pose: &Pose, number: usize) -> Result<Self, ProximityError> {
-        let link = link.transformed(&rigid_pose(pose)?);
-        let (start, end) = (link.start(), link.end());
-        check_ends(number, [start, end])?;
-        Ok(Self { start, end, radius: link.radius(), flat: link.flat() })
-    }
-
-    /// The power of two that brings link and triangle near one.
-    fn unit(&self, [a, b, c]: [Vector; 3]) -> Real {
-        largest([self.start, self.end, a, b, c]).max(self.radius).power_of_two_to_unity()
-    }
-
     /// A lower bound by a sphere around the triangle, in plain f64.
-    fn at_least(&self, triangle: [Vector; 3]) -> Real {
-        let [a, b, c] = triangle;
-        let unit = self.unit(triangle);
+    fn at_least(&self, [a, b, c]: [Vector; 3]) -> Real {
+        let far = largest([self.start, self.end, a, b, c]).max(self.radius);
+        let unit = far.power_of_two_to_unity();
         let [start, end, a, b, c] = [self.start, self.end, a, b, c].map(|point| point * unit);
         // Any centre serves.
         let centre = a * 0.5 + (b * 0.25 + c * 0.25);
@@ -143,65 +115,35 @@ impl CertifiedLink {
     }
 
     fn bounds(&self, triangle: [Vector; 3]) -> Certificate {
-        // From the link's start every coordinate is an exact double-double, and the largest is brought near one. What is
-        // small beside far coordinates must not vanish first, so these are never made smaller.
         let [a, b, c] = triangle;
-        let coarse = self.unit(triangle).max(1.0);
-        let start = self.start * coarse;
-        let offset = |p: Vector| p * coarse - start;
-        let radius = self.radius * coarse;
-        let extent = largest([self.end, a, b, c].map(offset)).max(radius);
-        if extent == 0.0 {
+        let Some(frame) = ExactFrame::around(self.start, [self.end, a, b, c], self.radius) else {
             return Certificate { lower: 0.0, upper: 0.0 }; // one point
-        }
-        let fine = extent.power_of_two_to_unity();
-        let local = |p: Vector| {
-            let [x, y, z] = (p * coarse).to_array();
-            let exact = |x: Real, from: Real| (Number::from(x) - from.into()) * fine.into();
-            Vec3::new(exact(x, start.x), exact(y, start.y), exact(z, start.z))
         };
-        let end = local(self.end);
-        let pair = ExactPair {
-            triangle: triangle.map(local),
-            end,
-            axis: end.normalised(),
-            radius: Number::from(radius) * fine.into(),
-            flat: self.flat,
-        };
+        let pair =
+            ExactPair { triangle: triangle.map(|corner| frame.point(corner)), link: self.exact(&frame) };
         let (lower, upper) = pair.bounds();
-        // Outwards by one number, for the roundings to f64 and out of the scale.
-        let back = |bound: Number| bound.rounded() / fine / coarse;
-        Certificate { lower: back(lower).next_down().max(0.0), upper: back(upper).next_up() }
+        frame.certificate(lower, upper)
     }
 }
 
-/// The largest magnitude of a coordinate.
-fn largest<const N: usize>(points: [Vector; N]) -> Real {
-    points.iter().map(|point| point.abs().max_element()).fold(0.0, Real::max)
-}
-
-/// A link from the origin and a triangle, in coordinates up to 2.
+/// A link and a triangle, in coordinates up to 2 from the link's start.
 struct ExactPair {
     triangle: [ExactPoint; 3],
-    end: ExactPoint,
-    axis: ExactPoint,
-    radius: Number,
-    flat: [bool; 2],
+    link: ExactLink,
 }
 
 impl ExactPair {
     fn bounds(&self) -> (Number, Number) {
-        let zero = Number::ZERO;
-        let origin = Vec3::new(zero, zero, zero);
-        let closest = triangle_modified_cylinder(self.triangle, origin, self.end, self.radius, self.flat);
+        let ExactLink { start, along, axis, radius, flat } = self.link;
+        let closest = triangle_modified_cylinder(self.triangle, start, along, radius, flat);
         let between = (closest.point1 - closest.point2).norm();
-        let off = self.triangle_to(closest.point1) + self.link_to(closest.point2);
+        let off = self.triangle_to(closest.point1) + self.link.distance_to(closest.point2);
         // Where two cases of the narrow phase tie, the direction of another candidate may be the better one.
-        let discs = [origin, self.end].map(|rim| triangle_disc(self.triangle, rim, self.axis, self.radius));
+        let discs = [start, along].map(|rim| triangle_disc(self.triangle, rim, axis, radius));
         let lower = [closest, discs[0], discs[1]]
             .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
             .into_iter()
-            .fold(zero, Scalar::max);
+            .fold(Number::ZERO, Scalar::max);
         let upper = between + off;
         // A difference of points that nearly touch is less precise than the directions of what they lie on.
         let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
@@ -213,15 +155,16 @@ impl ExactPair {
     /// edge, an edge and an end, the axis and a vertex.
     fn apart_by_features(&self) -> impl Iterator<Item = Number> {
         let [a, b, c] = self.triangle;
+        let (axis, end) = (self.link.axis, self.link.along);
         let across = |direction: ExactPoint, from: ExactPoint| {
             let unit = direction.normalised();
             from - unit * unit.dot(from)
         };
         let edges = [(a, b), (b, c), (c, a)].into_iter().flat_map(move |(from, to)| {
             let edge = to - from;
-            [self.axis.cross(edge), across(edge, from), across(edge, from - self.end)]
+            [axis.cross(edge), across(edge, from), across(edge, from - end)]
         });
-        let vertices = self.triangle.map(|vertex| across(self.axis, vertex));
+        let vertices = self.triangle.map(|vertex| across(axis, vertex));
         let all = edges.chain(vertices).chain([(b - a).cross(c - a)]).map(Vec3::normalised);
         all.flat_map(|direction| [self.apart(direction), self.apart(-direction)])
     }
@@ -229,15 +172,7 @@ impl ExactPair {
     /// How far the plane with the normal `direction`, from triangle to link, keeps them apart.
     fn apart(&self, direction: ExactPoint) -> Number {
         let [a, b, c] = self.triangle.map(|vertex| vertex.dot(direction));
-        let across = (direction - self.axis * direction.dot(self.axis)).norm() * self.radius;
-        let lowest = |height: Number, inward: Number, flat: bool| {
-            // A round cap shows its ball to directions that come from beyond its end, else only its rim.
-            height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
-        };
-        let along = direction.dot(self.axis);
-        let start = lowest(Number::ZERO, along, self.flat[0]);
-        let end = lowest(self.end.dot(direction), -along, self.flat[1]);
-        start.min(end) - a.max(b).max(c)
+        self.link.lowest(direction) - a.max(b).max(c)
     }
 
     /// At most this far from a point of the triangle.
@@ -260,25 +195,5 @@ impl ExactPair {
         }
         let inside = a * u.over(sum) + b * v.over(sum) + c * w.over(sum);
         edges.min((point - inside).norm())
-    }
-
-    /// At most this far from a point of the link.
-    fn link_to(&self, point: ExactPoint) -> Number {
-        let zero = Number::ZERO;
-        let (above, below) = ((point - self.end).dot(self.axis), -point.dot(self.axis));
-        let radial = (point - self.axis * point.dot(self.axis)).norm();
-        let beside = (radial - self.radius).max(zero);
-        let (beyond, from, flat) = if zero.lt(above) {
-            (above, point - self.end, self.flat[1])
-        } else {
-            (below, point, self.flat[0])
-        };
-        if !zero.lt(beyond) {
-            beside
-        } else if flat {
-            (beyond * beyond + beside * beside).sqrt()
-        } else {
-            (from.norm() - self.radius).max(zero)
-        }
     }
 }

@@ -11,7 +11,7 @@ use parry3d_f64::math::{Real, Vector};
 /// Measured in coordinates of the pair's own, a distance and its two points err by at most 16 u of the extent; 4.4 u are
 /// the most that was ever seen. Each point is then rounded to the mesh's frame, by u of its largest coordinate and so
 /// by less than 2 u of it in length. An answer that was written as text and read again may be off by as much once more.
-const ROUNDED: Real = 16.0 * f64::UNIT_ROUNDOFF;
+pub(super) const ROUNDED: Real = 16.0 * f64::UNIT_ROUNDOFF;
 
 impl LinkProximity {
     /// Whether this answer is that of the link and the triangle with these corners: `on_robot` lies in the link, `on_mesh` on

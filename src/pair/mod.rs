@@ -3,12 +3,15 @@
 mod answered;
 mod best;
 mod certificate;
+mod certificate_of_links;
 mod checks;
 mod contact;
 mod contacts_together;
 mod coordinates;
 mod derivative;
+mod exact_link;
 mod fit;
+mod fit_of_links;
 mod link_lanes;
 mod measure_together;
 mod nearest;

@@ -1,5 +1,6 @@
 //! Several structures and robots at once.
 
+mod batch;
 mod structure;
 mod whole;
 

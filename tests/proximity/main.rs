@@ -3,6 +3,7 @@
 mod agreement;
 mod allocations;
 mod certify;
+mod certify_links;
 mod chain_cases;
 mod coherence;
 mod contacts;

@@ -4,7 +4,9 @@ use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
-use parry_continuum::proximity::{Between, BvhSearch, Proximity, Scene, SceneError, Tightest, between};
+use parry_continuum::proximity::{
+    Between, BvhSearch, Proximity, ProximityError, Scene, SceneError, Tightest, between,
+};
 
 fn ball(centre: Vector, radius: f64) -> BvhSearch {
     let (vertices, triangles) = Ball::new(radius).to_trimesh(12, 6);
@@ -238,4 +240,39 @@ fn an_infinite_margin_is_kept_by_nobody() {
     let tightest = scene.tightest(&robots).unwrap().unwrap();
     assert!(tightest.slack == f64::NEG_INFINITY && matches!(tightest.between, Between::Robots { .. }));
     assert!(!scene.clears(&robots).unwrap());
+}
+
+/// A batch says of every set what the scene says of it alone, and one that is refused costs the others nothing.
+#[test]
+fn many_sets_have_the_answers_of_each() {
+    let mut random = Random::new(9);
+    let mut scene = Scene::new();
+    for number in 0..6 {
+        let search = ball(random.point() * 10.0, random.between(0.5, 2.0));
+        scene.add(format!("organ {number}"), search, [None, Some(0.2), Some(1.0)][number % 3]).unwrap();
+    }
+    scene.set_pose(1, &random.pose(1.0)).unwrap();
+    scene.set_robot_margin(Some(0.1)).unwrap();
+    let chains: Vec<_> = (0..60).map(|_| [robot(&mut random), robot(&mut random)]).collect();
+    let mut sets: Vec<Vec<_>> =
+        chains.iter().map(|[a, b]| vec![(a, random.pose(0.5)), (b, Pose::IDENTITY)]).collect();
+    sets[7].clear();
+    sets[11].truncate(1);
+    sets[20][1].1 = Pose::from_translation(Vector::NAN);
+    let slices: Vec<_> = sets.iter().map(Vec::as_slice).collect();
+    let (mut clears, mut tightest) = (vec![Ok(false); 3], Vec::new());
+    for _ in 0..2 {
+        scene.clears_batch(&slices, &mut clears);
+        scene.tightest_batch(&slices, &mut tightest);
+        assert_eq!((clears.len(), tightest.len()), (60, 60));
+        for (set, robots) in slices.iter().enumerate() {
+            assert_eq!(clears[set], scene.clears(robots), "{set}");
+            assert_eq!(tightest[set], scene.tightest(robots), "{set}");
+        }
+        // What has moved since has moved for the next batch.
+        scene.set_pose(2, &random.pose(3.0)).unwrap();
+    }
+    assert_eq!(clears[20], Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite }));
+    let count = |clear: bool| clears.iter().filter(|answer| **answer == Ok(clear)).count();
+    assert!(count(true) > 5 && count(false) > 2, "{} {}", count(true), count(false));
 }

@@ -38,6 +38,10 @@ pub fn robots(bytes: &[u8]) {
     assert_eq!(between(&a, &poses[0], &b, &poses[1]), Ok(found), "{}", problem());
     let turned = pair.minimum(&b, &poses[1], &a, &poses[0]).expect("poses as before").distance;
     let slack = first.iter().chain(&second).fold(0.0, |most: f64, link| most.max(slack(link, &first[0])));
+    let bounds =
+        found.certify(&a, &poses[0], &b, &poses[1]).unwrap_or_else(|why| panic!("{why}: {}", problem()));
+    let holds = bounds.lower - slack <= found.distance && found.distance <= bounds.upper + slack;
+    assert!(holds && bounds.upper - bounds.lower <= slack, "{bounds:?} {}", problem());
     assert!((turned - found.distance).abs() <= 2.0 * slack, "{turned:e} {}", problem());
     let d = found.distance;
     for margin in [0.0, d, d.next_up(), d.next_down().max(0.0)] {

@@ -1,0 +1,81 @@
+//! Many sets of robots in one scene, on all cores: a planner's shapes.
+
+use super::Scene;
+use crate::answer::{SceneError, Tightest};
+use crate::robot::Chain;
+use crate::threads::in_shares;
+use parry3d_f64::math::Pose;
+
+/// A set's answer, or why there is none.
+type Answer<T> = Result<T, SceneError>;
+
+impl Scene {
+    /// [`clears`](Self::clears) for many sets of robots, on all cores. `out` gets the answer of each set, or why there is none.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Real, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Scene};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut scene = Scene::new();
+    /// scene.add("wall", BvhSearch::from_triangles(&vertices, &triangles)?, Some(1.0))?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+    /// let shapes = [0.0, 3.0, 6.0, Real::NAN].map(|x| [(&robot, Pose::translation(x, 0.0, 0.0))]);
+    /// let sets = shapes.each_ref().map(|set| set.as_slice());
+    /// let mut answers = Vec::new();
+    /// scene.clears_batch(&sets, &mut answers);
+    /// assert_eq!(answers[..3], [Ok(true), Ok(true), Ok(false)]);
+    /// assert_eq!(answers[3].as_ref().map_err(|error| error.kind()), Err("pose_not_finite"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clears_batch(&self, sets: &[&[(&Chain, Pose)]], out: &mut Vec<Result<bool, SceneError>>) {
+        self.batch(sets, true, out, |scene, robots| scene.clears(robots));
+    }
+
+    /// [`tightest`](Self::tightest) for many sets of robots, on all cores. `out` gets the answer of each set, or why there is
+    /// none.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Scene};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut scene = Scene::new();
+    /// scene.add("wall", BvhSearch::from_triangles(&vertices, &triangles)?, Some(1.0))?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+    /// let shapes = [0.0, 3.0].map(|x| [(&robot, Pose::translation(x, 0.0, 0.0))]);
+    /// let mut answers = Vec::new();
+    /// scene.tightest_batch(&shapes.each_ref().map(|set| set.as_slice()), &mut answers);
+    /// for (shape, answer) in shapes.iter().zip(answers) {
+    ///     assert_eq!(answer, scene.tightest(shape)); // the same, one by one
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn tightest_batch(
+        &self,
+        sets: &[&[(&Chain, Pose)]],
+        out: &mut Vec<Result<Option<Tightest>, SceneError>>,
+    ) {
+        self.batch(sets, None, out, |scene, robots| scene.tightest(robots));
+    }
+
+    /// Each share asks a scene of its own, which has the same meshes.
+    fn batch<T: Clone + Send>(
+        &self,
+        sets: &[&[(&Chain, Pose)]],
+        unanswered: T,
+        out: &mut Vec<Answer<T>>,
+        ask: impl Fn(&mut Self, &[(&Chain, Pose)]) -> Answer<T> + Sync + Send,
+    ) {
+        out.clear();
+        out.resize_with(sets.len(), || Ok(unanswered.clone()));
+        in_shares(sets, out, &mut Vec::new(), |scene: &mut Option<Self>, sets, out| {
+            let scene = scene.get_or_insert_with(|| self.clone());
+            for (robots, out) in sets.iter().zip(out) {
+                *out = ask(scene, robots);
+            }
+        });
+    }
+}
