@@ -21,7 +21,7 @@ impl Scene {
     /// let mut scene = Scene::new();
     /// scene.add("wall", BvhSearch::from_triangles(&vertices, &triangles)?, Some(1.0))?;
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
-    /// let shapes = [0.0, 3.0, 6.0, Real::NAN].map(|x| [(&robot, Pose::translation(x, 0.0, 0.0))]);
+    /// let shapes = [0.0, 3.0, 8.0, Real::NAN].map(|x| [(&robot, Pose::translation(x, 0.0, 0.0))]);
     /// let sets = shapes.each_ref().map(|set| set.as_slice());
     /// let mut answers = Vec::new();
     /// scene.clears_batch(&sets, &mut answers);
