@@ -1,8 +1,9 @@
 //! One structure of a scene: a mesh, where it is, and the margin that robots keep from it.
 
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
+use crate::distance::Scalar;
 use crate::engine::{BvhSearch, Proximity};
-use crate::pair::{PlacedRobot, rigid_pose};
+use crate::pair::{PlacedLink, PlacedRobot, rigid_pose};
 use crate::robot::{Chain, LinkNode};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -44,18 +45,45 @@ impl Structure {
         self.pose.map_or(*robot, |pose| pose.inverse() * *robot)
     }
 
-    /// What the distance of a robot is at least, by the capsule around the robot and the box around the mesh.
+    /// A robot in the mesh's frame, from where it is `placed` in the scene's.
     ///
     /// # Errors
-    /// The pose is not finite or not rigid, or moves a link out of range.
-    pub fn at_least(&self, robot: &Chain, in_mesh: &Pose) -> Result<Real, ProximityError> {
-        let placed = PlacedRobot::new(robot, in_mesh)?;
-        let whole = match &placed.link_tree()[0] {
-            LinkNode::Inner { bound, .. } => placed.bound(bound),
-            LinkNode::Leaf(link) => placed.link(*link),
-        };
+    /// The structure's pose moves a link out of range.
+    pub fn place<'a>(
+        &self,
+        robot: &'a Chain,
+        at: &Pose,
+        placed: &PlacedRobot<'a>,
+    ) -> Result<PlacedRobot<'a>, ProximityError> {
+        if self.pose.is_none() { Ok(*placed) } else { PlacedRobot::new(robot, &self.in_mesh(at)) }
+    }
+
+    /// What the distance of a robot is at least, by the boxes around the capsule that holds it and around the mesh.
+    ///
+    /// Rounding: with M the largest magnitude of the capsule's ends, its radius and the box' corners, each coordinate of the way
+    /// between the boxes is a difference of sums that errs by 6 u M at most, their length by less than 11 u M for that, and by less
+    /// than 14 u M for its own squares, sums and root: 32 u M are taken off.
+    pub fn at_least(&self, robot: &PlacedRobot) -> Real {
+        let ([start, end], radius, _) = robot.outline(&robot.link_tree()[0]);
         let [low, high] = self.around;
-        Ok(whole.distance_to_box(low, high))
+        let way = (start.min(end) - radius - high).max(low - (start.max(end) + radius)).max(Vector::ZERO);
+        let largest = start.abs().max(end.abs()).max(low.abs()).max(high.abs()).max_element().max(radius);
+        way.length() - 32.0 * Real::UNIT_ROUNDOFF * largest
+    }
+
+    /// Whether some link of a robot may be at most `bound` away, by the capsules around its links and the box around the mesh.
+    pub fn may_be_within(&self, robot: &PlacedRobot, bound: Real) -> bool {
+        let ([low, high], nodes, mut place) = (self.around, robot.link_tree(), 0);
+        while let Some(node) = nodes.get(place) {
+            let ([start, end], radius, flat) = robot.outline(node);
+            let is_far = PlacedLink::between(start, end, radius, flat).distance_to_box(low, high) > bound;
+            place += match node {
+                LinkNode::Inner { below, .. } if is_far => 1 + below,
+                LinkNode::Leaf(_) if !is_far => return true,
+                _ => 1,
+            };
+        }
+        false
     }
 
     /// An answer of the mesh's frame in the scene's.

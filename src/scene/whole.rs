@@ -10,6 +10,7 @@ use crate::pair::PlacedRobot;
 use crate::query::{check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
+use std::cmp::Ordering;
 
 /// Several structures, each with a margin of its own or none, and the robots among them.
 ///
@@ -174,13 +175,22 @@ impl Scene {
             return Ok(false);
         }
         self.met = None;
-        for structure in 0..self.structures.len() {
-            for robot in 0..robots.len() {
+        let mut order = std::mem::take(&mut self.order);
+        let near = |structure: &Structure| structure.margin.map(|margin| (margin, margin));
+        let asked = self.gather(robots, near, &mut order).and_then(|()| {
+            order.sort_unstable_by(nearest_first);
+            for &(_, [structure, robot]) in &order {
                 if !self.clears_one(structure, robot, robots)? {
                     self.met = Some([structure, robot]);
-                    return Ok(false);
+                    break;
                 }
             }
+            Ok(())
+        });
+        self.order = order;
+        asked?;
+        if self.met.is_some() {
+            return Ok(false);
         }
         let Some(margin) = self.robot_margin else { return Ok(true) };
         for [first, second] in pairs_apart(robots.len(), &self.nested) {
@@ -207,8 +217,9 @@ impl Scene {
         }
         // Those that may be tightest are asked first: they rule out the others.
         let mut order = std::mem::take(&mut self.order);
-        let asked = self.rank(robots, &mut order).and_then(|()| {
-            order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        let all = |structure: &Structure| structure.margin.map(|margin| (margin, Real::INFINITY));
+        let asked = self.gather(robots, all, &mut order).and_then(|()| {
+            order.sort_unstable_by(nearest_first);
             for &(room, [structure, robot]) in &order {
                 if best.as_ref().is_some_and(|(_, best)| room > best.slack.next_up()) {
                     break;
@@ -281,26 +292,27 @@ impl Scene {
         out: &mut Vec<SceneContact>,
     ) -> Result<(), SceneError> {
         out.clear();
-        for (number, structure) in self.structures.iter_mut().enumerate() {
-            check_not_negative("reach", reach).map_err(|error| of_structure(structure, error))?;
-            for (robot, (chain, pose)) in robots.iter().enumerate() {
+        let Some(first) = self.structures.first() else { return check_poses(robots) };
+        check_not_negative("reach", reach).map_err(|error| of_structure(first, error))?;
+        let mut order = std::mem::take(&mut self.order);
+        let asked = self.gather(robots, |_| Some((0.0, reach)), &mut order).and_then(|()| {
+            order.sort_unstable_by_key(|(_, who)| *who);
+            for &(_, [number, robot]) in &order {
+                let structure = &mut self.structures[number];
+                let (chain, pose) = &robots[robot];
                 let pose = structure.in_mesh(pose);
-                if structure.at_least(chain, &pose).map_err(of_robot(robot))? > reach {
-                    continue;
-                }
-                structure
-                    .search
-                    .within(chain, &pose, reach, 0.0, &mut self.contacts)
-                    .map_err(of_robot(robot))?;
-                let (structure_number, robot) = (number as u32, robot as u32);
+                let found = structure.search.within(chain, &pose, reach, 0.0, &mut self.contacts);
+                found.map_err(of_robot(robot))?;
                 out.extend(self.contacts.drain(..).map(|contact| SceneContact {
-                    structure: structure_number,
-                    robot,
+                    structure: number as u32,
+                    robot: robot as u32,
                     contact: structure.placed_contact(contact),
                 }));
             }
-        }
-        Ok(())
+            Ok(())
+        });
+        self.order = order;
+        asked
     }
 
     /// Builds all that a later query would build.
@@ -327,21 +339,30 @@ impl Scene {
         let Some(margin) = structure.margin else { return Ok(true) };
         let (chain, pose) = &robots[robot];
         let pose = structure.in_mesh(pose);
-        if structure.at_least(chain, &pose).map_err(of_robot(robot))? > margin {
-            return Ok(true);
-        }
         structure.search.clears(chain, &pose, margin).map_err(of_robot(robot))
     }
 
-    /// Writes to `order` how much room each structure that has a margin leaves each robot at least.
-    fn rank(&self, robots: &[(&Chain, Pose)], order: &mut Vec<(Real, [usize; 2])>) -> Result<(), SceneError> {
+    /// Writes to `order` which robots may be as near to which structures as is asked, and how much room these leave them at least.
+    /// `asked` tells a structure's margin, and how far away is near enough; nothing if it takes no part. Each robot is placed
+    /// once for all structures that have not moved.
+    fn gather(
+        &self,
+        robots: &[(&Chain, Pose)],
+        asked: impl Fn(&Structure) -> Option<(Real, Real)>,
+        order: &mut Vec<(Real, [usize; 2])>,
+    ) -> Result<(), SceneError> {
         order.clear();
-        for (number, structure) in self.structures.iter().enumerate() {
-            let Some(margin) = structure.margin else { continue };
-            for (robot, (chain, pose)) in robots.iter().enumerate() {
-                let at_least =
-                    structure.at_least(chain, &structure.in_mesh(pose)).map_err(of_robot(robot))?;
-                order.push(((at_least - margin).next_down(), [number, robot]));
+        for (robot, (chain, pose)) in robots.iter().enumerate() {
+            let in_scene = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
+            for (number, structure) in self.structures.iter().enumerate() {
+                let Some((margin, bound)) = asked(structure) else { continue };
+                let placed = structure.place(chain, pose, &in_scene).map_err(of_robot(robot))?;
+                let at_least = structure.at_least(&placed);
+                let is_near =
+                    at_least <= bound && (bound == Real::INFINITY || structure.may_be_within(&placed, bound));
+                if is_near {
+                    order.push(((at_least - margin).next_down(), [number, robot]));
+                }
             }
         }
         Ok(())
@@ -362,6 +383,10 @@ impl Scene {
         // No distance with a slack as small is beyond this, whatever is rounded here.
         let bound =
             best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up());
+        let placed = PlacedRobot::new(chain, &pose).map_err(of_robot(robot))?;
+        if bound < Real::INFINITY && !structure.may_be_within(&placed, bound) {
+            return Ok(());
+        }
         let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
         let Some(found) = found else { return Ok(()) };
         let slack = slack(found.distance, margin);
@@ -384,6 +409,11 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// Those with the least room come first, then those with the lowest numbers.
+fn nearest_first(one: &(Real, [usize; 2]), other: &(Real, [usize; 2])) -> Ordering {
+    one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
 /// The distance less the margin, which may be infinite.

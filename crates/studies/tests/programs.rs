@@ -5,6 +5,7 @@ use continuum_testing::programs::*;
 
 const ACCURACY: &str = env!("CARGO_BIN_EXE_accuracy");
 const CURVES: &str = env!("CARGO_BIN_EXE_curves");
+const OWN_PARTS: &str = env!("CARGO_BIN_EXE_own_parts");
 const SPEED: &str = env!("CARGO_BIN_EXE_speed");
 const STUDIES: &str = env!("CARGO_BIN_EXE_studies");
 const TRADEOFF: &str = env!("CARGO_BIN_EXE_tradeoff");
@@ -209,6 +210,21 @@ fn curves_are_measured_drawn_and_quoted() {
     assert!(rows.len() > 60 && fits.len() > 30, "{page}");
     assert!(fits.iter().all(|row| row[3] == "3" && row[4] == "3"), "{page}");
     assert!(read("curves/docs/curves.svg").contains("noise 0.5, fit"));
+}
+
+#[test]
+fn rules_of_own_parts_are_counted_and_quoted() {
+    file("own/docs/book/robots.md", "before\n<!-- own_parts -->\nstale\n<!-- /own_parts -->\nafter\n");
+    let out = succeed(OWN_PARTS, &["--shapes", "40", "--out", "own/docs"]);
+    let page = read("own/docs/book/robots.md");
+    assert_eq!(page, format!("before\n<!-- own_parts -->\n{out}<!-- /own_parts -->\nafter\n"));
+    let rows = table(&page, "| robot | margin, mm |");
+    assert_eq!(rows.len(), 9, "{page}");
+    // All shapes are counted, some are near themselves, and this crate's rule misses none of these.
+    let number = |row: &[String], column: usize| row[column].parse::<u32>().expect("a number");
+    assert!(rows.iter().all(|row| number(row, 2) + number(row, 3) + number(row, 4) == 40), "{page}");
+    assert!(rows.iter().map(|row| number(row, 2)).sum::<u32>() > 20, "{page}");
+    assert!(rows.iter().all(|row| number(row, 5) == 0), "{page}");
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn latencies(
 }
 
 /// Writes to every line of the caches.
-fn walk(bytes: &mut [u8], tick: usize) {
+pub fn walk(bytes: &mut [u8], tick: usize) {
     const LINE: usize = 64;
     bytes.iter_mut().step_by(LINE).for_each(|byte| *byte = byte.wrapping_add(tick as u8));
     black_box(bytes);

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
-//! `--out` of its own, is a rehearsal. `--only rare` and `--only robots` measure that chapter
+//! `--out` of its own, is a rehearsal. `--only rare`, `--only robots` and `--only scenes` measure that chapter
 //! again and leave the others as they are.
 
 mod exhaustive;
@@ -17,6 +17,7 @@ mod moving;
 mod planner;
 mod rare;
 mod robots;
+mod scenes;
 mod search;
 
 use clap::Parser;
@@ -55,6 +56,8 @@ enum Chapter {
     Rare,
     /// Robots beside robots.
     Robots,
+    /// Several structures.
+    Scenes,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -89,11 +92,13 @@ fn measure(options: &Options) -> Result<(), String> {
         let mark = match only {
             Chapter::Rare => rare::MARK,
             Chapter::Robots => robots::MARK,
+            Chapter::Scenes => scenes::MARK,
         };
         quote::check_chapter(mark, &file)?;
         let chapter = match only {
             Chapter::Rare => rare::chapter(effort, &written, &mut Goals::default())?,
             Chapter::Robots => robots::chapter(effort, &written)?,
+            Chapter::Scenes => scenes::chapter(effort, &written)?,
         };
         quote::in_page(&chapter, mark, &file)?;
         println!("{}", file.display());
@@ -123,9 +128,11 @@ fn measure(options: &Options) -> Result<(), String> {
     let rare = marked(rare::MARK, &rare);
     stages.next("robots beside robots");
     let robots = marked(robots::MARK, &robots::chapter(effort, &written)?);
+    stages.next("several structures");
+    let scenes = marked(scenes::MARK, &scenes::chapter(effort, &written)?);
     stages.next("moving meshes");
     for chapter in
-        [search, planner, latency, rare, robots, exhaustive, growth, moving::chapter(effort)?, memory]
+        [search, planner, latency, rare, robots, scenes, exhaustive, growth, moving::chapter(effort)?, memory]
     {
         page.push('\n');
         page.push_str(&chapter);

@@ -1,0 +1,225 @@
+//! Which parts of a robot are held against one another: this crate's rule beside the one that planners use, the parts that are
+//! more than three radii apart along the robot. Writes the table of `docs/book/robots.md`.
+//!
+//! ```text
+//! cargo run --release -p continuum-studies --bin own_parts
+//! ```
+
+use clap::Parser;
+use continuum_demo::{command, ctr};
+use continuum_studies::quote;
+use continuum_testing::Random;
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::RobotPair;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Count what two rules of self-collision miss and what they forbid.
+#[derive(Parser)]
+struct Options {
+    /// How many shapes of each robot
+    #[arg(long, value_name = "COUNT", default_value_t = 2000)]
+    shapes: u64,
+    /// Where book/robots.md is
+    #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
+    out: PathBuf,
+}
+
+/// How many samples a link has.
+const SAMPLES: usize = 4;
+
+struct Shape {
+    points: Vec<Vector>,
+    radii: Vec<f64>,
+}
+
+/// Three sections of 60 mm with one bend each, up to nine tenths of the tightest that the radius allows.
+fn tendon_robot(random: &mut Random) -> Shape {
+    const RADIUS: f64 = 5.0;
+    let (mut frame, mut points) = (Pose::IDENTITY, vec![Vector::ZERO]);
+    for _ in 0..3 {
+        let (share, plane) = (random.unit(), random.between(0.0, TAU));
+        let curvature = share * share * share * 0.9 / RADIUS;
+        let bend = Vector::new(-plane.sin(), plane.cos(), 0.0) * curvature;
+        for _ in 0..30 {
+            // Along an arc: half of the turn, the chord, and the other half.
+            let step = 2.0;
+            let angle = step * curvature;
+            let chord = if angle > 0.0 { 2.0 / curvature * (0.5 * angle).sin() } else { step };
+            let half = Pose::new(Vector::ZERO, bend * (0.5 * step));
+            frame = frame * half * Pose::from_translation(Vector::Z * chord) * half;
+            points.push(frame.translation);
+        }
+    }
+    Shape { radii: vec![RADIUS; points.len() - 1], points }
+}
+
+/// The robot of the ventricle, its tubes turned and extended anyhow.
+fn tubes(random: &mut Random) -> Shape {
+    let robot = ctr::three_tubes();
+    let share = |random: &mut Random, length: f64| length * random.between(0.3, 1.0);
+    let extensions = robot.sections.iter().map(|section| share(random, section.length)).collect();
+    let angles = robot.sections.iter().map(|_| random.between(0.0, TAU)).collect();
+    let centreline = robot.centreline(&ctr::Joints { extensions, angles }, 60);
+    Shape { points: centreline.points, radii: centreline.radii }
+}
+
+/// 20 links of 20 mm, each joint of which bends by up to 80 degrees in any direction.
+fn snake(random: &mut Random) -> Shape {
+    let (mut frame, mut points) = (Pose::IDENTITY, vec![Vector::ZERO]);
+    for _ in 0..20 {
+        let plane = random.between(0.0, TAU);
+        let bend = Vector::new(plane.cos(), plane.sin(), 0.0) * random.between(0.0, 80.0_f64.to_radians());
+        frame = frame * Pose::new(Vector::ZERO, bend) * Pose::from_translation(Vector::Z * 20.0);
+        points.push(frame.translation);
+    }
+    Shape { radii: vec![9.0; 20], points }
+}
+
+/// Samples of the centreline, with the arc length and the radius of each.
+struct Samples {
+    points: Vec<Vector>,
+    arc_lengths: Vec<f64>,
+    radii: Vec<f64>,
+}
+
+impl Samples {
+    fn of(shape: &Shape) -> Self {
+        let mut all = Self { points: Vec::new(), arc_lengths: Vec::new(), radii: Vec::new() };
+        let mut before = 0.0;
+        for (ends, &radius) in shape.points.windows(2).zip(&shape.radii) {
+            let way = ends[1] - ends[0];
+            // Both ends, so that each link has its own radius there.
+            for k in 0..=SAMPLES {
+                let share = k as f64 / SAMPLES as f64;
+                all.points.push(ends[0] + way * share);
+                all.arc_lengths.push(before + way.length() * share);
+                all.radii.push(radius);
+            }
+            before += way.length();
+        }
+        all
+    }
+
+    /// How far two places are apart, less both radii.
+    fn apart(&self, i: usize, j: usize) -> f64 {
+        (self.points[i] - self.points[j]).length() - self.radii[i] - self.radii[j]
+    }
+
+    /// The nearest of all pairs of places that come no nearer when either moves along the robot, and of which the robot is not
+    /// simply the one thing: the way down does not lead to where both are one.
+    fn truth(&self, most: f64) -> f64 {
+        const AROUND: usize = 2;
+        let count = self.points.len();
+        let mut least = f64::INFINITY;
+        for i in 0..count {
+            for j in i + 1..count {
+                let here = self.apart(i, j);
+                if here >= least || here > most {
+                    continue;
+                }
+                let near = |at: usize| at.saturating_sub(AROUND)..(at + AROUND + 1).min(count);
+                let is_least = near(i).all(|k| near(j).all(|l| k < l && self.apart(k, l) >= here));
+                if is_least {
+                    least = here;
+                }
+            }
+        }
+        least
+    }
+
+    /// The nearest of all pairs more than three radii and some more apart along the robot.
+    fn by_arc_length(&self, more: f64) -> f64 {
+        let count = self.points.len();
+        let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+        let far = pairs.filter(|&(i, j)| {
+            self.arc_lengths[j] - self.arc_lengths[i] > 3.0 * self.radii[i].max(self.radii[j]) + more
+        });
+        far.fold(f64::INFINITY, |least, (i, j)| least.min(self.apart(i, j)))
+    }
+
+    /// How far the nearest two samples may be farther apart than the nearest two places: half a step along each.
+    fn step(&self) -> f64 {
+        self.arc_lengths.windows(2).fold(0.0, |most, ends| f64::max(most, ends[1] - ends[0]))
+    }
+}
+
+#[derive(Default)]
+struct Counts {
+    near: u32,
+    clear: u32,
+    missed: [u32; 3],
+    forbidden: [u32; 3],
+    unclear: u32,
+}
+
+type Robot = (&'static str, f64, fn(&mut Random) -> Shape);
+
+const ROBOTS: [Robot; 3] = [
+    ("tendon robot, 3 sections of 60 mm, radius 5 mm", 5.0, tendon_robot),
+    ("concentric tubes, radius 1.25 to 0.5 mm", 1.25, tubes),
+    ("snake of 20 links of 20 mm, radius 9 mm", 9.0, snake),
+];
+
+fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result<Counts, String> {
+    let (mut random, mut counts, mut pair) = (Random::new(7), Counts::default(), RobotPair::new());
+    for _ in 0..my.shapes {
+        let shape = shape(&mut random);
+        let samples = Samples::of(&shape);
+        // Two places may be half a step off on either side, across their distance of about two radii: to be near for certain, or
+        // clear, it takes more than that.
+        let step = samples.step();
+        let radius = shape.radii.iter().fold(f64::INFINITY, |least, &r| least.min(r));
+        let off = 0.25 * step * step / radius;
+        let truth = samples.truth(margin + off);
+        if truth > margin - off && truth <= margin + off {
+            counts.unclear += 1;
+            continue;
+        }
+        let robot = Chain::capsules(&shape.points, &shape.radii).map_err(|error| error.to_string())?;
+        let ours = !pair.self_clears(&robot, margin).map_err(|error| error.to_string())?;
+        let [arcs, longer] = [0.0, margin].map(|more| samples.by_arc_length(more) <= margin);
+        let is_near = truth <= margin;
+        *(if is_near { &mut counts.near } else { &mut counts.clear }) += 1;
+        for (rule, says) in [ours, arcs, longer].into_iter().enumerate() {
+            counts.missed[rule] += u32::from(is_near && !says);
+            counts.forbidden[rule] += u32::from(!is_near && says);
+        }
+    }
+    Ok(counts)
+}
+
+fn table(my: &Options) -> Result<String, String> {
+    let mut page = format!(
+        "{} random shapes of each robot (`{}`). A shape is near itself if two places of its centreline that come no nearer when \
+         either moves along it are within the margin, less both radii: sought among samples, all pairs of which are compared. What \
+         the samples leave unclear is left out. The planner's rule takes all pairs of samples more than 3 radii apart along \
+         the robot, or more than 3 radii and the margin.\n\n\
+         | robot | margin, mm | near itself | clear | unclear | `self_clears` misses | forbids | 3 radii: misses | forbids | 3 radii and the margin: misses | forbids |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
+        my.shapes,
+        command::line("-p continuum-studies --bin own_parts")
+    );
+    for (name, radius, shape) in ROBOTS {
+        for margin in [0.0, 0.5 * radius, radius] {
+            let Counts { near, clear, missed, forbidden, unclear } = counted(my, shape, margin)?;
+            let _ = writeln!(
+                page,
+                "| {name} | {margin} | {near} | {clear} | {unclear} | {} | {} | {} | {} | {} | {} |",
+                missed[0], forbidden[0], missed[1], forbidden[1], missed[2], forbidden[2]
+            );
+        }
+    }
+    Ok(page)
+}
+
+fn main() -> ExitCode {
+    command::run(|my: &Options| {
+        let table = table(my)?;
+        print!("{table}");
+        quote::in_page(&table, "own_parts", &my.out.join("book/robots.md"))
+    })
+}
