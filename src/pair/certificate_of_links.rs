@@ -45,6 +45,16 @@ const POSES: [&str; 2] = ["pose_a", "pose_b"];
 impl Certificate {
     /// Bounds on the distance between two links at their poses.
     ///
+    /// ```
+    /// use parry_continuum::{ModifiedCylinder, proximity::Certificate};
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    ///
+    /// let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z, 0.5)?;
+    /// let proof = Certificate::between_links(&link, &Pose::IDENTITY, &link, &Pose::translation(3.0, 0.0, 0.0))?;
+    /// assert!(proof.lower <= 2.0 && 2.0 <= proof.upper && proof.upper - proof.lower < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// A pose is not finite or not rigid, or moves its link out of range.
     pub fn between_links(
