@@ -14,7 +14,7 @@
 //! - the means m of the segments before and behind in the section, turned with the chord: so the curvature may change evenly
 //!   from one to the other, or jump at any place;
 //! - at an end of the section, where one of the two is missing, m and as much again as the other one differs from it: the
-//!   change goes on (a section of one segment takes its neighbours' means);
+//!   change goes on (a section of one segment takes its neighbours' means, and see below);
 //! - where m changes the same way towards both sides, here or from one neighbour on, half of the smaller change more: at
 //!   a peak of a curvature that changes evenly, its mean hides as much, at most.
 //!
@@ -33,6 +33,17 @@
 //! |y'' - h''|^2 = |y'' - z|^2 - |h'' - z|^2 <= w^2 - |h'' - z|^2 =: v^2, |h'' - z|^2 = |m - z|^2 + 3 |T + U|^2 / l^2.
 //!
 //! (Where the line is farther from z than what is in a ball can be, w is larger.)
+//!
+//! **A section of one segment.** Its neighbours are other tubes. They tell how large its bend may be, but not how it changes. It is
+//! taken to change one way, evenly or in jumps: let its changes c at the places p all be within 60 degrees of one direction. A
+//! jump by c at p moves the curve from the cubic by l^2 |c| f(x, p), f = x^2 (1 - p) |1 - 3 p + 2 p x| / 2 for x <= p, and as much on
+//! the other side seen from there. That is p (1 - p) times 4/27 at most, and f' is in the mean of squares p (1 - p) times
+//! sqrt(2 / 15): both factors are largest for a jump at an end. And each jump shows: (T + U) / l = m - a is the sum of all
+//! c p (1 - p), so it is at least half as long as the sum of all |c| p (1 - p). Hence |r| <= 8/27 l |T + U|, and r' is in the mean of
+//! squares at most 2 sqrt(2 / 15) |T + U|. Both hold with v = 4.6 |T + U| / l in what follows.
+//! Across the chord a bend k is seen as k cos q, where q <= k l / 2. What is missing of k is at most E = k (k l)^2 / 8. It shows as E /
+//! sqrt(3) at most (|1 - 2 x| is that in the mean of squares), and moves the curve by what E does in the mean of squares: v is larger by
+//! 4.6 E / sqrt(3) + E < 0.47 k (k l)^2.
 //!
 //! r = y - h has no value and no slope at both ends. A beam that is clamped at both ends gives way most in the middle, by
 //! l^3 / 192 of a load: |r(s)| <= sqrt(l^3 / 192) (integral of |r''|^2)^(1/2) <= l^2 v / 13.85. And r' is 0 at both ends and in the
@@ -199,8 +210,13 @@ impl Arch {
         ((self.bends()[0] - centre).length_squared() + lean).sqrt()
     }
 
-    /// What is known of the curve; none if it may turn by more than 1 rad.
-    pub(super) fn bound(&self, (centre, radius): (Vector, Real), rounding: Real) -> Result<Known, Real> {
+    /// What is known of the curve, which may be a section of one segment; none if it may turn by more than 1 rad.
+    pub(super) fn bound(
+        &self,
+        (centre, radius): (Vector, Real),
+        is_section: bool,
+        rounding: Real,
+    ) -> Result<Known, Real> {
         let longest = self.chord_length * 1.06;
         let across = centre.length() + radius;
         let turn = across * longest;
@@ -221,10 +237,17 @@ impl Arch {
         let bend = curvature * self.chord_length;
         let mut stretched = self.chord_length * bend * bend / 20.0;
         let mut uneven = 0.0;
+        let one_way = if is_section {
+            // A chord is turned by what rounding does to its ends.
+            let shown = (self.slopes[0] + self.slopes[1]).length() + 4.0 * rounding / self.chord_length;
+            4.6 * shown / self.chord_length + 0.47 * curvature * turn * turn
+        } else {
+            Real::INFINITY
+        };
         for _ in 0..3 {
             let share = stretched / self.chord_length;
             let line = (self.line_off(centre) - 3.5 * share * (t + u) / self.length).max(0.0);
-            uneven = (radius * radius - line * line).max(0.0).sqrt();
+            uneven = (radius * radius - line * line).max(0.0).sqrt().min(one_way);
             let along = tangent * longest * longest * uneven / TAU;
             stretched = stretched.min(along / cosine);
         }

@@ -36,7 +36,8 @@ impl Tube {
     /// better than points alone; so few of them serve, and flat faces are known at steps in radius too.
     ///
     /// Between two frames the curve may bend as the directions show there and in the neighbouring segments of the section, and
-    /// anything between; its curvature may jump from the one to the other at any place. What that leaves open counts in the
+    /// anything between; its curvature may jump from the one to the other at any place. In a section of one segment the bend
+    /// changes one way only, evenly or in jumps. What that leaves open counts in the
     /// bounds of each answer, and is nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
     /// segment and its neighbours, is not covered: give more frames there.
     ///
@@ -105,14 +106,11 @@ impl Tube {
         for (number, arch) in arches.iter().enumerate() {
             let own = |k: usize| arches.get(k).filter(|other| is_same(arch.radius, other.radius));
             let any = |k: usize| arches.get(k);
-            // A section of one segment shows nothing of how it changes; its neighbours do.
+            // A section of one segment has no neighbours of its own.
             let neighbours = around(number, own);
-            let neighbours = if neighbours.iter().all(|side| side[0].is_none()) {
-                around(number, any)
-            } else {
-                neighbours
-            };
-            let known = arch.bound(arch.ball(neighbours), rounding + gap).map_err(|turn| {
+            let is_section = neighbours.iter().all(|side| side[0].is_none());
+            let neighbours = if is_section { around(number, any) } else { neighbours };
+            let known = arch.bound(arch.ball(neighbours), is_section, rounding + gap).map_err(|turn| {
                 let after = arch.segment as usize;
                 RobotError::TurnsTooSharply { index: after + arch.sharper_end(), after, turn }
             })?;

@@ -101,6 +101,54 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
     assert!(seen.resolved > 9_000, "{seen:?} {kinds:?}");
 }
 
+/// A tube of three radii whose middle section is a single segment, in which the bend jumps from that of the section before to that
+/// of the one behind: once or twice, at any place, or not at all.
+#[test]
+fn sections_of_one_segment_are_known_by_their_own_frames() {
+    let (mut random, mut seen, mut straight) = (Random::new(72), Seen::default(), [0; 2]);
+    for _ in 0..1_000 {
+        let mut arcs = Arcs::from_frame(random.pose(5.0));
+        let spacing = random.between(1.0, 4.0);
+        let radii = [1.25, 1.0, 0.5];
+        let bend = |random: &mut Random| {
+            let angle = TAU * random.unit();
+            Vector::new(angle.cos(), angle.sin(), 0.0) * (0.2 * random.unit() / spacing)
+        };
+        let [from, to] = [bend(&mut random), bend(&mut random)];
+        let length = 0.59 * spacing;
+        let jumps = random.below(3);
+        let parts = match jumps {
+            0 => vec![(length, to)],
+            // Near an end as often as anywhere.
+            1 => {
+                let share = random.unit().powi(3);
+                let share = if random.unit() < 0.5 { share } else { 1.0 - share };
+                vec![(share * length, from), ((1.0 - share) * length, to)]
+            }
+            // By way of a bend that is up to 40 degrees aside, as seen from both.
+            _ => {
+                let aside = Vector::Z.cross(to - from) * (0.5 * random.between(-0.8, 0.8));
+                let third = length / 3.0;
+                vec![(third, from), (third, (from + to) * 0.5 + aside), (third, to)]
+            }
+        };
+        arcs.push(radii[0], &[(3.0 * spacing, from)]);
+        arcs.push(radii[1], &parts);
+        arcs.push(radii[2], &[(3.0 * spacing, to)]);
+        let (points, tangents, radii) = frames(&mut random, &arcs, spacing);
+        assert_eq!(radii.iter().filter(|&&radius| radius == 1.0).count(), 1);
+        let tube = Tube::from_frames(&points, &tangents, &radii).unwrap();
+        let before = seen.resolved;
+        judge(&mut random, &tube, (&discs(&arcs), &|s: f64| arcs.at(s)), [4.0, 0.01], 10, &mut seen);
+        if jumps == 0 {
+            straight = [straight[0] + seen.resolved - before, straight[1] + 10];
+        }
+    }
+    assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 1_500, "{seen:?}");
+    // An arc is known although its neighbours bend otherwise.
+    assert!(straight[0] * 100 >= straight[1] * 99 && straight[1] > 3_000, "{straight:?} {seen:?}");
+}
+
 /// Two straight arms that meet at a corner, or do not: the frame there is taken twice.
 #[test]
 fn a_corner_between_two_frames_at_one_place_is_refused() {
