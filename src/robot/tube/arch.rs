@@ -58,8 +58,7 @@
 //! v, m and T / l change by the factor |l - l'| / l. Both lengths are at least c, and as y' and h' are small in the mean, at
 //! most c (1 + (k c)^2 / 20).
 
-use super::curve::CurveBound;
-use super::laid::NextPoint;
+use super::curve::{CurveBound, NextPoint};
 use super::segment::Segment;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Rotation, Vector};
@@ -230,13 +229,6 @@ impl Arch {
         }
         let curvature = across * (1.0 + 0.25 * turn * turn);
         let radius = radius + curvature * turn * turn / 16.0;
-        let off = 0.5 * curvature * longest;
-        let (tangent, cosine) = (libm::tan(off), libm::cos(off));
-        let [t, u] = self.slopes.map(Vector::length);
-        // Of two lengths between that of the chord and that of an arc.
-        let bend = curvature * self.chord_length;
-        let mut stretched = self.chord_length * bend * bend / 20.0;
-        let mut uneven = 0.0;
         let one_way = if is_section {
             // A chord is turned by what rounding does to its ends.
             let shown = (self.slopes[0] + self.slopes[1]).length() + 4.0 * rounding / self.chord_length;
@@ -244,21 +236,47 @@ impl Arch {
         } else {
             Real::INFINITY
         };
+        Ok(self.known(&Bends { centre, radius, curvature, one_way, tilts: [0.0; 2] }, rounding))
+    }
+
+    /// What is known of a curve that bends by `curvature` at most, if the directions at its ends may be off by `tilts`; none if it
+    /// may turn by too much.
+    pub(super) fn bound_bend(&self, curvature: Real, tilts: [Real; 2], rounding: Real) -> Option<Known> {
+        let is_ahead = |tangent: &Vector| tangent.dot(self.chord) > 0.0;
+        let turn = curvature * self.chord_length * 1.06;
+        let may = turn < 0.9 && tilts[0].max(tilts[1]) < 0.1 && self.tangents.iter().all(is_ahead);
+        let bends =
+            Bends { centre: Vector::ZERO, radius: curvature, curvature, one_way: Real::INFINITY, tilts };
+        may.then(|| self.known(&bends, rounding))
+    }
+
+    fn known(&self, bends: &Bends, rounding: Real) -> Known {
+        let Bends { centre, radius, curvature, one_way, tilts } = *bends;
+        let (tilt, all_tilts) = (tilts[0].max(tilts[1]), tilts[0] + tilts[1]);
+        let longest = self.chord_length * 1.06;
+        let off = 0.5 * curvature * longest + 1.2 * tilt;
+        let (tangent, cosine) = (libm::tan(off), libm::cos(off));
+        let [t, u] = self.slopes.map(Vector::length);
+        // Of two lengths between that of the chord and that of an arc.
+        let bend = curvature * self.chord_length;
+        let mut stretched = self.chord_length * bend * bend / 20.0;
+        let mut uneven = 0.0;
+        let along = |uneven: Real| tangent * longest * (longest * uneven / TAU + tilt);
         for _ in 0..3 {
             let share = stretched / self.chord_length;
-            let line = (self.line_off(centre) - 3.5 * share * (t + u) / self.length).max(0.0);
-            uneven = (radius * radius - line * line).max(0.0).sqrt().min(one_way);
-            let along = tangent * longest * longest * uneven / TAU;
-            stretched = stretched.min(along / cosine);
+            let less = 3.5 * share * (t + u) / self.length + 2.0 * all_tilts / self.chord_length;
+            let line = (self.line_off(centre) - less).max(0.0);
+            uneven = ((radius - line) * (radius + line)).max(0.0).sqrt().min(one_way);
+            stretched = stretched.min(along(uneven) / cosine);
         }
         let share = stretched / self.chord_length;
-        let along = tangent * longest * longest * uneven / TAU;
         let off = longest * longest * uneven / 13.85
-            + along
+            + along(uneven)
             + stretched * (1.0 + 4.0 / 27.0 * (t + u))
+            + 4.0 / 27.0 * all_tilts * longest
             + self.gauss_error() * longest
             + rounding;
-        Ok(Known { bound: CurveBound { curvature, off }, stretch: 1.0 + share + 8.0 * Real::UNIT_ROUNDOFF })
+        Known { bound: CurveBound { curvature, off }, stretch: 1.0 + share + 8.0 * Real::UNIT_ROUNDOFF }
     }
 
     /// The points behind its start, so close together that their chords leave the curve by no more than it is off anyway.
@@ -286,6 +304,20 @@ impl Arch {
             }
         })
     }
+}
+
+/// What is assumed of the curvature vectors between two frames, seen across the chord.
+#[derive(Clone, Copy)]
+struct Bends {
+    /// In the mean of squares they are so far from a centre at most.
+    centre: Vector,
+    radius: Real,
+    /// The curvature is at most this.
+    curvature: Real,
+    /// How far they are from a line at most, in the mean of squares, as far as that is known otherwise.
+    one_way: Real,
+    /// How far the directions at the ends may be off.
+    tilts: [Real; 2],
 }
 
 /// What is known of the curve between two frames.

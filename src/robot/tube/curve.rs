@@ -24,6 +24,38 @@ pub(super) struct Samples {
     pub bounds: Vec<CurveBound>,
 }
 
+impl Samples {
+    /// No points are left; the memory is.
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+        self.arcs.clear();
+        self.segments.clear();
+        self.bounds.clear();
+    }
+
+    /// The length of the polyline.
+    pub(super) fn length(&self) -> Real {
+        self.arcs.last().copied().unwrap_or(0.0)
+    }
+
+    /// Adds a point of a segment of the input.
+    pub(super) fn push(&mut self, segment: u32, NextPoint { point, length, bound }: NextPoint) {
+        self.arcs.push(self.length() + length);
+        self.points.push(point);
+        self.segments.push(segment);
+        self.bounds.push(bound);
+    }
+}
+
+/// A point of a curve behind another.
+pub(super) struct NextPoint {
+    pub point: Vector,
+    /// The length of the curve from the point before.
+    pub length: Real,
+    /// What is known of the curve between the two.
+    pub bound: CurveBound,
+}
+
 /// What is known of a stretch of a curve.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CurveBound {

@@ -18,8 +18,8 @@
 //! face holds with the tilt `turn` (`pieces::outer`).
 
 use super::Tube;
-use super::curve::CurveBound;
-use super::laid::{Laid, NextPoint};
+use super::curve::{CurveBound, NextPoint};
+use super::laid::Laid;
 use super::section::stretch;
 use super::smoothing_spline::{Smoother, SmoothingSpline};
 use crate::distance::Scalar;

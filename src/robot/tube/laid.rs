@@ -1,22 +1,13 @@
 //! A tube that is laid along a curve known between its samples: points as close together as the curve's bends ask for.
 
 use super::Tube;
-use super::curve::{Curve, CurveBound, Samples};
+use super::curve::{Curve, CurveBound, NextPoint, Samples};
 use super::lasting::Lasting;
 use super::section::{Face, Section};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
-
-/// A point of the curve behind another.
-pub(super) struct NextPoint {
-    pub point: Vector,
-    /// The length of the curve from the point before.
-    pub length: Real,
-    /// What is known of the curve between the two.
-    pub bound: CurveBound,
-}
 
 /// A tube on its way.
 pub(super) struct Laid {
@@ -34,10 +25,7 @@ impl Laid {
     /// From the first point on, in the memory of a curve and sections.
     pub(super) fn begin(curve: Curve, mut sections: Vec<Section>, start: Vector) -> Self {
         let mut samples = curve.into_samples();
-        samples.points.clear();
-        samples.arcs.clear();
-        samples.segments.clear();
-        samples.bounds.clear();
+        samples.clear();
         sections.clear();
         samples.points.push(start);
         samples.arcs.push(0.0);
@@ -53,7 +41,7 @@ impl Laid {
         tangents: [Vector; 2],
         points: impl Iterator<Item = NextPoint>,
     ) {
-        let (first, start) = (self.samples.points.len() - 1, self.end());
+        let (first, start) = (self.samples.points.len() - 1, self.samples.length());
         let goes_on = !self.sections.is_empty() && is_same(self.first_radius, radius);
         if !goes_on {
             self.close();
@@ -61,23 +49,16 @@ impl Laid {
             self.tangents.push(tangents);
             [self.first_radius, self.least_radius] = [radius; 2];
         }
-        for NextPoint { point, length, bound } in points {
-            self.samples.arcs.push(self.end() + length);
-            self.samples.points.push(point);
-            self.samples.segments.push(segment);
-            self.samples.bounds.push(bound);
+        for next in points {
+            self.samples.push(segment, next);
         }
         self.least_radius = self.least_radius.min(radius);
-        let (last, end) = (self.samples.points.len() - 1, self.end());
+        let (last, end) = (self.samples.points.len() - 1, self.samples.length());
         if let (Some(section), Some(own)) = (self.sections.last_mut(), self.tangents.last_mut()) {
             section.radius = section.radius.max(radius);
             (section.last, section.end) = (last as u32, end);
             own[1] = tangents[1];
         }
-    }
-
-    fn end(&self) -> Real {
-        self.samples.arcs.last().copied().unwrap_or(0.0)
     }
 
     fn close(&mut self) {
@@ -103,7 +84,7 @@ impl Laid {
         let Self { mut samples, sections, tangents, merged, .. } = self;
         samples.segments.push(samples.segments.last().copied().unwrap_or(0));
         samples.bounds.push(CurveBound::default());
-        let end = samples.arcs.last().copied().unwrap_or(0.0);
+        let end = samples.length();
         tube.reach =
             samples.points.iter().fold(end, |reach: Real, point| point.abs().max_element().max(reach));
         tube.merged = merged + gap;

@@ -11,6 +11,7 @@ mod from_chain;
 mod function;
 mod laid;
 mod lasting;
+mod long_segments;
 mod open_section;
 mod own_samples;
 mod samples;

@@ -88,6 +88,9 @@ impl Tube {
             }
         }
         self.crowds = [crowds, good];
+        if result.is_ok() {
+            self.lay_long_segments(tangents);
+        }
         result
     }
 

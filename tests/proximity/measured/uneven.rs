@@ -26,7 +26,7 @@ fn samples(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<
 
 #[test]
 fn uneven_samples_never_make_a_bound_wrong() {
-    let (mut random, mut seen, mut sharper) = (Random::new(121), Seen::default(), 0);
+    let (mut random, mut seen, [mut sharper, mut arched]) = (Random::new(121), Seen::default(), [0; 2]);
     for round in 0..1_500 {
         let mut arcs = Arcs::from_frame(random.pose(5.0));
         let spacing = random.between(0.5, 2.0);
@@ -41,12 +41,15 @@ fn uneven_samples_never_make_a_bound_wrong() {
         let (points, radii) = samples(&mut random, &arcs, spacing);
         let tangents = [None, Some(arcs.end_tangents())][random.below(2) as usize];
         let tube = Tube::from_samples(&points, &radii, tangents).unwrap();
+        let straight: f64 = points.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum();
+        arched += usize::from(tube.length() > straight * (1.0 + 1e-9));
         let curve = |s: f64| arcs.at(s);
         judge(&mut random, &tube, (&discs(&arcs), &curve), [4.0, 0.1 * spacing], 8, &mut seen);
         sharper += usize::from(kind == Kind::Arcs && arcs.stretches.iter().any(|part| part.curvature > 0.1));
     }
     assert!(seen.asked == 12_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
     assert!(seen.resolved > 9 * seen.asked / 10 && sharper > 100, "{seen:?} {sharper}");
+    assert!(arched > 500, "{arched}");
 }
 
 /// A sharp bend counts where it is: a wall beside the straight part is as well known as beside a straight tube.
@@ -60,4 +63,33 @@ fn a_sharp_bend_costs_nothing_elsewhere() {
     let tube = Tube::with_constant_radius(&points, 0.5, None).unwrap();
     let found = super::speck(Vector::new(3.0, 0.0, 18.0)).clearance(&tube, &Pose::IDENTITY, 1e-6).unwrap();
     assert!(found.resolved && found.lower <= 2.5 && 2.5 <= found.upper, "{found:?}");
+}
+
+/// Between samples that lie in pairs, the directions of the pairs tell where the curve is.
+#[test]
+fn a_long_segment_between_short_ones_is_known_better_than_by_its_chord() {
+    let (mut random, mut seen) = (Random::new(122), Seen::default());
+    for round in 0..300 {
+        let mut arcs = Arcs::from_frame(random.pose(5.0));
+        let (spacing, bend) = (random.between(4.0, 8.0), random.between(0.01, 0.03));
+        let angle = std::f64::consts::TAU * random.unit();
+        let bend = Vector::new(angle.cos(), angle.sin(), 0.0) * bend;
+        // An arc, or one that becomes another one somewhere.
+        let change = if round % 2 == 0 { bend } else { bend * random.between(-1.0, 0.9) };
+        let place = random.between(2.0, 3.0) * spacing;
+        arcs.push(0.5, &[(place, bend), (5.0 * spacing - place, change)]);
+        let places = (0..=5).flat_map(|k| [-0.01, 0.0, 0.01].map(|off| spacing * (f64::from(k) + off)));
+        let points: Vec<_> =
+            places.filter(|s| (0.0..=5.0 * spacing).contains(s)).map(|s| arcs.at(s).0).collect();
+        let tube = Tube::with_constant_radius(&points, 0.5, None).unwrap();
+        let before = seen.resolved;
+        // The chord leaves the arc by k l^2 / 8, and the bounds are up to twice that apart.
+        let tolerance = 0.5 * bend.length() * spacing * spacing / 8.0;
+        judge(&mut random, &tube, (&discs(&arcs), &|s: f64| arcs.at(s)), [4.0, tolerance], 10, &mut seen);
+        if round % 2 == 1 {
+            seen.resolved = before;
+        }
+    }
+    assert!(seen.asked == 3_000 && seen.touching > 100, "{seen:?}");
+    assert!(seen.resolved > 1_350, "{seen:?}");
 }
