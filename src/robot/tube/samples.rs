@@ -105,6 +105,23 @@ impl Tube {
         one_place: Real,
         crowds: &mut [Crowd],
     ) -> (Result<(), RobotError>, Option<usize>) {
+        // Nearly always nothing crowds, and a loop that need not look is faster.
+        if crowds.is_empty() {
+            self.lay_them::<false>(samples, radii, tangents, reach, one_place, crowds)
+        } else {
+            self.lay_them::<true>(samples, radii, tangents, reach, one_place, crowds)
+        }
+    }
+
+    fn lay_them<const CROWD: bool>(
+        &mut self,
+        samples: &[Vector],
+        radii: &[Real],
+        tangents: Option<[Vector; 2]>,
+        reach: Real,
+        one_place: Real,
+        crowds: &mut [Crowd],
+    ) -> (Result<(), RobotError>, Option<usize>) {
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -126,7 +143,7 @@ impl Tube {
         let (mut result, mut crowding) = (Ok(()), None);
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
             let mut off_here = 0.0;
-            if let Some(crowd) = crowds.get(number) {
+            if CROWD && let Some(crowd) = crowds.get(number) {
                 if crowd.first < k + 1 && k < crowd.last {
                     number += usize::from(crowd.last == k + 1);
                     continue;
@@ -140,7 +157,7 @@ impl Tube {
                 widest_gap = widest_gap.max(gap);
                 continue;
             }
-            let segment = segment.with_gap(off + off_here);
+            let segment = if CROWD { segment.with_gap(off + off_here) } else { segment };
             gap = 0.0;
             if let Some(before) = &before {
                 if open.takes(radius) {
@@ -174,7 +191,7 @@ impl Tube {
             open.extend(last, &segment);
             before = Some(segment);
             off = off_here;
-            if off > 0.0 {
+            if CROWD && off > 0.0 {
                 crowds[number].point = last;
             }
         }
