@@ -126,7 +126,8 @@ impl Tube {
     /// leaves open, times the radius, widens the bounds of every answer near the face.
     ///
     /// The curvature of a section is the largest that its samples show: turn / distance between neighbouring segments. A
-    /// section of one segment shows nothing of its own; the turns at its two ends count, which its neighbours share.
+    /// section of one segment shows nothing of its own; the turns at its two ends count, which its neighbours share. Where samples
+    /// lie unevenly, each segment bends no more than the two samples before it and the two behind it show.
     /// Points at one place, but for the rounding of coordinates so large (2^-48 of the largest), are one, as where the points
     /// of one section end and those of the next begin; the radius of the segment between them is dropped. Radii that differ by
     /// less than 2^-32 of a section's first are one section, with the largest of them. What that changes counts in all bounds.
@@ -186,7 +187,8 @@ impl Tube {
         measured
     }
 
-    /// The length of the centreline; between samples, of the lines that join them.
+    /// The length of the centreline; between samples, of the lines that join them, or of the arc that is laid in a long segment
+    /// between short ones.
     pub fn length(&self) -> Real {
         self.sections.last().map_or(0.0, |section| section.end)
     }
