@@ -41,6 +41,8 @@
 //! both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most 2 S; the links' coordinates in
 //! their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: e = 64 u S is
 //! enough. A way that leaves a face by no more than sqrt(e (2 d + e)) on its inner side counts as one that leaves it outside.
+//! And what is measured to be within a bound is in truth within e of it, which is what the ball around a face is asked for first: it
+//! is smaller than the face's link, and so known better than what is measured.
 //!
 //! **Rounding of turns.** An angle between two axes errs by less than 16 u, since the axes are unit vectors to 4 u and a sine and a
 //! cosine of them to 8 u, and so the sum over n joints by less than 16 n u and n^2 u for its own additions. [`Turns`] takes
@@ -258,15 +260,16 @@ impl<'a> OneRobot<'a> {
             let of_faces = faces[number + 1..].iter().map(|facing| (facing.link, Some(facing)));
             for (link, facing) in of_links.chain(of_faces.filter(|(link, _)| link.abs_diff(face.link) >= 2)) {
                 let other = self.robot.link(link);
+                let error = error([&on_face, &other]);
                 // The ball around a face holds it, and spares most others.
-                if !ball.may_be_within(bound, &other) {
+                if !ball.may_be_within(bound + error, &other) {
                     continue;
                 }
                 let nearest = match facing {
                     Some(facing) => face.nearest_to_face(&self.robot, facing),
                     None => face.nearest_to_link(&self.robot, &other),
                 };
-                let (way, slack) = way(&nearest, [&on_face, &other]);
+                let (way, slack) = way(&nearest, error);
                 let meets = facing.is_none_or(|facing| facing.sees(&self.robot, -way, slack));
                 if meets && face.sees(&self.robot, way, slack) {
                     let found = in_order([face.link, link], [&on_face, &other], &nearest);
@@ -279,10 +282,14 @@ impl<'a> OneRobot<'a> {
     }
 }
 
-/// The way from the first of two links to the second, and by how much it may err in any direction.
-fn way(nearest: &NearestOfLinks, links: [&PlacedLink; 2]) -> (Vector, Real) {
+/// By how much the distance of two links may be measured wrong, and the way between them be longer than the shortest.
+fn error(links: [&PlacedLink; 2]) -> Real {
     let reach = |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
-    let error = 64.0 * Real::UNIT_ROUNDOFF * reach(links[0]).max(reach(links[1]));
+    64.0 * Real::UNIT_ROUNDOFF * reach(links[0]).max(reach(links[1]))
+}
+
+/// The way from the first of two links to the second, and by how much it may err in any direction.
+fn way(nearest: &NearestOfLinks, error: Real) -> (Vector, Real) {
     // Two roots, so that no product leaves the range of numbers.
     let slack = error.sqrt() * (2.0 * nearest.distance + error).sqrt();
     (nearest.on_second - nearest.on_first, slack)
