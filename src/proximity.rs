@@ -58,7 +58,7 @@
 //! | every place where two robots are near | [`RobotPair::within`] |
 //! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
 //! | do two tubes keep a margin? | [`RobotPair::tubes_clear`] |
-//! | a proof of an answer | [`RobotProximity::certify`] |
+//! | a proof of the distance of its two links | [`RobotProximity::certify`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
 //!

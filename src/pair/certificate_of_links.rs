@@ -71,12 +71,14 @@ impl Certificate {
 }
 
 impl RobotProximity {
-    /// Bounds on the distance between this answer's links, which hold rigorously, rounding included.
+    /// Bounds on the distance between this answer's links, which hold rigorously, rounding included. `upper` holds for the two
+    /// robots too, `lower` for these two links alone: for the robots take the least of all pairs of links
+    /// ([`Certificate::between_links`]).
     ///
     /// They lie within a few units in the last place of the problem's extent of each other; links that overlap have `lower` 0. No
     /// engine is trusted, and nothing is remembered. Give the same robots and poses as to the query. An answer about one robot
-    /// and itself takes the robot twice, at the identity; where it is about a flat face at a step, to which the whole link
-    /// is nearer than its face, it is not that of the links and is refused.
+    /// and itself takes the robot twice, at the identity; where it is about an end of a link, flat or round, to which the whole link
+    /// is nearer than its end, it is not that of the links and is refused.
     ///
     /// # Errors
     /// A robot does not have the answer's link, a pose is not finite or not rigid or moves the link out of range, or the answer

@@ -30,7 +30,7 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn clears_batch(&self, sets: &[&[(&Chain, Pose)]], out: &mut Vec<Result<bool, SceneError>>) {
-        self.batch(sets, true, out, |scene, robots| scene.clears(robots));
+        self.batch(sets, false, out, |scene, robots| scene.clears(robots));
     }
 
     /// [`tightest`](Self::tightest) for many sets of robots, on all cores. `out` gets the answer of each set, or why there is

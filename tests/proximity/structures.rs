@@ -276,3 +276,20 @@ fn many_sets_have_the_answers_of_each() {
     let count = |clear: bool| clears.iter().filter(|answer| **answer == Ok(clear)).count();
     assert!(count(true) > 5 && count(false) > 2, "{} {}", count(true), count(false));
 }
+
+/// The square of such a length is rounded up by a third and more.
+#[test]
+fn what_is_tiny_is_not_left_out() {
+    let size = 1e-162;
+    for away in (1..200).map(|k| size * (1.0 + 0.01 * f64::from(k))) {
+        let corners = [Vector::ZERO, Vector::new(-size, size, 0.0), Vector::new(-size, -size, 0.0)];
+        let mut scene = Scene::new();
+        let wall = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
+        scene.add("wall", wall, Some(away * 1.01)).unwrap();
+        let at = Vector::X * away;
+        let wire = Chain::capsules(&[at - Vector::Y * size, at + Vector::Y * size], &[0.0]).unwrap();
+        assert_eq!(scene.clears(&[(&wire, Pose::IDENTITY)]), Ok(false), "{away:e}");
+        let found = scene.tightest(&[(&wire, Pose::IDENTITY)]).unwrap().unwrap();
+        assert!(found.slack < 0.0 && found.slack > -0.02 * away, "{away:e} {found:?}");
+    }
+}
