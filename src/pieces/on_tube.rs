@@ -104,8 +104,12 @@ impl PlacedTube<'_> {
             let tick = self.tube.tick(section, from + step);
             let arc = self.tube.arc(section, tick);
             let is_between = from.min(to) < arc && arc < from.max(to);
-            if is_between && (self.point(section, tick) - x).length() > least {
-                return true;
+            if is_between {
+                // The curve may be so far from the tick.
+                let off = self.tube.bound(section, [tick - 1, tick + 1]).off;
+                if (self.point(section, tick) - x).length() > least + off {
+                    return true;
+                }
             }
             step *= 0.5;
         }
@@ -114,7 +118,9 @@ impl PlacedTube<'_> {
 
     /// How far a round end is from `x`, if its ball may stick out of the face at the section's other end.
     fn distance_to_crowded_end(&self, section: &Section, end: usize, x: Vector) -> Real {
-        if section.faces[end].is_some() || section.end - section.start > section.room(1 - end) {
+        if section.faces[end].is_some()
+            || section.end - section.start > section.room(1 - end) * section.stretch
+        {
             return Real::INFINITY;
         }
         let tick = if end == 0 { section.first } else { section.last };

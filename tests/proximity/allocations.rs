@@ -136,12 +136,22 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
     let mesh = TriMesh::new(vertices, indices).unwrap();
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 200);
     let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
-    let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
-    let mut tube = Tube::from_samples(&points, &line.radii, None).unwrap();
-    let (mut search, mut moved, mut seen) = (BvhSearch::new(&mesh).unwrap(), Vec::new(), Vec::new());
+    let all: Vec<_> = line.points.iter().map(|&point| base * point).collect();
+    // Every sample, or some of them: two that are near one another, and then none for long.
+    for is_uneven in [false, true] {
+        let kept: Vec<_> = (0..all.len()).filter(|k| !is_uneven || [0, 1].contains(&(k % 9))).collect();
+        let points: Vec<_> = kept.iter().map(|&k| all[k]).collect();
+        let radii: Vec<_> = kept[1..].iter().map(|k| line.radii[k - 1]).collect();
+        loop_about_a_tube(&mesh, &points, &radii, pose);
+    }
+}
+
+fn loop_about_a_tube(mesh: &TriMesh, points: &[Vector], radii: &[f64], pose: Pose) {
+    let mut tube = Tube::from_samples(points, radii, None).unwrap();
+    let (mut search, mut moved, mut seen) = (BvhSearch::new(mesh).unwrap(), Vec::new(), Vec::new());
     let allocated = steady_state(|tick| {
-        sway(&points, tick, &mut moved);
-        tube.set_samples(&moved, &line.radii, None).unwrap();
+        sway(points, tick, &mut moved);
+        tube.set_samples(&moved, radii, None).unwrap();
         let found = search.clearance(&tube, &pose, 0.05).unwrap();
         search.tube_clears(&tube, &pose, 0.5, 0.05).unwrap();
         if tick < 50 {

@@ -43,7 +43,8 @@
 //! squares at most 2 sqrt(2 / 15) |T + U|. Both hold with v = 4.6 |T + U| / l in what follows.
 //! Across the chord a bend k is seen as k cos q, where q <= k l / 2. What is missing of k is at most E = k (k l)^2 / 8. It shows as E /
 //! sqrt(3) at most (|1 - 2 x| is that in the mean of squares), and moves the curve by what E does in the mean of squares: v is larger by
-//! 4.6 E / sqrt(3) + E < 0.47 k (k l)^2.
+//! 4.6 E / sqrt(3) + E < 0.47 k (k l)^2. (Here A l stands for k l, and q <= f is what is used: as the bound on k is A / cos f or more,
+//! that is enough up to A l = 0.9.)
 //!
 //! r = y - h has no value and no slope at both ends. A beam that is clamped at both ends gives way most in the middle, by
 //! l^3 / 192 of a load: |r(s)| <= sqrt(l^3 / 192) (integral of |r''|^2)^(1/2) <= l^2 v / 13.85. And r' is 0 at both ends and in the
@@ -65,7 +66,7 @@ use parry3d_f64::math::{Real, Rotation, Vector};
 use std::f64::consts::TAU;
 
 /// A segment is laid in no more parts.
-const MOST_PARTS: u32 = 16;
+pub(super) const MOST_PARTS: u32 = 16;
 
 /// The places and weights of Gauss's rule with four points, between -1 and 1.
 const GAUSS: [[Real; 2]; 4] = [
@@ -240,7 +241,7 @@ impl Arch {
     }
 
     /// What is known of a curve that bends by `curvature` at most, if the directions at its ends may be off by `tilts`; none if it
-    /// may turn by too much.
+    /// may turn by too much, or a direction is off by too much or leads back.
     pub(super) fn bound_bend(&self, curvature: Real, tilts: [Real; 2], rounding: Real) -> Option<Known> {
         let is_ahead = |tangent: &Vector| tangent.dot(self.chord) > 0.0;
         let turn = curvature * self.chord_length * 1.06;
@@ -257,8 +258,8 @@ impl Arch {
         let off = 0.5 * curvature * longest + 1.2 * tilt;
         let (tangent, cosine) = (libm::tan(off), libm::cos(off));
         let [t, u] = self.slopes.map(Vector::length);
-        // Of two lengths between that of the chord and that of an arc.
-        let bend = curvature * self.chord_length;
+        // Of two lengths between that of the chord and that of an arc; the cubic's slopes may be larger by what the directions are off.
+        let bend = curvature * self.chord_length + 2.0 * tilt;
         let mut stretched = self.chord_length * bend * bend / 20.0;
         let mut uneven = 0.0;
         let along = |uneven: Real| tangent * longest * (longest * uneven / TAU + tilt);
@@ -279,17 +280,21 @@ impl Arch {
         Known { bound: CurveBound { curvature, off }, stretch: 1.0 + share + 8.0 * Real::UNIT_ROUNDOFF }
     }
 
-    /// The points behind its start, so close together that their chords leave the curve by no more than it is off anyway.
+    /// In how many parts it is laid: so many that their chords leave the curve by no more than it is off anyway.
+    pub(super) fn parts(&self, bound: CurveBound) -> u32 {
+        let sagitta = bound.curvature * self.length * self.length / 8.0;
+        // A number out of range becomes the nearest that is in it, and NaN becomes 0.
+        ((2.0 * sagitta / bound.off).sqrt().ceil() as u32).clamp(1, MOST_PARTS)
+    }
+
+    /// The points behind its start.
     pub(super) fn points(
         &self,
         bound: CurveBound,
         end: Vector,
         unscale: Real,
     ) -> impl Iterator<Item = NextPoint> {
-        let sagitta = bound.curvature * self.length * self.length / 8.0;
-        // A number out of range becomes the nearest that is in it, and NaN becomes 0.
-        let parts = ((2.0 * sagitta / bound.off).sqrt().ceil() as u32).clamp(1, MOST_PARTS);
-        let arch = *self;
+        let (arch, parts) = (*self, self.parts(bound));
         let mut along = 0.0;
         (1..=parts).map(move |k| {
             let [from, x] = [k - 1, k].map(|k| Real::from(k) / Real::from(parts));

@@ -33,6 +33,14 @@ impl Samples {
         self.bounds.clear();
     }
 
+    /// Makes room for so many points in all.
+    pub(super) fn reserve(&mut self, points: usize) {
+        self.points.reserve(points.saturating_sub(self.points.len()));
+        self.arcs.reserve(points.saturating_sub(self.arcs.len()));
+        self.segments.reserve(points.saturating_sub(self.segments.len()));
+        self.bounds.reserve(points.saturating_sub(self.bounds.len()));
+    }
+
     /// The length of the polyline.
     pub(super) fn length(&self) -> Real {
         self.arcs.last().copied().unwrap_or(0.0)
@@ -241,7 +249,8 @@ impl Curve {
                 // A length that vanishes beside those before it, as a sum, says nothing of a direction.
                 let rounded = if length > 0.0 { rounding / length } else { Real::INFINITY };
                 let bound = self.bound(section, [from as u32, to as u32]);
-                let tilt = bound.curvature * length * section.stretch + rounded;
+                let apart = if length > 0.0 { 2.0 * bound.off / length } else { Real::INFINITY };
+                let tilt = bound.curvature * length * section.stretch + rounded + apart;
                 let off = beside_chord(&bound, length * section.stretch, along);
                 PlaceOnCurve { point: a + (b - a) * along, off, direction: direction(b - a), tilt }
             }

@@ -17,17 +17,21 @@
 //! Points may be off by rounding, and where samples are one by what these are apart; that turns chords, and is in the errors of all three
 //! directions. How far points are off themselves is counted elsewhere.
 //!
-//! It is done where the cubic leaves open less than half of what the chord does.
+//! The cubic's length may differ from c by more than c (k c)^2 / 20: its slopes are as large as k l / 2 + q. With k c + 2 q for k c that
+//! holds.
+//!
+//! It is done where the cubic leaves open less than half of what the chord does. Arc lengths stay those of the chords: a share of a
+//! section is the same place whether a segment is laid so or not.
 
 use super::Tube;
-use super::arch::Arch;
+use super::arch::{Arch, MOST_PARTS};
 use super::curve::{Curve, CurveBound, NextPoint, Samples};
 use super::section::Section;
 use super::segment::Segment;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// The two segments beside a long one are together shorter than this share of it.
+/// Each of the two segments beside a long one is shorter than this share of it.
 const SHORT: Real = 0.5;
 
 /// The samples of a tube, and what else is known of the curve through them.
@@ -46,7 +50,6 @@ struct Known<'a> {
 struct Long {
     arch: Arch,
     bound: CurveBound,
-    stretch: Real,
 }
 
 impl Known<'_> {
@@ -85,20 +88,30 @@ impl Known<'_> {
         let found = arch.bound_bend(curvature, tilts, self.off * scale)?;
         let length = chord.length * scale;
         let is_better = found.bound.off < 0.5 * curvature * length * length / 8.0;
-        is_better.then_some(Long { arch, bound: found.bound, stretch: found.stretch })
+        is_better.then_some(Long { arch, bound: found.bound })
     }
 }
 
 impl Tube {
     /// Lays the long segments of uneven sections as arches, where that tells more. The spare samples are lost.
     pub(super) fn lay_long_segments(&mut self, tangents: Option<[Vector; 2]>) {
+        let Curve::Samples(samples) = &mut self.curve else { return };
+        if samples.bounds.is_empty() {
+            return;
+        }
+        // Either of the two is laid into one day. In a loop the memory is to last, however many arches there will be.
+        let most = 1 + MOST_PARTS as usize * (samples.points.len() - 1);
         let mut laid = std::mem::take(&mut self.spare.0).into_samples();
+        samples.reserve(most);
+        laid.reserve(most);
         let mut sections = std::mem::take(&mut self.spare.1);
         let is_laid = self.with_long_segments(tangents, &mut laid, &mut sections);
         self.spare = (Curve::Samples(laid), sections);
         if is_laid {
             self.exchange();
-            self.reach = self.reach.max(self.length());
+            let Curve::Samples(samples) = &self.curve else { return };
+            let points = samples.points.iter();
+            self.reach = points.fold(self.reach, |reach, point| point.abs().max_element().max(reach));
         }
     }
 
@@ -111,9 +124,6 @@ impl Tube {
     ) -> bool {
         let Curve::Samples(samples) = &self.curve else { return false };
         let Samples { points, arcs, segments, bounds } = samples;
-        if bounds.is_empty() {
-            return false;
-        }
         let off = 4.0 * Real::UNIT_ROUNDOFF * self.reach + 2.0 * self.merged;
         let scale = self.reach.power_of_two_to_unity();
         let known = Known { tube: self, samples, tangents, off, scale };
@@ -123,23 +133,26 @@ impl Tube {
         laid.arcs.push(0.0);
         let mut is_laid = false;
         for section in &self.sections {
-            let mut own = Section { first: laid.points.len() as u32 - 1, start: laid.length(), ..*section };
+            let first = laid.points.len() as u32 - 1;
             for from in section.first as usize..section.last as usize {
                 let long = if section.is_even { None } else { known.long(from, section.radius) };
                 let (number, point) = (segments[from], points[from + 1]);
-                if let Some(Long { arch, bound, stretch }) = long {
+                let length = arcs[from + 1] - arcs[from];
+                if let Some(Long { arch, bound }) = long {
                     is_laid = true;
-                    own.stretch = own.stretch.max(stretch);
+                    let length = length / Real::from(arch.parts(bound));
                     for next in arch.points(bound, point * scale, 1.0 / scale) {
-                        laid.push(number, next);
+                        laid.push(number, NextPoint { length, ..next });
                     }
                 } else {
-                    let length = arcs[from + 1] - arcs[from];
                     laid.push(number, NextPoint { point, length, bound: bounds[from] });
                 }
+                // Without what rounding does to a sum of parts.
+                if let Some(end) = laid.arcs.last_mut() {
+                    *end = arcs[from + 1];
+                }
             }
-            (own.last, own.end) = (laid.points.len() as u32 - 1, laid.length());
-            sections.push(own);
+            sections.push(Section { first, last: laid.points.len() as u32 - 1, ..*section });
         }
         laid.segments.push(segments.last().copied().unwrap_or(0));
         laid.bounds.push(CurveBound::default());

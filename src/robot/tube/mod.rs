@@ -187,8 +187,7 @@ impl Tube {
         measured
     }
 
-    /// The length of the centreline; between samples, of the lines that join them, or of the arc that is laid in a long segment
-    /// between short ones.
+    /// The length of the centreline; between samples, of the lines that join them.
     pub fn length(&self) -> Real {
         self.sections.last().map_or(0.0, |section| section.end)
     }

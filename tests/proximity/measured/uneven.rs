@@ -24,6 +24,25 @@ fn samples(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<
     (points, radii)
 }
 
+/// Whether the tube is known between two samples too, so that pieces begin there: seen from beside its longest segment.
+fn is_divided_between_samples(tube: &Tube, points: &[Vector]) -> bool {
+    let longest = points.windows(2).max_by(|one, other| {
+        let [one, other] = [one, other].map(|ends| (ends[1] - ends[0]).length());
+        one.total_cmp(&other)
+    });
+    let middle = longest.map_or(Vector::ZERO, |ends| (ends[0] + ends[1]) * 0.5);
+    let mut pieces = Vec::new();
+    let speck = &mut super::speck(middle + Vector::new(3.0, 4.0, 5.0));
+    speck.clearance_pieces(tube, &Pose::IDENTITY, 0.0, &mut pieces).unwrap();
+    let mut arcs = vec![0.0];
+    arcs.extend(points.windows(2).scan(0.0, |arc, ends| {
+        *arc += (ends[1] - ends[0]).length();
+        Some(*arc)
+    }));
+    let is_sample = |arc: f64| arcs.iter().any(|sample| (sample - arc).abs() < 1e-9 * tube.length());
+    pieces.iter().any(|piece| !piece.arc_lengths.into_iter().all(is_sample))
+}
+
 #[test]
 fn uneven_samples_never_make_a_bound_wrong() {
     let (mut random, mut seen, [mut sharper, mut arched]) = (Random::new(121), Seen::default(), [0; 2]);
@@ -41,15 +60,14 @@ fn uneven_samples_never_make_a_bound_wrong() {
         let (points, radii) = samples(&mut random, &arcs, spacing);
         let tangents = [None, Some(arcs.end_tangents())][random.below(2) as usize];
         let tube = Tube::from_samples(&points, &radii, tangents).unwrap();
-        let straight: f64 = points.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum();
-        arched += usize::from(tube.length() > straight * (1.0 + 1e-9));
+        arched += usize::from(is_divided_between_samples(&tube, &points));
         let curve = |s: f64| arcs.at(s);
         judge(&mut random, &tube, (&discs(&arcs), &curve), [4.0, 0.1 * spacing], 8, &mut seen);
         sharper += usize::from(kind == Kind::Arcs && arcs.stretches.iter().any(|part| part.curvature > 0.1));
     }
     assert!(seen.asked == 12_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
     assert!(seen.resolved > 9 * seen.asked / 10 && sharper > 100, "{seen:?} {sharper}");
-    assert!(arched > 500, "{arched}");
+    assert!(arched > 400, "{arched}");
 }
 
 /// A sharp bend counts where it is: a wall beside the straight part is as well known as beside a straight tube.
