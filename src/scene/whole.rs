@@ -383,9 +383,11 @@ impl Scene {
         // No distance with a slack as small is beyond this, whatever is rounded here.
         let bound =
             best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up());
-        let placed = PlacedRobot::new(chain, &pose).map_err(of_robot(robot))?;
-        if bound < Real::INFINITY && !structure.may_be_within(&placed, bound) {
-            return Ok(());
+        if bound < Real::INFINITY {
+            let placed = PlacedRobot::new(chain, &pose).map_err(of_robot(robot))?;
+            if !structure.may_be_within(&placed, bound) {
+                return Ok(());
+            }
         }
         let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
         let Some(found) = found else { return Ok(()) };

@@ -16,32 +16,51 @@ fn link_of(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Modifie
     ModifiedCylinder::new(start, end, radius, flat.map(cap)).unwrap()
 }
 
+/// The bounds of reference cases: how far apart they are at most, and how many cases of each kind there were.
+#[derive(Debug, Default)]
+pub struct Tally {
+    pub apart: usize,
+    pub nearly_touching: usize,
+    pub touching: usize,
+    /// In units in the last place of a case's extent.
+    widest: f64,
+}
+
+impl Tally {
+    /// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
+    pub fn hold(&mut self, case: &str, expected: f64, scale: f64, bounds: Certificate) {
+        let Certificate { lower, upper, .. } = bounds;
+        assert!(lower <= expected && expected <= upper, "{case}: {expected} not in [{lower}, {upper}]");
+        let gap = (upper - lower) / (UNIT * scale);
+        assert!(gap <= 16.0, "{case}: {gap} units in [{lower}, {upper}]");
+        self.widest = self.widest.max(gap);
+    }
+
+    /// Takes note of a case whose distance is such a share of its extent.
+    pub fn count(&mut self, relative: f64) {
+        *match relative {
+            0.0 => &mut self.touching,
+            relative if relative < 1e-6 => &mut self.nearly_touching,
+            _ => &mut self.apart,
+        } += 1;
+    }
+}
+
 /// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
 #[test]
 fn the_reference_cases_lie_within_tight_bounds() {
-    let (mut apart, mut nearly_touching, mut touching, mut widest) = (0, 0, 0, 0.0_f64);
+    let mut tally = Tally::default();
     for case in &distance_cases() {
         if !case.is_link() {
             continue;
         }
         let link = link_of(case.p0.into(), case.p1.into(), case.r, case.flat());
-        let Certificate { lower, upper, .. } =
-            Certificate::between(&link, &Pose::IDENTITY, case.tri.map(Vector::from)).unwrap();
-        let expected = case.distance();
-        assert!(lower <= expected && expected <= upper, "{}: {expected} not in [{lower}, {upper}]", case.id);
-        let gap = (upper - lower) / (UNIT * case.scale);
-        assert!(gap <= 16.0, "{} {}: {gap} units in [{lower}, {upper}]", case.id, case.cat);
-        widest = widest.max(gap);
-        match expected / case.scale {
-            0.0 => touching += 1,
-            relative if relative < 1e-6 => nearly_touching += 1,
-            _ => apart += 1,
-        }
+        let bounds = Certificate::between(&link, &Pose::IDENTITY, case.tri.map(Vector::from)).unwrap();
+        tally.hold(&format!("{} {}", case.id, case.cat), case.distance(), case.scale, bounds);
+        tally.count(case.distance() / case.scale);
     }
-    println!(
-        "widest gap {widest:.2} units; {apart} apart, {nearly_touching} nearly touching, {touching} touching"
-    );
-    assert!(apart > 300 && nearly_touching > 20 && touching > 50);
+    println!("{tally:?}");
+    assert!(tally.apart > 300 && tally.nearly_touching > 20 && tally.touching > 50);
 }
 
 /// Both ends of a link much shorter than its radius are as near as rounding can tell; the caps still differ.

@@ -1,6 +1,7 @@
 //! Certificates of pairs of links: bounds that hold on the reference cases, that are tight on random and on degenerate pairs, and
 //! that refuse an answer about others.
 
+use super::certify::Tally;
 use super::robots::{beside, robot};
 use continuum_testing::precision::extent;
 use continuum_testing::{Random, link_cases};
@@ -22,31 +23,17 @@ fn certified([first, second]: &[ModifiedCylinder; 2]) -> Certificate {
 /// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
 #[test]
 fn the_reference_cases_lie_within_tight_bounds() {
-    let (mut apart, mut nearly_touching, mut touching, mut widest) = (0, 0, 0, 0.0_f64);
+    let mut tally = Tally::default();
     for case in link_cases() {
         let links = [0, 1].map(|k| link(case.links[k].map(Vector::from), case.radii[k], case.flat[k]));
-        let expected = case.distance();
         for links in [links, [links[1], links[0]]] {
-            let Certificate { lower, upper, .. } = certified(&links);
-            assert!(
-                lower <= expected && expected <= upper,
-                "{}: {expected} not in [{lower}, {upper}]",
-                case.id
-            );
-            let gap = (upper - lower) / (UNIT * case.scale);
-            assert!(gap <= 16.0, "{} {}: {gap} units in [{lower}, {upper}]", case.id, case.cat);
-            widest = widest.max(gap);
+            let name = format!("{} {}", case.id, case.cat);
+            tally.hold(&name, case.distance(), case.scale, certified(&links));
         }
-        match expected / case.scale {
-            0.0 => touching += 1,
-            relative if relative < 1e-6 => nearly_touching += 1,
-            _ => apart += 1,
-        }
+        tally.count(case.distance() / case.scale);
     }
-    println!(
-        "widest {widest:.2} units; {apart} apart, {nearly_touching} nearly touching, {touching} touching"
-    );
-    assert!(apart > 500 && nearly_touching > 20 && touching > 300, "{apart} {nearly_touching} {touching}");
+    println!("{tally:?}");
+    assert!(tally.apart > 500 && tally.nearly_touching > 20 && tally.touching > 300, "{tally:?}");
 }
 
 /// How two links lie to one another.

@@ -35,7 +35,7 @@ use parry3d_f64::math::{Real, Vector};
 const SHORT: Real = 0.5;
 
 /// The samples of a tube, and what else is known of the curve through them.
-struct Known<'a> {
+struct SampledCurve<'a> {
     tube: &'a Tube,
     samples: &'a Samples,
     /// The directions of the curve at its ends, where they are given.
@@ -52,7 +52,7 @@ struct Long {
     bound: CurveBound,
 }
 
-impl Known<'_> {
+impl SampledCurve<'_> {
     fn segment(&self, from: usize) -> Option<Segment> {
         let points = &self.samples.points;
         Segment::between(*points.get(from)?, *points.get(from + 1)?, self.off)
@@ -126,7 +126,7 @@ impl Tube {
         let Samples { points, arcs, segments, bounds } = samples;
         let off = 4.0 * Real::UNIT_ROUNDOFF * self.reach + 2.0 * self.merged;
         let scale = self.reach.power_of_two_to_unity();
-        let known = Known { tube: self, samples, tangents, off, scale };
+        let curve = SampledCurve { tube: self, samples, tangents, off, scale };
         laid.clear();
         sections.clear();
         laid.points.push(points[0]);
@@ -135,7 +135,7 @@ impl Tube {
         for section in &self.sections {
             let first = laid.points.len() as u32 - 1;
             for from in section.first as usize..section.last as usize {
-                let long = if section.is_even { None } else { known.long(from, section.radius) };
+                let long = if section.is_even { None } else { curve.long(from, section.radius) };
                 let (number, point) = (segments[from], points[from + 1]);
                 let length = arcs[from + 1] - arcs[from];
                 if let Some(Long { arch, bound }) = long {

@@ -65,10 +65,10 @@ impl Tube {
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
         // Coordinates that were computed in two ways may differ by so much.
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
+        let given = Given { samples, radii, tangents, reach, one_place };
         let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
         crowds.clear();
-        let (mut result, mut crowding) =
-            self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+        let (mut result, mut crowding) = self.lay_samples(&given, &mut crowds);
         for _ in 0..MOST_TRIED {
             let at = match result {
                 Err(RobotError::TurnsTooSharply { index, .. }) => Some(index),
@@ -80,10 +80,10 @@ impl Tube {
             if !at.is_some_and(|at| crowds::find(samples, radii, at, one_place, &mut crowds)) {
                 break;
             }
-            (result, crowding) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+            (result, crowding) = self.lay_samples(&given, &mut crowds);
             if is_good && result.is_err() {
                 crowds.clone_from(&good);
-                (result, _) = self.lay_samples(samples, radii, tangents, reach, one_place, &mut crowds);
+                (result, _) = self.lay_samples(&given, &mut crowds);
                 break;
             }
         }
@@ -98,30 +98,19 @@ impl Tube {
     /// do is returned as well.
     fn lay_samples(
         &mut self,
-        samples: &[Vector],
-        radii: &[Real],
-        tangents: Option<[Vector; 2]>,
-        reach: Real,
-        one_place: Real,
+        given: &Given,
         crowds: &mut [Crowd],
     ) -> (Result<(), RobotError>, Option<usize>) {
         // Nearly always nothing crowds, and a loop that need not look is faster.
-        if crowds.is_empty() {
-            self.lay_them::<false>(samples, radii, tangents, reach, one_place, crowds)
-        } else {
-            self.lay_them::<true>(samples, radii, tangents, reach, one_place, crowds)
-        }
+        if crowds.is_empty() { self.lay::<false>(given, crowds) } else { self.lay::<true>(given, crowds) }
     }
 
-    fn lay_them<const CROWD: bool>(
+    fn lay<const CROWD: bool>(
         &mut self,
-        samples: &[Vector],
-        radii: &[Real],
-        tangents: Option<[Vector; 2]>,
-        reach: Real,
-        one_place: Real,
+        given: &Given,
         crowds: &mut [Crowd],
     ) -> (Result<(), RobotError>, Option<usize>) {
+        let Given { samples, radii, tangents, reach, one_place } = *given;
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -221,8 +210,7 @@ impl Tube {
         }
         if result.is_ok() {
             let unknown = rounding + widest_gap;
-            let given = Given { samples, one_place, crowds };
-            result = self.stand_faces(&points, &bounds, tangents, unknown, &given);
+            result = self.stand_faces(&points, &bounds, unknown, given, crowds);
         }
         // The number of the sample in the input.
         let crowding =
@@ -236,9 +224,9 @@ impl Tube {
         &mut self,
         points: &[Vector],
         bounds: &[CurveBound],
-        tangents: Option<[Vector; 2]>,
         rounding: Real,
         given: &Given,
+        crowds: &[Crowd],
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
         for end in [0, 1] {
@@ -250,7 +238,7 @@ impl Tube {
                 if !tube.is_flat(end, number, limit, centre) {
                     return;
                 }
-                let stated = match (end, tangents) {
+                let stated = match (end, given.tangents) {
                     (0, Some([tangent, _])) if number == 0 => Some(-tangent),
                     (1, Some([_, tangent])) if number == last => Some(tangent),
                     _ => None,
@@ -261,10 +249,9 @@ impl Tube {
                         let curvature = bend_at_end(section, end, bounds);
                         let from = if end == 0 { section.first as usize } else { section.last as usize };
                         // In the order of their points.
-                        let first = given
-                            .crowds
-                            .partition_point(|crowd| crowd.point.saturating_add(FACE_SAMPLES) < from);
-                        let near = given.crowds[first..]
+                        let first =
+                            crowds.partition_point(|crowd| crowd.point.saturating_add(FACE_SAMPLES) < from);
+                        let near = crowds[first..]
                             .iter()
                             .take_while(|crowd| crowd.point <= from.saturating_add(FACE_SAMPLES));
                         let off = near.fold(0.0, |off: Real, crowd| off.max(2.0 * crowd.gap));
@@ -276,7 +263,7 @@ impl Tube {
             });
         }
         for section in &self.sections {
-            super::check_faces(section, || given.position_of(section.first as usize))?;
+            super::check_faces(section, || given.position_of(section.first as usize, crowds))?;
         }
         self.mark_lasting_faces();
         Ok(())
@@ -296,20 +283,24 @@ fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
 /// Samples as they were given.
 struct Given<'a> {
     samples: &'a [Vector],
+    radii: &'a [Real],
+    /// The directions of the curve at its ends, of unit length.
+    tangents: Option<[Vector; 2]>,
+    /// The largest coordinate.
+    reach: Real,
     /// What is no farther apart than this is at one place.
     one_place: Real,
-    crowds: &'a [Crowd],
 }
 
 impl Given<'_> {
     /// Where a point stood among the samples before those at one place were dropped.
-    fn position_of(&self, point: usize) -> usize {
+    fn position_of(&self, point: usize, crowds: &[Crowd]) -> usize {
         let (mut last, mut count) = (0, 0);
         for (k, &sample) in self.samples.iter().enumerate().skip(1) {
             let is_apart = |segment: Segment| segment.length > self.one_place;
             let is_dropped = |crowd: &Crowd| crowd.first < k && k <= crowd.last;
             if count < point
-                && !self.crowds.iter().any(is_dropped)
+                && !crowds.iter().any(is_dropped)
                 && Segment::between(self.samples[last], sample, 0.0).is_some_and(is_apart)
             {
                 (last, count) = (k, count + 1);

@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// How many bytes other work walks through, so that nothing of a query is left in the caches.
-const OTHER_WORK: usize = 64 << 20;
+pub const OTHER_WORK: usize = 64 << 20;
 
 /// How far contacts may be away, mm: the robot keeps about 2 mm.
 const MARGIN: f64 = 3.0;

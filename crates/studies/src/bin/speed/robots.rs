@@ -66,7 +66,7 @@ fn coil(links: i32) -> Result<Chain, String> {
     Chain::from_centreline(&points, &vec![0.8; links as usize]).map_err(text)
 }
 
-fn text(error: impl Display) -> String {
+pub fn text(error: impl Display) -> String {
     error.to_string()
 }
 
@@ -107,10 +107,10 @@ fn compound(capsules: &[Capsule]) -> Compound {
     Compound::new(capsules.iter().map(|part| (Pose::IDENTITY, SharedShape::new(*part))).collect())
 }
 
-type Job<'a> = Box<dyn FnMut() -> Result<(), String> + 'a>;
+pub type Job<'a> = Box<dyn FnMut() -> Result<(), String> + 'a>;
 
-/// A job that asks about every place of the second robot.
-fn at_all<'a>(poses: &'a [Pose], mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a) -> Job<'a> {
+/// A job that asks about every place of a robot.
+pub fn at_all<'a>(poses: &'a [Pose], mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a) -> Job<'a> {
     Box::new(move || {
         for pose in poses {
             black_box(ask(black_box(pose))?);

@@ -1,14 +1,15 @@
 //! Twenty organs around a robot, each an engine of its own in a scene, beside one engine of all their triangles.
 
 use crate::Effort;
-use crate::latency::walk;
+use crate::latency::{OTHER_WORK, walk};
+use crate::robots::{at_all, text};
 use continuum_demo::timing::medians;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{BvhSearch, Contact, Proximity, Scene, SceneContact};
 use std::f64::consts::TAU;
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -21,9 +22,6 @@ const PLACES: u32 = 60;
 const ORGANS: u32 = 20;
 const MARGIN: f64 = 1.0;
 const REACH: f64 = 3.0;
-
-/// What passes through the caches between two queries.
-const OTHER_WORK: usize = 64 << 20;
 
 /// The chapter of the page, without its marks.
 pub fn chapter(effort: Effort, written: &str) -> Result<String, String> {
@@ -67,10 +65,6 @@ fn merged(organs: &[Surface]) -> Surface {
         corners.extend(triangles.iter().map(|triangle| triangle.map(|corner| corner + before)));
     }
     (all, corners)
-}
-
-fn text(error: impl Display) -> String {
-    error.to_string()
 }
 
 /// A robot of 30 links that bends a little.
@@ -170,15 +164,7 @@ fn rows(
 
 /// The median microseconds of a query of each, all places in turn.
 fn in_bursts(effort: Effort, asks: &mut [Ask; 2], poses: &[Pose]) -> Result<[f64; 2], String> {
-    let [scene, merged] = asks.each_mut().map(|ask| {
-        move || -> Result<(), String> {
-            for pose in poses {
-                black_box(ask(black_box(pose))?);
-            }
-            Ok(())
-        }
-    });
-    let (mut scene, mut merged) = (scene, merged);
+    let [mut scene, mut merged] = asks.each_mut().map(|ask| at_all(poses, ask));
     let times = medians(&mut [&mut scene, &mut merged], effort.enough)?;
     let micros = |time: Duration| time.as_secs_f64() * 1e6 / f64::from(PLACES);
     Ok([micros(times[0]), micros(times[1])])
