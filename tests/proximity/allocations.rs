@@ -136,22 +136,12 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
     let mesh = TriMesh::new(vertices, indices).unwrap();
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 200);
     let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
-    let all: Vec<_> = line.points.iter().map(|&point| base * point).collect();
-    // Every sample, or some of them: two that are near one another, and then none for long.
-    for is_uneven in [false, true] {
-        let kept: Vec<_> = (0..all.len()).filter(|k| !is_uneven || [0, 1].contains(&(k % 9))).collect();
-        let points: Vec<_> = kept.iter().map(|&k| all[k]).collect();
-        let radii: Vec<_> = kept[1..].iter().map(|k| line.radii[k - 1]).collect();
-        loop_about_a_tube(&mesh, &points, &radii, pose);
-    }
-}
-
-fn loop_about_a_tube(mesh: &TriMesh, points: &[Vector], radii: &[f64], pose: Pose) {
-    let mut tube = Tube::from_samples(points, radii, None).unwrap();
-    let (mut search, mut moved, mut seen) = (BvhSearch::new(mesh).unwrap(), Vec::new(), Vec::new());
+    let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
+    let mut tube = Tube::from_samples(&points, &line.radii, None).unwrap();
+    let (mut search, mut moved, mut seen) = (BvhSearch::new(&mesh).unwrap(), Vec::new(), Vec::new());
     let allocated = steady_state(|tick| {
-        sway(points, tick, &mut moved);
-        tube.set_samples(&moved, radii, None).unwrap();
+        sway(&points, tick, &mut moved);
+        tube.set_samples(&moved, &line.radii, None).unwrap();
         let found = search.clearance(&tube, &pose, 0.05).unwrap();
         search.tube_clears(&tube, &pose, 0.5, 0.05).unwrap();
         if tick < 50 {
@@ -161,6 +151,25 @@ fn loop_about_a_tube(mesh: &TriMesh, points: &[Vector], radii: &[f64], pose: Pos
     assert_eq!(allocated, 0);
     seen.dedup();
     assert!(seen.len() > 10, "the robot moves");
+}
+
+/// Samples in pairs, far from one another: in a straight tube nothing is known between two pairs, in one that bends it is.
+#[test]
+fn a_tube_that_begins_to_bend_allocates_nothing() {
+    let places: Vec<_> = (0..40).flat_map(|k| [0.0, 0.1].map(|off| 3.0 * f64::from(k) + off)).collect();
+    let radii = vec![0.5; places.len() - 1];
+    let (mut tube, mut points) =
+        (Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap()), Vec::new());
+    let mut curve = |tick: u32| {
+        let curvature: f64 = if tick < 100 { 0.0 } else { 1e-4 * f64::from(tick) };
+        points.clear();
+        points.extend(places.iter().map(|&s| {
+            let (sin, cos) = (curvature * s).sin_cos();
+            if curvature > 0.0 { Vector::new(1.0 - cos, 0.0, sin) / curvature } else { Vector::Z * s }
+        }));
+        tube.set_samples(&points, &radii, None).unwrap();
+    };
+    assert_eq!(steady_state(&mut curve), 0);
 }
 
 /// A motion that counts its shapes.
