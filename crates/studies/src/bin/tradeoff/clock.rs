@@ -6,7 +6,7 @@ use crate::statistics::quantile;
 use crate::subject::{Model, Subject};
 use crate::ways::{self, Device, text};
 use continuum_demo::ctr::{Centreline, Joints, Robot};
-use parry_continuum::parry::math::{Pose, Real};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Chain, simplify};
 use std::hint::black_box;
@@ -28,7 +28,8 @@ pub struct Times {
 pub struct Timed {
     pub model: Model,
     pub way: &'static str,
-    pub links: usize,
+    /// None of a tube.
+    pub links: Option<usize>,
     /// Seconds a query.
     pub time: f64,
 }
@@ -39,6 +40,9 @@ pub struct Building {
     pub simplify: f64,
     pub chain: f64,
 }
+
+/// A curve, its directions at the ends, and the numbers of the points that fix the directions of faces.
+type Given = (Centreline, [Vector; 2], Vec<usize>);
 
 /// Times the shapes on one thread.
 pub fn time(
@@ -53,14 +57,14 @@ pub fn time(
         let mut times = Times { queries: Vec::new(), building: Vec::new(), apart: 0.0 };
         let curve = |joints: &Joints| {
             let stations = Stations::even(robot, joints, INPUT_SPACING);
-            (stations.curve(robot, joints), stations.at_faces)
+            (stations.curve(robot, joints), stations.tangents(robot, joints), stations.at_faces)
         };
         let curves: Vec<_> =
             shapes.iter().map(|joints| [curve(&step_before(joints)), curve(joints)]).collect();
         for tolerance in TOLERANCES {
             times.building.push(building(&curves, tolerance)?);
-            let subject = |(curve, at_faces): &(Centreline, Vec<usize>)| {
-                Subject::new(curve, at_faces, tolerance).map_err(text)
+            let subject = |(curve, tangents, at_faces): &Given| {
+                Subject::new(curve, *tangents, at_faces, tolerance).map_err(text)
             };
             let subjects: Result<Vec<_>, String> =
                 curves.iter().map(|[before, now]| Ok([subject(before)?, subject(now)?])).collect();
@@ -109,11 +113,12 @@ fn queries(
                 None => first.push((way.model, clearances)),
             }
         }
-        let links = subjects.iter().map(|[_, now]| now.chain(way.model).links().len() as f64).collect();
+        let links: Option<Vec<_>> =
+            subjects.iter().map(|[_, now]| now.links(way.model).map(|links| links as f64)).collect();
         rows.push(Timed {
             model: way.model,
             way: way.name,
-            links: quantile(links, 0.5).unwrap_or(f64::NAN) as usize,
+            links: links.and_then(|links| quantile(links, 0.5)).map(|links| links as usize),
             time: quantile(times, 0.5).unwrap_or(f64::NAN),
         });
     }
@@ -121,9 +126,9 @@ fn queries(
 }
 
 /// From the curve to the links, and from the links to the chain.
-fn building(curves: &[[(Centreline, Vec<usize>); 2]], tolerance: Real) -> Result<Building, String> {
+fn building(curves: &[[Given; 2]], tolerance: Real) -> Result<Building, String> {
     let (mut links, mut simplifying, mut chaining) = (Vec::new(), Vec::new(), Vec::new());
-    for [_, (curve, _)] in curves {
+    for [_, (curve, ..)] in curves {
         let begin = Instant::now();
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance).map_err(text)?;
         simplifying.push(begin.elapsed().as_secs_f64());

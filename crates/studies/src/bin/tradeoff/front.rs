@@ -10,7 +10,8 @@ use crate::subject::Model;
 pub struct Combination {
     pub model: Model,
     pub tolerance: f64,
-    pub links: usize,
+    /// None of a tube.
+    pub links: Option<usize>,
     pub way: &'static str,
     /// Seconds a query.
     pub time: f64,

@@ -84,12 +84,12 @@ fn samples_table(rows: &[FromSamples]) -> String {
 /// The table: for each error the fastest of this crate's combinations that stays within it.
 pub fn table(all: &[Combination]) -> String {
     let mut table = String::from(
-        "| worst error allowed | model | `simplify` within | links | search, first time | search, again | worst error measured |\n\
+        "| worst error allowed | model | within | links | search, first time | search, again | worst error measured |\n\
          |---|---|---|---|---|---|---|\n",
     );
     for error in ERRORS {
         // Cylinders have the errors of modified cylinders, and gaps.
-        let models = [Model::Capsule, Model::Modified, Model::Faced];
+        let models = [Model::Capsule, Model::Modified, Model::Faced, Model::Tube];
         let ours = |one: &&Combination| models.contains(&one.model) && one.error <= error;
         let best = all.iter().filter(ours).min_by(|a, b| a.time.total_cmp(&b.time));
         let Some(best) = best else { continue };
@@ -105,7 +105,7 @@ pub fn table(all: &[Combination]) -> String {
             "| {error} mm | {} | {} mm | {} | {} | {} | {} mm |",
             best.model.name(),
             best.tolerance,
-            best.links,
+            best.links.map_or("-".into(), |links| links.to_string()),
             time("search, first time"),
             time("search, again"),
             length(best.error)

@@ -78,7 +78,7 @@ fn outcome(
     let chain = reference(robot, joints, REFERENCE_SPACING)?;
     let nearest = search.minimum(&chain, base).map_err(text)?;
     let stations = Stations::even(robot, joints, INPUT_SPACING);
-    let curve = stations.curve(robot, joints);
+    let (curve, tangents) = (stations.curve(robot, joints), stations.tangents(robot, joints));
     let faces = faces(robot, joints);
     let mut outcome = Outcome {
         truth: nearest.distance,
@@ -88,7 +88,7 @@ fn outcome(
         metres: [0.0; 2],
     };
     for (index, (each, tolerance)) in outcome.each.iter_mut().zip(TOLERANCES).enumerate() {
-        let subject = Subject::new(&curve, &stations.at_faces, tolerance).map_err(text)?;
+        let subject = Subject::new(&curve, tangents, &stations.at_faces, tolerance).map_err(text)?;
         each.tilt = tilt(&subject, &faces);
         for (clearance, model) in each.clearances.iter_mut().zip(Model::ALL) {
             *clearance = if Model::OURS.contains(&model) {
@@ -97,6 +97,8 @@ fn outcome(
                     outcome.cap_at_base = base.inverse_transform_point(found.on_robot).z < 0.0;
                 }
                 found.distance
+            } else if model == Model::Tube {
+                subject.least_of_tube(search, base)?
             } else {
                 Peer { mesh, model }.clearance(&subject, base)?
             };

@@ -52,11 +52,12 @@ pub fn page(facts: &Facts) -> String {
          in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
          that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
          sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
-         less the true one, over all free shapes: positive is over, the unsafe side. The links stay within {SHOWN} mm; \
+         less the true one, over all free shapes: positive is over, the unsafe side. The links stay within {SHOWN} mm, and the bounds of the *tube* (`clearance`) are \
+         at most as far apart: the lower one counts; \
          [tradeoff_links.csv](tradeoff_links.csv) has all tolerances from {} to {} mm.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
-         For an error that you can bear, the fastest of these links that stays within it:\n\n{}\n\
+         For an error that you can bear, the fastest of these that stays within it:\n\n{}\n\
          ### What geometry predicts\n\n\
          `simplify` promises that the links' axis and the curve are within the tolerance of each other, and an error on \
          the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
@@ -117,7 +118,7 @@ pub fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
                 page,
                 "| {} | {tolerance} mm | {} | {} | {} | {} | {} |",
                 model.name(),
-                links.map_or(0, |timed| timed.links),
+                links.and_then(|timed| timed.links).map_or("-".into(), |links| links.to_string()),
                 cells.join(" | "),
                 signed(error.median),
                 signed(error.over),

@@ -150,15 +150,17 @@ fn shape(way: &str) -> Shape {
     }
 }
 
+/// Colours that most people can tell apart, whatever their eyes (Okabe and Ito).
 fn colour(model: Model) -> RGBColor {
     match model {
-        Model::Capsule => RGBColor(230, 140, 0),
-        Model::Cylinder => RGBColor(60, 150, 230),
-        Model::Modified => RGBColor(120, 190, 60),
-        Model::Faced => RGBColor(0, 100, 60),
-        Model::ParryCapsule => RGBColor(200, 60, 60),
-        Model::ParryCylinder => RGBColor(150, 60, 170),
-        Model::Spheres => RGBColor(130, 130, 130),
+        Model::Tube => RGBColor(213, 94, 0),
+        Model::Capsule => RGBColor(230, 159, 0),
+        Model::Cylinder => RGBColor(86, 180, 233),
+        Model::Modified => RGBColor(0, 158, 115),
+        Model::Faced => RGBColor(0, 114, 178),
+        Model::ParryCapsule => RGBColor(204, 121, 167),
+        Model::ParryCylinder => RGBColor(80, 80, 80),
+        Model::Spheres => RGBColor(160, 160, 160),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use continuum_demo::ctr::{Centreline, Joints, Robot};
 use continuum_demo::steer::Random;
-use parry_continuum::parry::math::Real;
+use parry_continuum::parry::math::{Real, Vector};
 use std::f64::consts::TAU;
 
 /// How far out a shape reaches at most: one of these shares of each section's length, each as likely.
@@ -91,6 +91,12 @@ impl Stations {
             let before_end = from_face.iter().rev().map(|at| extension - at);
             from_face.iter().copied().chain(before_end).chain([extension]).collect()
         })
+    }
+
+    /// The directions of the curve at its ends.
+    pub fn tangents(&self, robot: &Robot, joints: &Joints) -> [Vector; 2] {
+        let curve = robot.curve(joints);
+        [0.0, robot.length(joints)].map(|arc_length| curve.at(arc_length).1)
     }
 
     /// The curve through the stations, of tubes that do not twist.

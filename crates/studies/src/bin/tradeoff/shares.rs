@@ -37,7 +37,9 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     for margin in MARGINS {
         for model in Model::ALL {
             // parry's answers are those of capsules and cylinders but for what GJK does, which has its own table.
-            for tolerance in if Model::OURS.contains(&model) { &SHOWN[..] } else { &SHOWN[1..2] } {
+            for tolerance in
+                if Model::OURS.contains(&model) || model == Model::Tube { &SHOWN[..] } else { &SHOWN[1..2] }
+            {
                 let tolerance = *tolerance;
                 let model_of = |shape: &&Outcome| shape.each[tolerance].clearances[model.index()];
                 let forbids = Share::of(outcomes.iter().filter(|shape| shape.truth > margin), |shape| {

@@ -4,7 +4,8 @@ use continuum_demo::ctr::Centreline;
 use continuum_demo::timing;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Capsule, Cylinder};
-use parry_continuum::{Chain, RobotError, simplify};
+use parry_continuum::proximity::BvhSearch;
+use parry_continuum::{Chain, RobotError, Tube, simplify};
 
 /// A model of the robot, and whose arithmetic asks for it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -17,10 +18,12 @@ pub enum Model {
     ParryCapsule,
     ParryCylinder,
     Spheres,
+    /// The curve itself, between bounds.
+    Tube,
 }
 
 impl Model {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Capsule,
         Self::Cylinder,
         Self::Modified,
@@ -28,9 +31,10 @@ impl Model {
         Self::ParryCapsule,
         Self::ParryCylinder,
         Self::Spheres,
+        Self::Tube,
     ];
 
-    /// Those of this crate.
+    /// Those of links by this crate.
     pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
 
     /// Its place in [`Model::ALL`], and in [`Model::OURS`].
@@ -47,6 +51,7 @@ impl Model {
             Self::ParryCapsule => "parry's Capsule",
             Self::ParryCylinder => "parry's Cylinder",
             Self::Spheres => "7 spheres a link",
+            Self::Tube => "tube",
         }
     }
 }
@@ -62,11 +67,19 @@ pub struct Subject {
     pub cylinders: Vec<(Pose, Cylinder)>,
     /// Centres and radii.
     pub spheres: Vec<(Vector, Real)>,
+    /// The tube through all points, and how far apart the bounds of its clearance may be.
+    pub tube: Tube,
+    pub tolerance: Real,
 }
 
 impl Subject {
-    /// Of a curve and the numbers of its points that fix the directions of faces.
-    pub fn new(curve: &Centreline, at_faces: &[usize], tolerance: Real) -> Result<Self, RobotError> {
+    /// Of a curve, its directions at both ends, and the numbers of its points that fix the directions of faces.
+    pub fn new(
+        curve: &Centreline,
+        tangents: [Vector; 2],
+        at_faces: &[usize],
+        tolerance: Real,
+    ) -> Result<Self, RobotError> {
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance)?;
         let faced = keeping(curve, at_faces, tolerance)?;
         let chains = [
@@ -87,15 +100,27 @@ impl Subject {
             })
             .collect();
         let cylinders = timing::cylinders(&chains[1]);
-        Ok(Self { chains, capsules, cylinders, spheres })
+        let tube = Tube::from_samples(&curve.points, &curve.radii, Some(tangents))?;
+        Ok(Self { chains, capsules, cylinders, spheres, tube, tolerance })
     }
 
-    /// The chain of one of this crate's models; of a peer's model, the one with the same links.
+    /// The lower of the two bounds on the tube's clearance, which is the one to rely on.
+    pub fn least_of_tube(&self, search: &mut BvhSearch, base: &Pose) -> Result<Real, String> {
+        let found = search.clearance(&self.tube, base, self.tolerance).map_err(|error| error.to_string())?;
+        Ok(found.lower)
+    }
+
+    /// How many links a model has; none of a tube.
+    pub fn links(&self, model: Model) -> Option<usize> {
+        (model != Model::Tube).then(|| self.chain(model).links().len())
+    }
+
+    /// The chain of one of this crate's models; of another model, the one with the same links, or what is nearest to it.
     pub fn chain(&self, model: Model) -> &Chain {
         match model {
             Model::Capsule | Model::ParryCapsule | Model::Spheres => &self.chains[0],
             Model::Cylinder | Model::ParryCylinder => &self.chains[1],
-            Model::Modified => &self.chains[2],
+            Model::Modified | Model::Tube => &self.chains[2],
             Model::Faced => &self.chains[3],
         }
     }

@@ -54,6 +54,10 @@ pub fn all<'a>(mesh: &'a TriMesh, devices: &[Device]) -> Result<Vec<Way<'a>>, St
             ways.push(Way { model, name: device.way, program: (device.engine)(mesh, model)? });
         }
     }
+    for (name, forgets) in [("search, first time", true), ("search, again", false)] {
+        let program = Box::new(OfTube { engine: BvhSearch::new(mesh).map_err(text)?, forgets });
+        ways.push(Way { model: Model::Tube, name, program });
+    }
     for model in [Model::ParryCapsule, Model::ParryCylinder, Model::Spheres] {
         ways.push(Way { model, name: "parry's search", program: Box::new(Peer { mesh, model }) });
     }
@@ -85,6 +89,24 @@ impl Clearance for Cold {
 
     fn prepare(&mut self) {
         self.engine.forget();
+    }
+}
+
+/// The bounds of a tube.
+struct OfTube {
+    engine: BvhSearch,
+    forgets: bool,
+}
+
+impl Clearance for OfTube {
+    fn clearance(&mut self, robot: &Subject, base: &Pose) -> Result<Real, String> {
+        robot.least_of_tube(&mut self.engine, base)
+    }
+
+    fn prepare(&mut self) {
+        if self.forgets {
+            self.engine.forget();
+        }
     }
 }
 
