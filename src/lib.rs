@@ -90,9 +90,9 @@ pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
 pub use robot::{
-    BendingMotion, BendingRates, BendingSection, Cap, Chain, ConstantCurvature, LinearMotion, MatrixError,
-    ModifiedCylinder, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube, TubeSection,
-    bending_speed, pose_from_matrix, simplify, stations, verify_motion,
+    BendingMotion, BendingRates, BendingSection, Cap, Chain, ConstantCurvature, Course, LinearMotion,
+    MatrixError, ModifiedCylinder, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
+    TubeSection, bending_course, bending_speed, pose_from_matrix, simplify, stations, verify_motion,
 };
 
 /// Runs the code in the README, where rapier is among it.

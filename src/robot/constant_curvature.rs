@@ -90,6 +90,12 @@ impl ConstantCurvature {
         self.arcs.get(number).map_or(Pose::IDENTITY, |arc| arc.frame(arc_length))
     }
 
+    /// The point at a share of a section; the base's if there is no such section.
+    pub(super) fn at_share(&self, section: usize, share: Real) -> Vector {
+        let point = |arc: &Arc| arc.frame(arc.start + arc.section.length * share).translation;
+        self.arcs.get(section).map_or(Vector::ZERO, point)
+    }
+
     /// Points along the centreline and the radii of the segments between them, ready for any constructor of a
     /// [`Chain`](crate::Chain) and for [`stations`](crate::stations): each section in so many segments of equal length, and
     /// at least one.

@@ -150,6 +150,23 @@ pub enum RobotError {
         /// The angular speed that the motion states.
         stated: Real,
     },
+    /// A motion's centreline is farther off its stated course than the motion states.
+    #[error(
+        "around t = {t} the centreline at share {share} of section {section} is {found} off its stated course, more \
+         than the {stated} stated; state more"
+    )]
+    FartherOffThanStated {
+        /// When.
+        t: Real,
+        /// The section, counted from the base.
+        section: usize,
+        /// Where in the section, from 0 to 1.
+        share: Real,
+        /// How far off it is, at least.
+        found: Real,
+        /// How far off the motion states it to be.
+        stated: Real,
+    },
     /// A motion's sections must be the same at all times, with the same radii and faces.
     #[error("at t = {t} the motion has other sections, radii or faces than before; keep them the same")]
     SectionsChange {

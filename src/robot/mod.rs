@@ -32,8 +32,8 @@ pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
 pub use motion::{
-    BendingMotion, BendingRates, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
-    bending_speed, verify_motion,
+    BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
+    bending_course, bending_speed, verify_motion,
 };
 pub(crate) use motion::{Sections, ShapePath};
 pub use registration::{MatrixError, pose_from_matrix};

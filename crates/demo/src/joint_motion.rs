@@ -3,12 +3,13 @@
 //! Where all tubes of a section are curved, its curvature vector is the sum over these tubes of w u(a): w is the tube's
 //! share of their stiffness times its curvature, and u(a) a unit vector that turns with the tube's angle a. So the vector
 //! changes at most at the rate b = sum of w |a'|, and never is farther than b / 2 from what it is at half time. That
-//! bounds curvatures and steps for [`bending_speed`].
+//! bounds curvatures and steps for [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_course`].
 
 use crate::ctr::{Curve, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingRates, BendingSection, Motion, RobotError, Speed, Tube, TubeSection, bending_speed,
+    BendingRates, BendingSection, Course, Motion, RobotError, Speed, Tube, TubeSection, bending_course,
+    bending_speed,
 };
 use std::f64::consts::TAU;
 
@@ -26,6 +27,8 @@ pub struct JointMotion {
     /// For each section and each tube, the tube's part of the section's curvature.
     parts: Vec<Vec<Real>>,
     rates: Vec<BendingRates>,
+    /// For each section, a bound on the second derivative of its curvature vector.
+    bends: Vec<Real>,
 }
 
 impl JointMotion {
@@ -66,8 +69,13 @@ impl JointMotion {
             radii: robot.sections.iter().map(|section| section.radius).collect(),
             parts: (0..count).map(part).collect(),
             rates: Vec::new(),
+            bends: Vec::new(),
         };
         motion.rates = motion.rates();
+        let squares = from.angles.iter().zip(&to.angles).map(|(from, to)| (to - from) * (to - from));
+        let bend =
+            |parts: &Vec<Real>| parts.iter().zip(squares.clone()).map(|(part, turned)| part * turned).sum();
+        motion.bends = motion.parts.iter().map(bend).collect();
         Some(motion)
     }
 
@@ -184,9 +192,10 @@ impl JointMotion {
     /// The curvature vector of each section.
     fn bends(&self, joints: &Joints) -> impl Iterator<Item = Vector> {
         let towards = |angle: &Real| Vector::new(-angle.sin(), angle.cos(), 0.0);
-        self.parts.iter().map(move |parts| {
-            parts.iter().zip(&joints.angles).map(|(part, angle)| towards(angle) * *part).sum()
-        })
+        let towards: Vec<_> = joints.angles.iter().map(towards).collect();
+        self.parts
+            .iter()
+            .map(move |parts| parts.iter().zip(&towards).map(|(part, towards)| *towards * *part).sum())
     }
 }
 
@@ -198,5 +207,22 @@ impl Motion for JointMotion {
 
     fn speed(&self, section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
         bending_speed(&self.rates, section, shares)
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        if section >= self.radii.len() {
+            return None;
+        }
+        let curves = times.map(|t| {
+            let joints = self.joints(t);
+            let parts = joints.extensions.iter().copied().zip(self.bends(&joints));
+            (Curve::joined(parts.take(section + 1)), joints.extensions)
+        });
+        let point = |share: Real, t: Real| {
+            let (curve, lengths) = &curves[usize::from(t != times[0])];
+            let start: Real = lengths[..section].iter().sum();
+            self.base * curve.at(start + lengths[section] * share).0
+        };
+        Some(bending_course(&self.rates, &self.bends, section, shares, times, point))
     }
 }

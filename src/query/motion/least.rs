@@ -39,7 +39,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 break;
             }
             let t = interval.middle();
-            let ((nearest, still), pieces) = self.examine(&interval, |tube, turn, moving| {
+            let ((nearest, still, is_left), pieces) = self.examine(&interval, |tube, turn, moving| {
                 known.look(tube, t);
                 turn.begin(tube, known.upper().max(tolerance));
                 let mut approach = Approach::new(moving, &mut known, t, tube);
@@ -47,10 +47,16 @@ impl<M: Motion> MotionSearch<'_, M> {
                 if approach.is_answered() {
                     approach.settle(0.0);
                 }
-                Ok((approach.nearest, approach.moving.still))
+                let wanted = approach.wanted();
+                let is_left = if approach.is_answered() {
+                    [true; 2]
+                } else {
+                    approach.moving.leave_by_courses(tube, wanted)?
+                };
+                Ok((approach.nearest, approach.moving.still, is_left))
             })?;
             let interval = interval.comes_no_nearer(nearest);
-            self.memory.intervals.extend(interval.halves(still, &pieces).into_iter().flatten());
+            self.memory.intervals.extend(interval.halves(still, is_left, &pieces).into_iter().flatten());
         }
         known.answer()
     }

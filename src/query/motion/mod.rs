@@ -4,6 +4,8 @@ mod least;
 mod moment;
 mod motion_search;
 mod moving;
+mod own_directions;
+mod side;
 mod waiting;
 
 pub(crate) use moment::Wanted;

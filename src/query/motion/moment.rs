@@ -31,6 +31,8 @@ pub(crate) struct Seen {
     pub is_near: bool,
     /// For how long before and after the shape the pieces that failed keep the margin.
     pub still: Real,
+    /// Whether any piece is left before the shape, and after it.
+    pub is_left: [bool; 2],
 }
 
 /// A motion during an interval, and what its middle shape shows.

@@ -8,6 +8,10 @@
 //! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
 //! fails, and not the motion, the piece is halved instead, in the same shape.
 //!
+//! **Courses.** A speed leads anywhere. If the pieces that failed are few and the motion knows their courses, each is asked about both sides of
+//! the middle by where it goes (`side`), against all triangles that are near enough, each in a direction of its own (`own_directions`). What
+//! keeps the margin on one side is not looked at there again; where all do, that side is settled.
+//!
 //! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is the piece's speed and that of
 //! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
 //!
@@ -17,6 +21,7 @@
 
 use super::moment::{Moment, Seen, Wanted};
 use super::moving::Moving;
+use super::own_directions::OwnDirections;
 use super::waiting::Waiting;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::distance::Scalar;
@@ -41,6 +46,7 @@ pub(crate) struct MotionMemory {
     pub(super) intervals: VecDeque<Interval>,
     /// Where the vertices go, if the mesh moves.
     mesh: MovingMesh,
+    directions: OwnDirections,
 }
 
 impl Default for MotionMemory {
@@ -53,6 +59,7 @@ impl Default for MotionMemory {
             failed: Vec::new(),
             intervals: VecDeque::new(),
             mesh: MovingMesh::default(),
+            directions: OwnDirections::default(),
         }
     }
 }
@@ -63,6 +70,8 @@ pub(super) struct Interval {
     times: [Real; 2],
     /// Which of the failed pieces; none if it is the whole robot.
     pieces: Option<Range<usize>>,
+    /// Whether it is before the middle shape in which they failed or after it.
+    is_after: bool,
     /// How near these come in it at least.
     pub lower: Real,
 }
@@ -78,13 +87,13 @@ impl Interval {
     }
 
     /// What is left of it before and after its middle shape, which decides for a while what becomes of the pieces.
-    pub(super) fn halves(&self, still: Real, pieces: &Range<usize>) -> [Option<Self>; 2] {
+    pub(super) fn halves(&self, still: Real, is_left: [bool; 2], pieces: &Range<usize>) -> [Option<Self>; 2] {
         let t = self.middle();
-        let half = |times: [Real; 2]| {
-            let is_left = !pieces.is_empty() && times[0] < times[1];
-            is_left.then(|| Self { times, pieces: Some(pieces.clone()), lower: self.lower })
+        let half = |times: [Real; 2], is_after: bool| {
+            let is_left = is_left[usize::from(is_after)] && !pieces.is_empty() && times[0] < times[1];
+            is_left.then(|| Self { times, pieces: Some(pieces.clone()), is_after, lower: self.lower })
         };
-        [half([self.times[0], t - still]), half([t + still, self.times[1]])]
+        [half([self.times[0], t - still], false), half([t + still, self.times[1]], true)]
     }
 }
 
@@ -152,7 +161,9 @@ impl<M: Motion> MotionSearch<'_, M> {
                 let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
                 undecided = if is_first { Some(interval.times) } else { undecided };
             }
-            self.memory.intervals.extend(interval.halves(seen.still, &failed).into_iter().flatten());
+            self.memory
+                .intervals
+                .extend(interval.halves(seen.still, seen.is_left, &failed).into_iter().flatten());
         }
         Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -181,12 +192,19 @@ impl<M: Motion> MotionSearch<'_, M> {
                 clear_until = if seen.is_fine { interval.times[0] } else { t };
                 self.memory.intervals.clear();
                 if !seen.is_fine {
-                    let before = Interval { times: [interval.times[0], t], pieces: Some(failed), ..interval };
+                    let before = Interval {
+                        times: [interval.times[0], t],
+                        pieces: Some(failed),
+                        is_after: false,
+                        ..interval
+                    };
                     self.memory.intervals.push_back(before);
                 }
                 continue;
             }
-            self.memory.intervals.extend(interval.halves(seen.still, &failed).into_iter().rev().flatten());
+            self.memory
+                .intervals
+                .extend(interval.halves(seen.still, seen.is_left, &failed).into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
             return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
@@ -218,6 +236,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         intervals.extend((0..legs).map(|leg| Interval {
             times: [time(leg), time(leg + 1)],
             pieces: None,
+            is_after: false,
             lower: Real::NEG_INFINITY,
         }));
     }
@@ -242,7 +261,12 @@ impl<M: Motion> MotionSearch<'_, M> {
             turn.begin(tube, wanted.margin.max(wanted.resolution));
             let mut moment = Moment { moving, wanted, seen: Seen::default() };
             refine(tube, turn.pieces, &mut moment)?;
-            Ok(Seen { still: moment.moving.still, ..moment.seen })
+            let is_left = if moment.seen.contact.is_some() {
+                [true; 2]
+            } else {
+                moment.moving.leave_by_courses(tube, wanted.margin)?
+            };
+            Ok(Seen { still: moment.moving.still, is_left, ..moment.seen })
         })
     }
 
@@ -262,7 +286,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             // A speed that is not finite or NaN holds nothing; it is refused below.
             half * motion.speed(section, [end as Real; 2], times).point
         });
-        let MotionMemory { tube, pieces, begun, failed, mesh, .. } = &mut *self.memory;
+        let MotionMemory { tube, pieces, begun, failed, mesh, directions, .. } = &mut *self.memory;
         let MeshSearch { level, hierarchy, .. } = self.search;
         let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
@@ -273,11 +297,26 @@ impl<M: Motion> MotionSearch<'_, M> {
         let tube = PlacedTube::new(tube, &pose, reach)?.moving();
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
-        pieces.extend_from_slice(interval.pieces.clone().map_or(&[], |failing| &failed[failing]));
+        let failing = interval.pieces.clone().map_or(&[][..], |failing| &failed[failing]);
+        let failing = failing.iter().filter(|piece| piece.is_left[usize::from(interval.is_after)]);
+        // Of this interval nothing is known.
+        pieces.extend(failing.map(|piece| Waiting { is_left: [true; 2], ..*piece }));
         let first = failed.len();
-        let (speed, still, last) = (0.0, Real::INFINITY, &mut self.last);
-        let failing = &mut *failed;
-        let moving = Moving { motion, times, half, opening, mesh_speed, failed: failing, last, speed, still };
+        let moving = Moving {
+            motion,
+            times,
+            t,
+            half,
+            opening,
+            mesh_speed,
+            failed: &mut *failed,
+            first,
+            last: &mut self.last,
+            speed: 0.0,
+            beside: 0.0,
+            still: Real::INFINITY,
+            directions,
+        };
         let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
         let seen = ask(&mut tube, &mut turn, moving)?;
         // What a contact left unasked.

@@ -8,12 +8,24 @@ use parry3d_f64::math::Real;
 pub(crate) struct Waiting {
     pub section: u32,
     pub shares: [Real; 2],
+    /// Whether it is left before and after the middle shape in which it failed.
+    pub is_left: [bool; 2],
+    /// How far it was away there, as far as its body tells.
+    pub away: Real,
+    /// Which triangle was found there.
+    pub triangle: u32,
 }
 
 impl Waiting {
     /// What a piece of a shape is in any shape.
     pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
-        Self { section: piece.section, shares: tube.shares(piece) }
+        Self {
+            section: piece.section,
+            shares: tube.shares(piece),
+            is_left: [true; 2],
+            away: Real::INFINITY,
+            triangle: 0,
+        }
     }
 }
 

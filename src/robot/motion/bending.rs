@@ -17,8 +17,22 @@
 //!
 //! where the last section counts as far as s. All terms grow with the lengths, so the longest during the motion count.
 //! With lengths that change at constant rates, s' is linear in the share and largest at an end of the piece.
+//!
+//! **Courses.** Of a point at a fixed share, it is simpler to count along the shares q of the sections, from 0 to 1 in each:
+//! dR/dq = R [w] with w = l u, and dc/dq = l R e for the unit vector e along the axis. Then dW/dq = R w', with no step
+//! anywhere, and as R' = [W] R,
+//!
+//! dW'/dq = W x R w' + R w'',   c'' = integral 2 l' W x R e + l (W' x R e + W x (W x R e)) dq
+//!
+//! where l changes at a constant rate. So with T the integral of |w'| from the base, and F that of T |w'| + |w''|, which bound
+//! |W| and |W'|, the acceleration is at most the integral of 2 |l'| T + l (F + T^2). In a section |w'| <= |l'| k + l |u'| and
+//! |w''| <= 2 |l'| |u'| + l |u''|; between constants, T is linear in the share and F quadratic, and nothing falls along it.
+//!
+//! Along a section, d^2 c / dq^2 = l R (w x e) changes in time at most at the rate l (2 |l'| k + T l k + l |u'|). So from one
+//! time to another, D apart, the way of a point differs from that in proportion between two shares, d apart, by at most
+//! D d^2 / 8 times that.
 
-use super::{Motion, Speed, rigid_pose};
+use super::{Course, Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::constant_curvature::check;
 use crate::robot::{BendingSection, ConstantCurvature, RobotError, Tube};
@@ -83,6 +97,75 @@ pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2
     Speed { point: (point + along) * up, turn: (turn + curvature * along) * up }
 }
 
+/// Where a piece of a robot of sections of constant curvature goes whose base stands still and whose lengths change at constant
+/// rates: what [`Motion::course`] asks for.
+///
+/// `bends` are, for each section, bounds on the second derivative of its curvature vector in the frame that is carried along
+/// the curve without twist: 0 where that changes evenly, and k |a'|^2 if it is k long and turns evenly at the rate a'. What is
+/// not given counts as infinite. `point` is the point at a share of this section at a time, in the mesh's frame.
+///
+/// ```
+/// use parry_continuum::{BendingRates, bending_course, parry::math::Vector};
+///
+/// // Straight at first, a section of 10 that bends evenly by 0.02 x 10 = 0.2 rad in all.
+/// let rates = BendingRates { length: 10.0, growth: 0.0, curvature: 0.02, bending: 0.02, step: 0.0 };
+/// let point = |share: f64, t: f64| {
+///     let curvature = 0.02 * t.max(1e-9);
+///     let (sin, cos) = (curvature * 10.0 * share).sin_cos();
+///     Vector::new((1.0 - cos) / curvature, 0.0, sin / curvature)
+/// };
+/// let course = bending_course(&[rates], &[0.0], 0, [1.0; 2], [0.0, 1.0], point);
+/// // The tip moves across by about 0.02 x 10^2 / 2, and is never far from the straight way.
+/// assert!((course.ways[0].x - 1.0).abs() < 0.01 && course.off < 0.03);
+/// ```
+pub fn bending_course(
+    sections: &[BendingRates],
+    bends: &[Real],
+    section: usize,
+    shares: [Real; 2],
+    times: [Real; 2],
+    point: impl Fn(Real, Real) -> Vector,
+) -> Course {
+    let bend = |number: usize| bends.get(number).map_or(Real::INFINITY, |bend| bend.abs());
+    course(sections, bend, section, shares, times, point)
+}
+
+fn course(
+    sections: &[BendingRates],
+    bend: impl Fn(usize) -> Real,
+    section: usize,
+    shares: [Real; 2],
+    times: [Real; 2],
+    point: impl Fn(Real, Real) -> Vector,
+) -> Course {
+    // Bounds on how fast the frame turns, and on how fast that changes; and what `d^2 c / dq^2` changes by.
+    let (mut turn, mut change, mut acceleration, mut bow) = (0.0, 0.0, 0.0, 0.0);
+    let mut reach = 0.0;
+    for (number, rates) in sections.iter().enumerate().take(section + 1) {
+        let q = if number == section { shares[1] } else { 1.0 };
+        let &BendingRates { length, growth, curvature, bending, .. } = rates;
+        let growth = growth.abs();
+        let first = growth * curvature + length * bending;
+        let second = 2.0 * growth * bending + length * bend(number);
+        // The integrals of T, T^2 and F, where T is `turn` at first and F is `change`.
+        let turns = q * (turn + 0.5 * first * q);
+        let squares = q * (turn * turn + turn * first * q + first * first * q * q / 3.0);
+        let changes = q * (change + 0.5 * (turn * first + second) * q + first * first * q * q / 6.0);
+        acceleration += 2.0 * growth * turns + length * (changes + squares);
+        change += q * (turn * first + 0.5 * first * first * q + second);
+        turn += first * q;
+        bow = length * (2.0 * growth * curvature + turn * length * curvature + length * bending);
+        reach += length;
+    }
+    let [here, there] = times.map(|t| shares.map(|share| point(share, t)));
+    let (apart, between) = (times[1] - times[0], shares[1] - shares[0]);
+    let reach = here.into_iter().chain(there).fold(reach, |most: Real, p| most.max(p.abs().max_element()));
+    // Sums and products of terms above 0; places are off by some roundings for each section.
+    let roundings = 64.0 * (section as Real + 2.0) * Real::UNIT_ROUNDOFF;
+    let off = 0.125 * (acceleration * apart * apart + bow * apart * between * between);
+    Course::between(here, there, off * (1.0 + roundings) + reach * roundings)
+}
+
 /// The motion of a robot of sections of constant curvature, from one shape to another: lengths and curvatures, in both
 /// directions, change evenly.
 ///
@@ -143,21 +226,40 @@ impl BendingMotion {
         }
         Ok(motion)
     }
-}
 
-impl Motion for BendingMotion {
-    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+    /// The first sections at a time.
+    fn sections(&self, t: Real, count: usize) -> Vec<BendingSection> {
         let between = |from: Real, to: Real| from + (to - from) * t;
-        let sections = self.from.iter().zip(&self.to).map(|(from, to)| BendingSection {
+        let sections = self.from.iter().zip(&self.to).take(count).map(|(from, to)| BendingSection {
             length: between(from.length, to.length),
             radius: from.radius,
             bend: [0, 1].map(|axis| between(from.bend[axis], to.bend[axis])),
         });
-        *tube = ConstantCurvature::new(&sections.collect::<Vec<_>>())?.into_tube()?;
+        sections.collect()
+    }
+}
+
+impl Motion for BendingMotion {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        *tube = ConstantCurvature::new(&self.sections(t, self.from.len()))?.into_tube()?;
         Ok(self.pose)
     }
 
     fn speed(&self, section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
         bending_speed(&self.rates, section, shares)
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        if section >= self.from.len() {
+            return None;
+        }
+        let [first, last] = times.map(|t| ConstantCurvature::new(&self.sections(t, section + 1)));
+        let (first, last) = (first.ok()?, last.ok()?);
+        let point = |share: Real, t: Real| {
+            let robot = if t == times[0] { &first } else { &last };
+            self.pose * robot.at_share(section, share)
+        };
+        // Curvatures change evenly.
+        Some(course(&self.rates, |_| 0.0, section, shares, times, point))
     }
 }

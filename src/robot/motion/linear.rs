@@ -10,7 +10,7 @@
 //! A link that may lose its length, and with it the direction of its faces, is marked: queries take its flat ends for
 //! round, which holds both.
 
-use super::{Motion, Speed};
+use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::chain::{check, without_length};
 use crate::robot::modified_cylinder::has_direction;
@@ -164,6 +164,18 @@ impl Motion for LinearMotion {
         let least = (least_length([along, change], times) - 2.0 * rounding).max(0.0);
         let turn = if cross > 0.0 { cross / (least * least) * up } else { 0.0 };
         Speed { point: speed(shares[0]).max(speed(shares[1])) * up + rounding, turn }
+    }
+
+    /// A point at a share of a link moves straight and evenly, as the ends of the link do.
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        if section >= self.radii.len() {
+            return None;
+        }
+        let [start, end] = [self.velocity(section), self.velocity(section + 1)];
+        let apart = times[1] - times[0];
+        let ways = shares.map(|share| (start + (end - start) * share) * apart);
+        // Two places and a way, each off by a few roundings.
+        Some(Course { ways, off: 8.0 * self.rounding() })
     }
 }
 

@@ -1,6 +1,7 @@
 //! A robot that changes with time: its shapes, and bounds on how fast its points move.
 
 mod bending;
+mod course;
 mod linear;
 mod motion_path;
 mod moving_base;
@@ -13,7 +14,8 @@ mod shape_path;
 mod tests;
 mod verify;
 
-pub use bending::{BendingMotion, BendingRates, bending_speed};
+pub use bending::{BendingMotion, BendingRates, bending_course, bending_speed};
+pub use course::Course;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
@@ -82,6 +84,21 @@ pub trait Motion {
     /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound that is too large costs time.
     /// One that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
+
+    /// Where the centreline goes, in the mesh's frame, between two shares of a section's length and between two times: if more
+    /// is known of it than its speed.
+    ///
+    /// None by default. With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and the questions like it need
+    /// fewer shapes: a piece that moves along the wall does not count as if it moved towards it, nor one that moves away. All ready
+    /// motions know their courses; [`bending_course`] helps where sections have a constant curvature. A course that is wrong
+    /// makes answers wrong. One that is not finite, or whose `off` is below 0, counts as none.
+    ///
+    /// Shares and times are as for [`speed`](Self::speed). What wraps a motion may pass its courses on if it does not change time or
+    /// place.
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        let _ = (section, shares, times);
+        None
+    }
 
     /// Into how many parts of the same length queries divide time from the beginning: 1, but for a path of many motions. What
     /// wraps a motion passes its `legs` on.

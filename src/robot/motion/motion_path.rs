@@ -1,6 +1,6 @@
 //! Motions one after another, as one.
 
-use super::{Motion, Speed};
+use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
@@ -74,6 +74,23 @@ impl<M: Motion> Motion for MotionPath<M> {
             point: larger(most.point, speed.point * up),
             turn: larger(most.turn, speed.turn * up),
         })
+    }
+
+    /// From one motion to the next the velocity may jump.
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
+        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.leg(t).0);
+        if first != last {
+            return None;
+        }
+        let inner = times.map(|t| self.time_in(last, t));
+        let Course { ways, off } = self.motions[last].course(section, shares, inner)?;
+        // A time of a motion is rounded by less than `rounding` times the number of motions, and so are two others beside it; and
+        // times that are another motion's count as this one's end.
+        let unsure = 8.0 * rounding * self.motions.len() as Real;
+        let around = [(inner[0] - unsure).max(0.0), (inner[1] + unsure).min(1.0)];
+        let speed = self.motions[last].speed(section, shares, around);
+        Some(Course { ways, off: off + unsure * speed.point })
     }
 
     fn legs(&self) -> usize {

@@ -8,12 +8,18 @@
 //! How far p is from the axis is known of the motion's shapes at three times. Until another time it moves away by no more than
 //! the motion moves it in between: by its stated speed between the two times, times how far they are apart. Two distances from
 //! a line differ by no more than the points are apart. Of the three bounds the least counts.
+//!
+//! **Courses.** Let the motion know that from one time to another, T apart, p goes from p0 by m but for e, which is at most `off`. With p1 = p0 + m the
+//! point goes by the way b1 - b0 + R1 p1 - R0 p0, linear in p0 and m. What moves at p0 + q m evenly in the frame has the acceleration
+//! R (w a x (w a x p) + 2 w a x m), so it is at most (s^2 |a x p| + 2 s |m|) / 8 off that way, for the turn s = w T; p is off by e besides,
+//! which counts once, and s times where it is turned. From the end it is the same, but p1 may be off by e, whose turn counts once more.
+//! Where p0 is, is known from the nearest of the three shapes and the course since; what that is off counts s times.
 
 use super::rigid_path::RigidPath;
-use super::{Motion, Speed, rigid_pose};
+use super::{Course, Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A motion whose base is moved at the same time, evenly from one pose to another: what a robot does that is pushed or turned
 /// while its sections bend and grow.
@@ -73,6 +79,20 @@ impl<M: Motion> MovingBase<M> {
         let none = Speed { point: Real::INFINITY, turn: Real::INFINITY };
         bounds.fold(none, |least, bound| if bound.point < least.point { bound } else { least })
     }
+
+    /// Where the ends of a piece are in the frame of the base at a time, and how far any point of it may be off what is between.
+    fn place(&self, section: usize, shares: [Real; 2], t: Real) -> Option<([Vector; 2], Real)> {
+        let nearest = self.known.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+        let (at, tube, pose) = nearest?;
+        let off = RigidPath::beside(tube, tube.sections().get(section)?, shares);
+        let known = shares.map(|share| *pose * tube.at_share(&tube.sections()[section], share).point);
+        if *at == t {
+            return Some((known, off));
+        }
+        let since = self.motion.course(section, shares, [at.min(t), at.max(t)])?;
+        let sign = if *at < t { 1.0 } else { -1.0 };
+        Some(([0, 1].map(|end| known[end] + since.ways[end] * sign), off + since.off))
+    }
 }
 
 impl<M: Motion> Motion for MovingBase<M> {
@@ -89,6 +109,23 @@ impl<M: Motion> Motion for MovingBase<M> {
         // A few roundings of numbers that are added up here.
         let up = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         Speed { point: (carried.point + own.point) * up, turn: (carried.turn + own.turn) * up }
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        let inner = self.motion.course(section, shares, times)?;
+        let (place, since) = self.place(section, shares, times[0])?;
+        let poses = times.map(|t| self.path.pose(t));
+        let apart = times[1] - times[0];
+        let turn = self.path.angle() * apart;
+        let ways = [0, 1].map(|end| poses[1] * (place[end] + inner.ways[end]) - poses[0] * place[end]);
+        let turning = self.path.of_turning(self.carried(section, shares, times).point) * apart;
+        let own = inner.ways[0].length().max(inner.ways[1].length());
+        let bow = 0.125 * turn * (turning + turn * inner.off + 2.0 * own);
+        let places = poses.iter().flat_map(|pose| place.map(|place| *pose * place)).chain(place);
+        let reach = places.fold(own, |most: Real, p| most.max(p.abs().max_element()));
+        let rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
+        let off = inner.off * (1.0 + 2.0 * turn) + bow + turn * since + rounding;
+        Some(Course { ways, off: off * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) })
     }
 
     fn legs(&self) -> usize {

@@ -1,7 +1,7 @@
 //! A tube that keeps its shape and moves.
 
 use super::rigid_path::RigidPath;
-use super::{Motion, Speed};
+use super::{Course, Motion, Speed};
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
 
@@ -43,5 +43,9 @@ impl Motion for RigidMotion {
 
     fn speed(&self, section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
         self.path.speed(&self.tube, &Pose::IDENTITY, section, shares)
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        self.path.course(&self.tube, section, shares, times)
     }
 }

@@ -4,11 +4,14 @@
 //! point p of the frame then moves at v + w R(a x p), at most |v| + w |a x p| fast, and no direction turns faster than w.
 //! |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is within k l^2 / 8 of its chord,
 //! where the larger of the chord's two ends counts.
+//!
+//! Its acceleration is w^2 times that distance. From one time to another, T apart, the point moves by v T + (R' - R) p, which is
+//! linear in p, and R' - R turns by at most w T: so what p is beside the chord moves otherwise by at most w T times as much.
 
-use super::{Speed, rigid_pose};
+use super::{Course, Speed, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::rigid_pose::rotation_by;
-use crate::robot::{RobotError, Tube};
+use crate::robot::{RobotError, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
 /// A frame on its way.
@@ -31,6 +34,11 @@ impl RigidPath {
         Ok(Self { from, shift: to.translation - from.translation, turn: scaled_axis(way) })
     }
 
+    /// What of a bound on a speed is left for the turn alone.
+    pub(super) fn of_turning(&self, point: Real) -> Real {
+        (point * UP - self.shift.length()).max(0.0)
+    }
+
     /// Where the frame is.
     pub(super) fn pose(&self, t: Real) -> Pose {
         let rotation = self.from.rotation * rotation_by(self.turn * t);
@@ -42,17 +50,51 @@ impl RigidPath {
         self.turn.length() * UP
     }
 
+    /// Where a piece of a tube goes that is at rest in the frame.
+    pub(super) fn course(
+        &self,
+        tube: &Tube,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<Course> {
+        let number = section;
+        let section = tube.sections().get(number)?;
+        let apart = times[1] - times[0];
+        let ends = shares.map(|share| tube.at_share(section, share).point);
+        let [here, there] = times.map(|t| {
+            let pose = self.pose(t);
+            ends.map(|end| pose * end)
+        });
+        let turn = self.angle() * apart;
+        let turning = self.of_turning(self.speed(tube, &Pose::IDENTITY, number, shares).point);
+        let beside = Self::beside(tube, section, shares);
+        let places = here.into_iter().chain(there);
+        let reach = places.fold(2.0 * tube.reach(), |most: Real, p| most.max(p.abs().max_element()));
+        let rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
+        let off = (0.125 * turn * turning * apart + turn * beside + rounding) * UP;
+        Some(Course::between(here, there, off))
+    }
+
+    /// How far a point of a piece is at the most from the place between its two ends at the same share.
+    pub(super) fn beside(tube: &Tube, section: &Section, shares: [Real; 2]) -> Real {
+        let off = shares.map(|share| tube.at_share(section, share).off);
+        let known = tube.bound(section, tube.ticks_around(section, shares));
+        let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
+        // The ends are between samples, and the curve beside them.
+        let beside = off[0].max(off[1]).max(known.off);
+        // Samples may divide a stretch otherwise than by its length.
+        let uneven = 2.0 * (section.stretch - 1.0) * length;
+        0.125 * known.curvature * length * length + beside + uneven + tube.error()
+    }
+
     /// How fast a piece of a tube moves that is at rest in the frame, at a pose there.
     pub(super) fn speed(&self, tube: &Tube, pose: &Pose, section: usize, shares: [Real; 2]) -> Speed {
         let angle = self.angle();
         let Some(section) = tube.sections().get(section) else { return Speed { point: 0.0, turn: 0.0 } };
         let ends = shares.map(|share| tube.at_share(section, share));
         let [a, b] = ends.map(|end| self.turn.cross(*pose * end.point).length());
-        let known = tube.bound(section, tube.ticks_around(section, shares));
-        let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
-        // The ends are between samples, and the curve beside them.
-        let beside = ends[0].off.max(ends[1].off).max(known.off);
-        let off = 0.125 * known.curvature * length * length + beside + tube.error();
+        let off = Self::beside(tube, section, shares);
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach();
         let rounding = 32.0 * Real::UNIT_ROUNDOFF * reach;
         Speed { point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * UP, turn: angle }

@@ -125,11 +125,17 @@ impl Sampled {
         self.stated.get(place).copied().unwrap_or_default()
     }
 
+    /// Where a place went from here to another shape, and how far off that may be.
+    pub(super) fn way(&self, to: &Self, place: usize) -> Option<(Vector, Real)> {
+        let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
+        Some((there.point - from.point, self.rounding + to.rounding + from.error + there.error))
+    }
+
     /// How far a place went at least, from here to another shape.
     pub(super) fn moved(&self, to: &Self, place: usize) -> Option<Moved> {
         let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
-        let way =
-            (there.point - from.point).length() - self.rounding - to.rounding - from.error - there.error;
+        let (way, off) = self.way(to, place)?;
+        let way = way.length() - off;
         // Without length there is no direction.
         let has_direction = from.direction != Vector::ZERO && there.direction != Vector::ZERO;
         let turned = (there.direction - from.direction).length() * (from.shrink * there.shrink).sqrt();

@@ -8,7 +8,7 @@
 //! balls around their centres, wherever they are turned, so round bodies hold it; the speed of its own centreline does not
 //! matter, since at each moment it is within the deviation of the links of that moment.
 
-use super::{Motion, Speed};
+use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::{Chain, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -85,6 +85,27 @@ impl Motion for ShapePath<'_> {
             point = point.max((speed(shares[0]).max(speed(shares[1])) + rounding) * up);
         }
         Speed { point, turn: 0.0 }
+    }
+
+    /// In one leg everything moves straight and evenly.
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        let legs = self.legs() as Real;
+        let leg = ((0.5 * (times[0] + times[1]) * legs) as usize).min(self.legs() - 1);
+        // Times that are another leg's by more than rounding.
+        let unsure = 8.0 * Real::UNIT_ROUNDOFF * legs;
+        let is_in = |t: Real| (leg as Real - unsure..=leg as Real + 1.0 + unsure).contains(&(t * legs));
+        if !times.into_iter().all(is_in) {
+            return None;
+        }
+        let [from, to] = [leg, leg + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
+        let (from, to) = (ends(from, section)?, ends(to, section)?);
+        let [start, end] = [to[0] - from[0], to[1] - from[1]];
+        let apart = (times[1] - times[0]) * legs;
+        let ways = shares.map(|share| (start + (end - start) * share) * apart);
+        let reach = from.into_iter().chain(to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
+        // Places, differences and ways; and times off by `unsure`, to a leg that begins where this one ends.
+        let off = 64.0 * Real::UNIT_ROUNDOFF * reach + 4.0 * unsure * start.length().max(end.length());
+        Some(Course { ways, off })
     }
 
     fn legs(&self) -> usize {

@@ -1,9 +1,12 @@
-//! Whether a motion keeps to the speeds that it states.
+//! Whether a motion keeps to the speeds that it states, and to the courses.
 //!
 //! A single fine step shows little. A point between samples is known only to their deviation, and every point only to the
 //! stated error; in a short time a motion of any speed stays within that. So shapes far apart in time are compared too: 1, 2,
 //! 4 and more steps apart, and with the first shape. The ways that were stated for the steps between them add up, and what is
 //! unknown of the two shapes counts once.
+//!
+//! A course is compared with three shapes: those at both ends of its time, and the one at its middle, where what moves at a constant
+//! acceleration is farthest off.
 
 use super::sampled::{Moved, Sampled, SampledPlace, places};
 use super::{Motion, Sections, rigid_pose};
@@ -11,12 +14,15 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// Checks the speeds that a motion states, by its shapes at `steps` even steps of its time. Call it in your tests.
+/// Checks the speeds and the courses that a motion states, by its shapes at `steps` even steps of its time. Call it in your tests.
 ///
 /// Points are compared at nine places in each section, and at its samples. From one shape to the next no point may move
 /// farther than the stated speed allows, and no direction may turn more. The same holds for shapes that are 2, 4, 8 and more
 /// steps apart, and for each shape and the first. A bound that is too low only for a moment, or only between two places, shows
 /// if the steps are fine enough. Steps cannot be too fine.
+///
+/// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at its middle, between steps and
+/// between shapes that are 2, 4, 8 and more steps apart: at each place alone, and at each as a part of the whole section.
 ///
 /// Some of what moves may be an error of the shapes, which does not count against the motion:
 ///
@@ -28,7 +34,7 @@ use parry3d_f64::math::Real;
 /// one.
 ///
 /// # Errors
-/// The first time and place at which the motion is faster than stated, with both speeds; a shape that cannot be made; or
+/// The first time and place at which the motion is faster than stated, with both speeds, or farther off its course; a shape that cannot be made; or
 /// sections that change.
 ///
 /// ```
@@ -72,6 +78,10 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
             let met = 2 + step.trailing_zeros() as usize;
             for before in kept.iter().take(met) {
                 check(before, &here, &all, motion)?;
+            }
+            for steps in 1..met {
+                let middle = (steps > 1).then(|| &kept[steps - 1]);
+                check_courses([&kept[steps], &here], middle, &all, motion)?;
             }
         }
         let due = if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
@@ -122,6 +132,41 @@ fn check(
             } else {
                 RobotError::FasterThanStated { t, section, share, found, stated }
             });
+        }
+    }
+    Ok(())
+}
+
+/// # Errors
+/// A place is farther off its course between two shapes than stated, at the last one or at the one in the middle.
+fn check_courses(
+    [before, here]: [&Sampled; 2],
+    middle: Option<&Sampled>,
+    places: &[SampledPlace],
+    motion: &impl Motion,
+) -> Result<(), RobotError> {
+    let times = [before.t, here.t];
+    for (number, place) in places.iter().enumerate() {
+        let &SampledPlace { section, shares: [share, end] } = place;
+        let whole = (share == end).then_some([0.0, 1.0]);
+        for shares in [Some([share; 2]), whole].into_iter().flatten() {
+            let Some(course) = motion.course(section, shares, times) else { continue };
+            let way = course.way(if shares[0] < shares[1] { share } else { 0.0 });
+            let left = |from: &Sampled, to: &Sampled| {
+                let share = (to.t - from.t) / (times[1] - times[0]);
+                let (found, off) = from.way(to, number)?;
+                Some((found - way * share).length() - off)
+            };
+            let parts = middle.map(|middle| [left(before, middle), left(middle, here)]);
+            for found in parts.into_iter().flatten().chain([left(before, here)]).flatten() {
+                // A few roundings of what is stated. Written so that NaN is too far off.
+                let stated = course.off;
+                let is_kept = found <= stated * (1.0 + 16.0 * Real::UNIT_ROUNDOFF);
+                if !is_kept {
+                    let t = 0.5 * (times[0] + times[1]);
+                    return Err(RobotError::FartherOffThanStated { t, section, share, found, stated });
+                }
+            }
         }
     }
     Ok(())

@@ -131,6 +131,23 @@ impl MeshSearch<'_> {
         })
     }
 
+    /// All triangles that may be at most `bound` from a link, in no order; false if they are more than `most`, or unknown.
+    pub(crate) fn gather(
+        &mut self,
+        link: &PlacedLink,
+        bound: Real,
+        most: usize,
+        found: &mut Vec<u32>,
+    ) -> bool {
+        found.clear();
+        if let Some(moved) = &mut self.moved {
+            return moved.gather(&self.hierarchy.mesh, self.hierarchy.single(), link, bound, most, found);
+        }
+        resolved!(self, link, |traversal, searched| traversal.gather(&searched, bound, most, found), {
+            !self.is_near(link, bound)
+        })
+    }
+
     /// Whether a mesh that is tiny beside a link may be at most `bound` from it: all its triangles are about where the
     /// first one is.
     fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {

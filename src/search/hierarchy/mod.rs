@@ -8,6 +8,7 @@ mod hierarchies;
 mod leaf_visitor;
 mod mesh_search;
 mod moving_mesh;
+mod near_triangles;
 mod node;
 mod traverse;
 

@@ -187,6 +187,44 @@ impl MeshAt<'_> {
         self.moving.waiting = waiting;
         is_met
     }
+
+    /// All triangles that may be at most `bound` from a link, in no order; false if they are more than `most`.
+    pub(crate) fn gather(
+        &mut self,
+        mesh: &Mesh,
+        tree: &WideBvh<f32>,
+        link: &PlacedLink,
+        bound: Real,
+        most: usize,
+        found: &mut Vec<u32>,
+    ) -> bool {
+        let axis = Axis::new(link, self.moving.reach);
+        let mut waiting = std::mem::take(&mut self.moving.waiting);
+        waiting.clear();
+        waiting.push((0.0, Child::Node(0).pack()));
+        while let Some((_, child)) = waiting.pop() {
+            match Child::unpack(child) {
+                Child::Node(node) => {
+                    let near = tree.nodes[node as usize].children();
+                    let near =
+                        near.filter(|child| axis.bound(self.moving.sides(*child), self.share) <= bound);
+                    waiting.extend(near.map(|child| (0.0, child.pack())));
+                }
+                Child::Leaf(leaf) => {
+                    found.extend(tree.leaves[leaf as usize].triangles().filter(|&triangle| {
+                        let sides =
+                            self.corners(mesh, triangle).into_iter().fold(Sides::NOTHING, Sides::with);
+                        axis.bound(&[sides; 2], 0.0) <= bound
+                    }))
+                }
+            }
+            if found.len() > most {
+                break;
+            }
+        }
+        self.moving.waiting = waiting;
+        found.len() <= most
+    }
 }
 
 fn between(from: Vector, to: Vector, share: Real) -> Vector {

@@ -10,6 +10,7 @@
 use super::build::WideBvh;
 use super::candidates::bring_forward;
 use super::leaf_visitor::LeafVisitor;
+use super::near_triangles::NearTriangles;
 use super::node::{Child, Node, WIDTH};
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
@@ -171,6 +172,20 @@ impl<E: Lane> Traversal<'_, E> {
         let mut target = Target { searched, limit, below, aim: Aim::Any(false) };
         self.search(&mut target, [None; 2]);
         matches!(target.aim, Aim::Any(true))
+    }
+
+    /// All triangles that may be at most `bound` from the link, in no order; false if they are more than `most`.
+    pub(crate) fn gather(
+        &mut self,
+        searched: &SearchLink<E>,
+        bound: f64,
+        most: usize,
+        found: &mut Vec<u32>,
+    ) -> bool {
+        let limit = searched.axis_limit(bound);
+        let mut near = NearTriangles { limit, most, found, is_overfull: false };
+        dispatch!(self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
+        !near.is_overfull
     }
 
     /// Shows every leaf that may hold a triangle within the limit, in the order in which they come.

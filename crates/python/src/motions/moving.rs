@@ -2,7 +2,7 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
+    BendingMotion, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
 };
 
 /// One motion of a batch, of whatever kind.
@@ -33,6 +33,16 @@ impl Motion for Moving {
             Self::Bending(motion) => motion.speed(section, shares, times),
             Self::OnBase(motion) => motion.speed(section, shares, times),
             Self::Path(motion) => motion.speed(section, shares, times),
+        }
+    }
+
+    fn course(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Option<Course> {
+        match self {
+            Self::Linear(motion) => motion.course(section, shares, times),
+            Self::Rigid(motion) => motion.course(section, shares, times),
+            Self::Bending(motion) => motion.course(section, shares, times),
+            Self::OnBase(motion) => motion.course(section, shares, times),
+            Self::Path(motion) => motion.course(section, shares, times),
         }
     }
 

@@ -10,7 +10,7 @@ use continuum_studies::machine;
 use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision};
-use parry_continuum::{Motion, RobotError, Speed, Tube};
+use parry_continuum::{Course, Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::fmt::Write;
 use std::time::Instant;
@@ -45,6 +45,10 @@ impl Motion for Counted<'_> {
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         self.motion.speed(section, shares, times)
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        self.motion.course(section, shares, times)
     }
 }
 

@@ -1,0 +1,75 @@
+//! Whether a piece keeps a margin from every triangle by itself, each in a direction of its own.
+//!
+//! The speed of a piece says how far it may move, and not where to. Where its course is known (`side`), every triangle that is near
+//! enough to matter is parted from the body of the moment by a plane, and the gap must be enough for what the piece goes towards that plane.
+//! The nearest wall's direction alone would not do: what moves away from it moves into another one.
+//!
+//! A plane's normal leads from the triangle's nearest point to the body's. The normals found before are tried first, the last one before the
+//! others: they part most of the triangles of the same wall.
+
+use super::side::{Side, gap};
+use crate::pair::PlacedLink;
+use crate::search::hierarchy::MeshSearch;
+use parry3d_f64::math::{Real, Vector};
+
+/// More triangles than this are not looked at: that would take longer than another shape.
+const MOST_TRIANGLES: usize = 32;
+
+/// So many normals are tried again.
+const NORMALS: usize = 4;
+
+/// What is asked of a body.
+pub(super) struct Asked<'a> {
+    pub body: &'a PlacedLink,
+    pub side: &'a Side,
+    pub margin: Real,
+    /// What rounding can do to any length.
+    pub slack: Real,
+}
+
+impl Asked<'_> {
+    /// Whether a plane with this normal parts the body from a triangle by enough.
+    fn is_enough(&self, corners: [Vector; 3], normal: Vector) -> bool {
+        // Written so that NaN is not enough.
+        gap(self.body, corners, normal) - self.margin - 2.0 * self.slack > self.side.takes(normal)
+    }
+
+    /// The direction from a triangle to the body; nearer than rounding there may be none.
+    fn normal(&self, triangle: u32, corners: [Vector; 3]) -> Vector {
+        let nearest = self.body.measure(triangle, corners);
+        (nearest.on_robot - nearest.on_mesh).normalize_or_zero()
+    }
+}
+
+/// Memory that is used again.
+#[derive(Clone, Default)]
+pub(crate) struct OwnDirections {
+    triangles: Vec<u32>,
+}
+
+impl OwnDirections {
+    /// Whether the body keeps the margin all the time on that side of the middle shape; false if too many triangles are near it. The
+    /// one to `start` with is asked first.
+    pub(super) fn keeps(&mut self, search: &mut MeshSearch, asked: &Asked, start: u32) -> bool {
+        let corners = search.corners(start);
+        let mut normals = [Vector::ZERO; NORMALS];
+        normals[0] = asked.normal(start, corners);
+        if !asked.is_enough(corners, normals[0]) {
+            return false;
+        }
+        let bound = asked.margin + asked.side.off + 2.0 * asked.slack;
+        if !search.gather(&asked.side.swept(asked.body), bound, MOST_TRIANGLES, &mut self.triangles) {
+            return false;
+        }
+        self.triangles.iter().all(|&triangle| {
+            let corners = search.corners(triangle);
+            if let Some(place) = normals.iter().position(|normal| asked.is_enough(corners, *normal)) {
+                normals[..=place].rotate_right(1);
+                return true;
+            }
+            normals.rotate_right(1);
+            normals[0] = asked.normal(triangle, corners);
+            asked.is_enough(corners, normals[0])
+        })
+    }
+}
