@@ -51,7 +51,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 let is_left = if approach.is_answered() {
                     [true; 2]
                 } else {
-                    approach.moving.leave_by_courses(tube, wanted)?
+                    approach.moving.leave_by_courses(tube, wanted)
                 };
                 Ok((approach.nearest, approach.moving.still, is_left))
             })?;

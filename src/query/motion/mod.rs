@@ -1,5 +1,6 @@
 //! Whether a motion keeps a margin, until when, and how near it comes.
 
+mod failure;
 mod least;
 mod moment;
 mod motion_search;

@@ -19,6 +19,7 @@
 //! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
+use super::failure::Failure;
 use super::moment::{Moment, Seen, Wanted};
 use super::moving::Moving;
 use super::own_directions::OwnDirections;
@@ -43,6 +44,8 @@ pub(crate) struct MotionMemory {
     begun: Vec<Piece>,
     /// Those that failed, one interval's after another's.
     failed: Vec<Waiting>,
+    /// More about those of the present interval.
+    failures: Vec<Failure>,
     pub(super) intervals: VecDeque<Interval>,
     /// Where the vertices go, if the mesh moves.
     mesh: MovingMesh,
@@ -57,6 +60,7 @@ impl Default for MotionMemory {
             pieces: Vec::new(),
             begun: Vec::new(),
             failed: Vec::new(),
+            failures: Vec::new(),
             intervals: VecDeque::new(),
             mesh: MovingMesh::default(),
             directions: OwnDirections::default(),
@@ -264,7 +268,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             let is_left = if moment.seen.contact.is_some() {
                 [true; 2]
             } else {
-                moment.moving.leave_by_courses(tube, wanted.margin)?
+                moment.moving.leave_by_courses(tube, wanted.margin)
             };
             Ok(Seen { still: moment.moving.still, is_left, ..moment.seen })
         })
@@ -286,7 +290,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             // A speed that is not finite or NaN holds nothing; it is refused below.
             half * motion.speed(section, [end as Real; 2], times).point
         });
-        let MotionMemory { tube, pieces, begun, failed, mesh, directions, .. } = &mut *self.memory;
+        let MotionMemory { tube, pieces, begun, failed, failures, mesh, directions, .. } = &mut *self.memory;
         let MeshSearch { level, hierarchy, .. } = self.search;
         let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
@@ -302,6 +306,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         // Of this interval nothing is known.
         pieces.extend(failing.map(|piece| Waiting { is_left: [true; 2], ..*piece }));
         let first = failed.len();
+        failures.clear();
         let moving = Moving {
             motion,
             times,
@@ -311,6 +316,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             mesh_speed,
             failed: &mut *failed,
             first,
+            failures,
             last: &mut self.last,
             speed: 0.0,
             beside: 0.0,

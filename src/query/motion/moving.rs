@@ -6,12 +6,13 @@
 //! the other half is in the discs behind it, or beyond a face, where it is no part of the tube. That half turns like a
 //! disc.
 
+use super::failure::Failure;
 use super::own_directions::{Asked, OwnDirections};
 use super::side::Side;
 use super::waiting::Waiting;
 use crate::distance::Scalar;
 use crate::pair::Nearest;
-use crate::pieces::{Divided, Near, Outer, Part, Piece, PlacedTube, TubeInMesh};
+use crate::pieces::{Near, Outer, Piece, PlacedTube, TubeInMesh};
 use crate::robot::{Motion, RobotError};
 use parry3d_f64::math::Real;
 
@@ -37,6 +38,8 @@ pub(crate) struct Moving<'a, M> {
     pub failed: &'a mut Vec<Waiting>,
     /// Those before this one failed in earlier intervals.
     pub first: usize,
+    /// The others, but for those that are too many.
+    pub failures: &'a mut Vec<Failure>,
     /// The triangle that was found last.
     pub last: &'a mut Option<u32>,
     /// How fast the piece that is looked at and the mesh move towards each other at most.
@@ -84,61 +87,49 @@ impl<M: Motion> Moving<'_, M> {
     /// by `room`.
     pub(crate) fn fail(&mut self, near: &Near<TubeInMesh, Waiting>, room: Real) {
         self.still = self.still.min(still(room, self.speed));
-        let Nearest { distance: away, triangle, .. } = *near.nearest;
-        self.failed.push(Waiting { is_left: [true; 2], away, triangle, ..*near.part });
+        self.failed.push(Waiting { is_left: [true; 2], ..*near.part });
+        if self.failures.len() <= MOST_PIECES {
+            let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
+            let normal = (on_robot - on_mesh).normalize_or_zero();
+            let (body, reach) = (near.outer.body, self.reach());
+            self.failures.push(Failure { body, away, normal, reach, beside: self.beside * self.half });
+        }
     }
 
     /// Which of the pieces that failed keep the margin before the middle shape all the same, or after it, by where they go. The
     /// nearest one is asked first, and none after one that does not: that side has to be looked at anyway. Whether any is left
     /// on either side.
-    ///
-    /// # Errors
-    /// A stated speed is not finite and at least 0.
-    pub(crate) fn leave_by_courses(
-        &mut self,
-        tube: &mut TubeInMesh,
-        margin: Real,
-    ) -> Result<[bool; 2], RobotError> {
-        let last = self.failed.len();
-        let nearest = (self.first..last).min_by(|a, b| self.failed[*a].away.total_cmp(&self.failed[*b].away));
-        let Some(nearest) = nearest else { return Ok([false; 2]) };
-        if last - self.first > MOST_PIECES {
-            return Ok([true; 2]);
+    pub(crate) fn leave_by_courses(&mut self, tube: &mut TubeInMesh, margin: Real) -> [bool; 2] {
+        let nearest = self.failures.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
+        let Some((nearest, _)) = nearest else { return [false; 2] };
+        if self.failures.len() > MOST_PIECES {
+            return [true; 2];
         }
-        self.failed.swap(self.first, nearest);
+        self.failures.swap(0, nearest);
+        self.failed.swap(self.first, self.first + nearest);
+        let slack = tube.tube.slack();
         let mut is_left = [false; 2];
-        for number in self.first..last {
-            let part = self.failed[number];
-            let piece = part.piece(tube);
-            let outer = tube.body(&piece);
-            self.turn_to(&part, &piece, &outer, &tube.tube)?;
-            let slack = tube.tube.slack();
-            if part.away - margin - slack <= LEAST_ROOM * self.reach() {
-                return Ok([true; 2]);
+        for (number, failure) in self.failures.iter().enumerate() {
+            if failure.away - margin - slack <= LEAST_ROOM * failure.reach {
+                return [true; 2];
             }
+            let part = &mut self.failed[self.first + number];
             for (side, is_left) in is_left.iter_mut().enumerate().filter(|(_, is_left)| !**is_left) {
-                let keeps = self.side(&part, side).is_some_and(|side| {
-                    let asked = Asked { body: &outer.body, side: &side, margin, slack };
-                    self.directions.keeps(&mut tube.search, &asked, part.triangle)
-                });
-                self.failed[number].is_left[side] = !keeps;
+                let times = if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
+                let course = self.motion.course(part.section as usize, part.shares, times);
+                let keeps =
+                    course.and_then(|course| Side::of(&course, side, failure.beside)).is_some_and(|side| {
+                        let asked = Asked { body: &failure.body, side: &side, margin, slack };
+                        self.directions.keeps(&mut tube.search, &asked, failure)
+                    });
+                part.is_left[side] = !keeps;
                 *is_left = !keeps;
             }
             if is_left == [true; 2] {
                 break;
             }
         }
-        Ok(is_left)
-    }
-
-    fn side(&self, part: &Waiting, side: usize) -> Option<Side> {
-        let times = if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
-        let course = self.motion.course(part.section as usize, part.shares, times)?;
-        let is_known =
-            course.ways.iter().all(|way| way.is_finite()) && (0.0..Real::INFINITY).contains(&course.off);
-        let sign = if side == 0 { -1.0 } else { 1.0 };
-        let off = course.off + self.beside * self.half;
-        is_known.then(|| Side { ways: course.ways.map(|way| way * sign), off })
+        is_left
     }
 }
 

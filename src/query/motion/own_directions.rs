@@ -7,6 +7,7 @@
 //! A plane's normal leads from the triangle's nearest point to the body's. The normals found before are tried first, the last one before the
 //! others: they part most of the triangles of the same wall.
 
+use super::failure::Failure;
 use super::side::{Side, gap};
 use crate::pair::PlacedLink;
 use crate::search::hierarchy::MeshSearch;
@@ -48,13 +49,12 @@ pub(crate) struct OwnDirections {
 }
 
 impl OwnDirections {
-    /// Whether the body keeps the margin all the time on that side of the middle shape; false if too many triangles are near it. The
-    /// one to `start` with is asked first.
-    pub(super) fn keeps(&mut self, search: &mut MeshSearch, asked: &Asked, start: u32) -> bool {
-        let corners = search.corners(start);
+    /// Whether the body keeps the margin all the time on that side of the middle shape; false if too many triangles are near it.
+    pub(super) fn keeps(&mut self, search: &mut MeshSearch, asked: &Asked, failure: &Failure) -> bool {
         let mut normals = [Vector::ZERO; NORMALS];
-        normals[0] = asked.normal(start, corners);
-        if !asked.is_enough(corners, normals[0]) {
+        normals[0] = failure.normal;
+        // Along the normal of the nearest triangle the gap is the distance.
+        if failure.away - asked.margin - 2.0 * asked.slack <= asked.side.takes(failure.normal) {
             return false;
         }
         let bound = asked.margin + asked.side.off + 2.0 * asked.slack;

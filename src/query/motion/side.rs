@@ -13,6 +13,7 @@
 
 use crate::distance::Scalar;
 use crate::pair::PlacedLink;
+use crate::robot::Course;
 use parry3d_f64::math::{Real, Vector};
 
 /// Where a piece goes on one side of the middle shape.
@@ -28,6 +29,14 @@ pub(super) struct Side {
 const UP: Real = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
 
 impl Side {
+    /// Side 0 is before the middle shape, 1 after it. None if the course is not known.
+    pub(super) fn of(course: &Course, side: usize, beside: Real) -> Option<Self> {
+        let is_known =
+            course.ways.iter().all(|way| way.is_finite()) && (0.0..Real::INFINITY).contains(&course.off);
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        is_known.then(|| Self { ways: course.ways.map(|way| way * sign), off: course.off + beside })
+    }
+
     /// A body that holds a body wherever it goes, but for `off`.
     ///
     /// Some vectors lead from a body to where its points are: they are in the triangle of 0 and the two ways. Along the axis they make it longer;

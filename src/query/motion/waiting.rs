@@ -10,22 +10,12 @@ pub(crate) struct Waiting {
     pub shares: [Real; 2],
     /// Whether it is left before and after the middle shape in which it failed.
     pub is_left: [bool; 2],
-    /// How far it was away there, as far as its body tells.
-    pub away: Real,
-    /// Which triangle was found there.
-    pub triangle: u32,
 }
 
 impl Waiting {
     /// What a piece of a shape is in any shape.
     pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
-        Self {
-            section: piece.section,
-            shares: tube.shares(piece),
-            is_left: [true; 2],
-            away: Real::INFINITY,
-            triangle: 0,
-        }
+        Self { section: piece.section, shares: tube.shares(piece), is_left: [true; 2] }
     }
 }
 
