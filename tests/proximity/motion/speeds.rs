@@ -5,7 +5,7 @@ use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingMotion, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
+    BendingMotion, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
 };
 
 /// A motion that states a share of the speeds that it should.
@@ -58,52 +58,4 @@ fn speeds_that_are_too_low_are_found() {
         found[3] += too_low(verify_motion(&Understated(&linear, 0.99), 60), 0.99);
     }
     assert!(found.iter().all(|found| *found > 50), "{found:?}");
-}
-
-/// A motion whose courses are stated narrower than they are, by a factor, and elsewhere.
-struct Misguided<'a, M>(&'a M, Real, Vector);
-
-impl<M: Motion> Motion for Misguided<'_, M> {
-    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
-        self.0.shape(t, tube)
-    }
-
-    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
-        self.0.speed(section, shares, times)
-    }
-
-    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
-        let Course { ways, off } = self.0.course(section, shares, times)?;
-        let aside = self.2 * (times[1] - times[0]);
-        Some(Course { ways: ways.map(|way| way + aside), off: off * self.1 })
-    }
-}
-
-#[test]
-fn courses_that_are_too_narrow_or_lead_elsewhere_are_found() {
-    let (robot, mut random) = (ctr::three_tubes(), Random::new(8));
-    let mut found = [0; 4];
-    for _ in 0..40 {
-        let joints = random_edge(&robot, &mut random, 5.0);
-        let poses = [random.pose(5.0), random.pose(5.0)];
-        let rigid = RigidMotion::new(joints.tube(0.0).unwrap(), poses).unwrap();
-        let (from, radii) = polyline(&mut random, Vector::ZERO);
-        let to: Vec<_> = from.iter().map(|&point| point + random.point()).collect();
-        let linear = LinearMotion::chain(&from, &to, &radii).unwrap();
-        let is_found = |result: Result<(), RobotError>| match result {
-            Ok(()) => 0,
-            Err(RobotError::FartherOffThanStated { t, share, found, stated, .. }) => {
-                assert!((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&share) && stated < found);
-                1
-            }
-            Err(other) => panic!("{other:?}"),
-        };
-        let aside = random.direction();
-        found[0] += is_found(verify_motion(&Misguided(&rigid, 0.3, Vector::ZERO), 32));
-        found[1] += is_found(verify_motion(&Misguided(&joints, 0.1, Vector::ZERO), 32));
-        found[2] += is_found(verify_motion(&Misguided(&linear, 1.0, aside * 1e-9), 32));
-        found[3] += is_found(verify_motion(&Misguided(&joints, 1.0, aside * 2.0), 1024));
-        verify_motion(&Misguided(&joints, 1.0, Vector::ZERO), 32).unwrap();
-    }
-    assert!(found.iter().all(|found| *found > 30), "{found:?}");
 }
