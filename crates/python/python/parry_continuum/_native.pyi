@@ -228,6 +228,40 @@ class Mesh:
     def clears_path(
         self, shapes: ArrayLike, radii: ArrayLike, deviation: float, margin: float, resolution: float
     ) -> MotionAnswer: ...
+    def prove(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        *,
+        pose: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> str | None: ...
+    def prove_tube(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
+        turn: float | None = None,
+        pose: ArrayLike | None = None,
+    ) -> str | None: ...
+    @overload
+    def prove_motion(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        caps: _MotionCaps = "fitted",
+    ) -> str | None: ...
+    @overload
+    def prove_motion(self, start: Motion, *, margin: float, resolution: float) -> str | None: ...
     def certify(
         self,
         points: ArrayLike,

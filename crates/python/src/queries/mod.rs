@@ -11,6 +11,7 @@ mod motion_clearance;
 mod motion_while;
 mod path;
 mod per_link;
+mod prove;
 mod side;
 pub(crate) mod two_robots;
 mod way;

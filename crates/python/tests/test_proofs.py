@@ -1,0 +1,66 @@
+"""Proofs are believed by the program that checks them, and by nobody once they are changed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from parry_continuum import BendingMotion, ContinuumError, LinearMotion, Mesh
+from shapes import sphere
+
+CHECKER = Path(__file__).parents[3] / "docs" / "book" / "check_proof.py"
+VERTICES, FACES = sphere()
+WALL = Mesh(VERTICES, FACES)
+BEND = np.array([[0.0, 0.0, 0.0], [0.0, 0.5, 2.0], [1.0, 1.0, 4.0]])
+
+
+def is_believed(mesh: Mesh, proof: str, folder: Path) -> bool:
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces.tolist()]
+    (folder / "wall.obj").write_text("\n".join(lines) + "\n")
+    (folder / "proof.txt").write_text(proof)
+    command = [sys.executable, str(CHECKER), str(folder / "wall.obj"), str(folder / "proof.txt")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.returncode == 0 and done.stdout.splitlines()[-1] == "yes"
+
+
+def test_proofs_are_believed(tmp_path: Path) -> None:
+    sections = np.array([[6.0, 0.01, 0.0]])
+    motion = BendingMotion(sections, sections + [0.0, 0.02, 0.01], 0.5)
+    proofs = {
+        "chain": WALL.prove(BEND, 0.5, margin=1.0),
+        "tube": WALL.prove_tube(BEND, 0.5, margin=1.0, resolution=0.01),
+        "motion": WALL.prove_motion(motion, margin=1.0, resolution=0.01),
+    }
+    straight = WALL.prove_motion(BEND, BEND + [0, 0, 1], 0.5, margin=1.0, resolution=0.01)
+    proofs["motion of points"] = straight
+    for kind, proof in proofs.items():
+        assert proof is not None, kind
+        assert kind.split()[0] in proof.splitlines()[3]
+        assert is_believed(WALL, proof, tmp_path), kind
+        # Of another wall, or of a margin that nothing keeps.
+        assert not is_believed(Mesh(VERTICES * 1.05, FACES), proof, tmp_path), kind
+        assert not is_believed(WALL, proof.replace("margin 1.0", "margin 8.0"), tmp_path), kind
+
+
+def test_what_is_not_clear_has_no_proof() -> None:
+    assert WALL.prove(BEND, 0.5, margin=8.0) is None
+    assert WALL.prove_tube(BEND, 0.5, margin=8.0, resolution=0.01) is None
+    assert WALL.prove_motion(BEND, BEND + [0, 0, 9.0], 0.5, margin=0.0, resolution=0.01) is None
+    assert WALL.prove_motion(LinearMotion(BEND, BEND, 0.5), margin=8.0, resolution=0.01) is None
+
+
+def test_one_at_a_time() -> None:
+    many = np.stack([BEND, BEND])
+    for ask in (
+        lambda: WALL.prove(many, 0.5, margin=1.0),
+        lambda: WALL.prove_tube(many, 0.5, margin=1.0, resolution=0.01),
+        lambda: WALL.prove_motion(many, many, 0.5, margin=1.0, resolution=0.01),
+    ):
+        with pytest.raises(ContinuumError, match="one robot or motion, and 2 are given") as raised:
+            ask()
+        assert raised.value.kind == "bad_shape"
