@@ -16,7 +16,8 @@ fn one(py: Python<'_>, count: Option<usize>) -> PyResult<()> {
     match count {
         None => Ok(()),
         Some(count) => {
-            let text = format!("a proof is about one robot or motion, and {count} are given; give them one by one");
+            let text =
+                format!("a proof is about one robot or motion, and {count} are given; give them one by one");
             Err(Refused::other("bad_shape", text).raise(py, None))
         }
     }
