@@ -61,6 +61,7 @@
 //! | a proof of the distance of its two links | [`RobotProximity::certify`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
+//! | does a tube keep a margin to itself? | [`tube_self_clears`], [`RobotPair::tube_self_clears`] |
 //!
 //! **Several structures and robots**
 //!
@@ -114,6 +115,6 @@ pub use crate::answer::{
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,
-    self_minimum,
+    self_minimum, tube_self_clears,
 };
 pub use crate::scene::Scene;

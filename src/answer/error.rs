@@ -103,6 +103,20 @@ pub enum ProximityError {
         /// The length of the shorter link.
         length: Real,
     },
+    /// A tube bends within its own radius, or may do so as far as its curvature is known, which leaves no saying which parts of it
+    /// are neighbours.
+    #[error(
+        "near the arc length {arc_length} the tube has the curvature {curvature} and the radius {radius}; their product must be \
+         below 1, so check the unit of length, or smooth the points"
+    )]
+    BendsWithinRadius {
+        /// Where it may bend so sharply: from there on.
+        arc_length: Real,
+        /// Its curvature there at most.
+        curvature: Real,
+        /// Its radius.
+        radius: Real,
+    },
     /// The pose carries a tube beyond that range.
     #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
     TubeOutOfRange {

@@ -2,7 +2,8 @@
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotProximity};
 use crate::query::robots::{
-    OneRobot, OwnMemory, PairMemory, TubesMemory, TwoRobots, clearance_between, place_tubes, tubes_clear,
+    OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between, place_tubes,
+    tube_self_clears as self_clears_of_tube, tubes_clear,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::{Chain, Tube};
@@ -38,6 +39,7 @@ pub struct RobotPair {
     memory: PairMemory,
     own: OwnMemory,
     tubes: TubesMemory,
+    own_tube: OwnTubeMemory,
 }
 
 /// What the parameters are called.
@@ -201,6 +203,20 @@ impl RobotPair {
         check_margin(margin)?;
         Ok(OneRobot::new(robot, &mut self.own)?.clears(margin, &mut self.own))
     }
+
+    /// As [`tube_self_clears`], in memory that is used again.
+    ///
+    /// # Errors
+    /// As [`tube_self_clears`].
+    pub fn tube_self_clears(
+        &mut self,
+        tube: &Tube,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        check_decision(margin, resolution)?;
+        self_clears_of_tube(tube, &mut self.own_tube, margin, resolution)
+    }
 }
 
 /// The two links that are closest: [`RobotPair::minimum`] without a memory.
@@ -298,4 +314,42 @@ pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityEr
 /// ```
 pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
     RobotPair::new().self_clears(robot, margin)
+}
+
+/// Whether a tube keeps more than `margin` to itself.
+///
+/// Asked for are the parts that [`self_minimum`] asks for, of the curve itself: two places with a turn of at least pi between them,
+/// a flat face and what is in front of it with a turn of at least pi / 2, and two faces that are turned towards one
+/// another. So a bend never collides with its own neighbourhood.
+///
+/// `Clear` and `Contact` are proven. Errors that the tube states for itself count in all distances; which parts are asked for is told by
+/// the curve as it was given. `Undecided` is the answer only
+/// - where the distance of such parts is within `resolution` of the margin, or within what was stated;
+/// - where the margin is as wide as the tightest bend: from 1 / curvature less the radius on beside a step, and from
+///   2 / curvature less both radii on elsewhere. What is known of the curve may leave open there which parts are asked for;
+/// - where samples are so few that they do not show how far the curve turns; or
+/// - where 65,536 pairs of pieces do not decide it.
+///
+/// # Errors
+/// - The margin or the resolution is negative or NaN.
+/// - The tube bends within its radius somewhere, as far as its curvature is known; or a chain, taken as a tube, has a joint too
+///   sharp for [`self_minimum`].
+/// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite somewhere.
+///
+/// ```
+/// use parry_continuum::{Tube, proximity::{Decision, tube_self_clears}};
+/// use parry_continuum::parry::math::Vector;
+///
+/// // Two turns of a coil of radius 10 and pitch 4, around a wire of 1.
+/// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
+/// let rise = 4.0 / (2.0 * std::f64::consts::PI);
+/// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
+/// let along = Vector::new(0.0, 10.0, rise); // as it begins and, after whole turns, ends
+/// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
+/// assert_eq!(tube_self_clears(&tube, 1.9, 0.01)?, Decision::Clear);
+/// assert_eq!(tube_self_clears(&tube, 2.1, 0.01)?, Decision::Contact);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<Decision, ProximityError> {
+    RobotPair::new().tube_self_clears(tube, margin, resolution)
 }

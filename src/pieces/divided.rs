@@ -48,6 +48,11 @@ pub(crate) trait Divided {
     /// not.
     fn doubt(&self, piece: &Self::Piece) -> Real;
 
+    /// Whether all of a piece is known to be what is asked about, of which something was found.
+    fn is_surely_asked(&self, _: &Self::Piece, _: &Self::Found) -> bool {
+        true
+    }
+
     /// What stated errors cost a clearance: they count in both bounds.
     fn uncertainty(&self) -> Real;
 

@@ -4,6 +4,7 @@ mod divided;
 mod on_loose_tube;
 mod on_tube;
 mod outer;
+mod own_tube;
 mod piece;
 mod placed_tube;
 mod refine;
@@ -14,6 +15,7 @@ mod two_tubes;
 
 pub(crate) use divided::{Body, Bound, Divided};
 pub(crate) use outer::Outer;
+pub(crate) use own_tube::{OwnBeginning, OwnPair, OwnTube};
 pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;
 pub(crate) use refine::{Look, Near, Part, Question, Verdict, refine};

@@ -16,6 +16,9 @@
 //! A ball at a round end is cut off by the section's own face, should it stick out of that. So where both are near, x
 //! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.
 //!
+//! **Of a part of a section**, whose ends are anywhere in it, the nearest place is not one of these ends if on the way to it some place
+//! is farther from x than q. Of the part up to there, all of the above holds.
+//!
 //! q is known to the deviation of the curve from its samples, and a face's normal to its tilt, which moves a rim by r
 //! times that. Of a face whose normal is not known the centre is in the tube, at least.
 
@@ -38,10 +41,22 @@ pub(crate) struct OnTube {
 impl PlacedTube<'_> {
     /// How near `x` is to a section at most, looking from an arc length nearby.
     pub(crate) fn near(&self, number: u32, arc: Real, x: Vector) -> OnTube {
-        let section = self.section(number);
         if self.tube.is_loose() {
             return self.near_loose(number, arc, x);
         }
+        self.near_between(number, arc, x, [None; 2])
+    }
+
+    /// The same of the part of a section between two arc lengths, where it does not go to an end. Infinity is the answer if
+    /// the nearest place may be one of these two.
+    pub(super) fn near_between(
+        &self,
+        number: u32,
+        arc: Real,
+        x: Vector,
+        limits: [Option<Real>; 2],
+    ) -> OnTube {
+        let section = self.section(number);
         let rounding = self.tube.error() + self.slack;
         let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
         let [a, b] = foot.between.map(|point| self.pose * point);
@@ -51,8 +66,15 @@ impl PlacedTube<'_> {
         let reach = away + foot.off + rounding;
         let mut best = OnTube { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
+        for (end, limit) in limits.into_iter().enumerate() {
+            let Some(limit) = limit else { continue };
+            let is_within = if end == 0 { limit <= foot.arc } else { foot.arc <= limit };
+            if !is_within || !self.rises_between(section, [foot.arc, limit], x, reach + rounding) {
+                return best;
+            }
+        }
         for (end, face) in self.tube.faces(section).iter().enumerate() {
-            let Some(face) = face else { continue };
+            let Some(face) = face.as_ref().filter(|_| limits[end].is_none()) else { continue };
             let face = self.face(face);
             let offset = x - face.centre;
             let ahead = offset.dot(face.outward);

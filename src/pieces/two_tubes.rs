@@ -10,6 +10,7 @@
 //! margin that is asked about, is none to begin with, since it cannot change the answer.
 
 use super::divided::{Body, Bound, Divided};
+use super::on_tube::OnTube;
 use super::outer::Outer;
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
@@ -27,7 +28,7 @@ const INTO: Real = 1.125;
 /// Two tubes in one frame.
 #[derive(Clone, Copy)]
 pub(crate) struct TwoTubes<'a> {
-    tubes: [PlacedTube<'a>; 2],
+    pub(super) tubes: [PlacedTube<'a>; 2],
 }
 
 /// A piece of each tube, with its body.
@@ -156,40 +157,50 @@ impl<'a> TwoTubes<'a> {
     }
 
     /// How far two bodies are apart at least: as far as the capsules around them, less what rounding does to that.
-    fn at_least(&self, [one, two]: &[Outer; 2]) -> Real {
+    pub(super) fn at_least(&self, [one, two]: &[Outer; 2]) -> Real {
         let (_, apart) = one.body.nearest_on_axes(&two.body);
         apart - one.body.radius() - two.body.radius() - self.slack()
     }
 
     /// The upper bound as seen from a point, and from where it moves to.
     fn found_from(&self, sections: [u32; 2], arcs: [Real; 2], from: Vector) -> FoundBetween {
-        let seen = |arcs: [Real; 2], from: Vector| {
+        found_from(sections, arcs, from, |arcs, from| {
             [0, 1].map(|k: usize| self.tubes[k].near(sections[k], arcs[k], from))
-        };
-        let (mut best, mut place) = (seen(arcs, from), from);
-        for _ in 0..MOST_MOVES {
-            let [one, two] = best;
-            place = match [one.upper > 0.0, two.upper > 0.0] {
-                [true, true] => (one.point + two.point) * 0.5,
-                // From within one tube to the other, and a little into it.
-                [true, false] => place + (one.point - place) * INTO,
-                [false, true] => place + (two.point - place) * INTO,
-                [false, false] => break,
-            };
-            let next = seen([one.arc, two.arc], place);
-            // Written so that NaN ends it.
-            if next[0].upper + next[1].upper >= one.upper + two.upper || !place.is_finite() {
-                break;
-            }
-            best = next;
-        }
+        })
+    }
+}
+
+/// The upper bound as seen from a point, and from where it moves to. `seen` is how near the two are to a point, as seen from two
+/// arc lengths.
+pub(super) fn found_from(
+    sections: [u32; 2],
+    arcs: [Real; 2],
+    from: Vector,
+    seen: impl Fn([Real; 2], Vector) -> [OnTube; 2],
+) -> FoundBetween {
+    let (mut best, mut place) = (seen(arcs, from), from);
+    for _ in 0..MOST_MOVES {
         let [one, two] = best;
-        FoundBetween {
-            upper: one.upper + two.upper,
-            sections,
-            arcs: [one.arc, two.arc],
-            points: [one.point, two.point],
+        place = match [one.upper > 0.0, two.upper > 0.0] {
+            [true, true] => (one.point + two.point) * 0.5,
+            // From within one tube to the other, and a little into it.
+            [true, false] => place + (one.point - place) * INTO,
+            [false, true] => place + (two.point - place) * INTO,
+            [false, false] => break,
+        };
+        let next = seen([one.arc, two.arc], place);
+        // Written so that NaN ends it.
+        if next[0].upper + next[1].upper >= one.upper + two.upper || !place.is_finite() {
+            break;
         }
+        best = next;
+    }
+    let [one, two] = best;
+    FoundBetween {
+        upper: one.upper + two.upper,
+        sections,
+        arcs: [one.arc, two.arc],
+        points: [one.point, two.point],
     }
 }
 
@@ -280,7 +291,7 @@ impl Divided for TwoTubes<'_> {
 }
 
 /// Where balls of two radii around two points have the same way to go, or overlap by as much.
-fn half_way(places: [Vector; 2], radii: [Real; 2]) -> Vector {
+pub(super) fn half_way(places: [Vector; 2], radii: [Real; 2]) -> Vector {
     let way = places[1] - places[0];
     let away = way.length();
     let share = 0.5 + 0.5 * (radii[0] - radii[1]) / away;

@@ -41,5 +41,5 @@ pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use tube::{CurveBound, Face, Lasting, Section};
+pub(crate) use tube::{CurveBound, Face, Lasting, Section, TooSharp, TubeTurns};
 pub use tube::{Tube, TubeSection};

@@ -17,6 +17,8 @@ mod measured;
 mod motion;
 mod moved;
 mod own_parts;
+mod own_tube;
+mod own_tube_sampled;
 mod parity;
 mod patches;
 mod pieces;

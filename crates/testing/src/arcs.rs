@@ -73,6 +73,16 @@ impl Arcs {
         (frame.translation, frame.rotation * Vector::Z)
     }
 
+    /// By how much it turns up to an arc length.
+    pub fn turned(&self, s: Real) -> Real {
+        let (mut from, mut turned) = (0.0, 0.0);
+        for &(end, _, bend) in &self.arcs {
+            turned += bend.length() * (s.min(end) - from).max(0.0);
+            from = end;
+        }
+        turned
+    }
+
     /// The directions at its ends.
     pub fn end_tangents(&self) -> [Vector; 2] {
         [0.0, self.length()].map(|s| self.at(s).1)

@@ -95,7 +95,9 @@ impl<T: Divided> Question<T, T::Piece> for Keeps<T::Found> {
 
     fn judge_whole(&mut self, tube: &T, near: &Near<T, T::Piece>) -> Result<(), ProximityError> {
         let apart = near.found.upper() - T::distance(near.nearest);
-        tube.check_resolved(apart - tube.stated(near.piece), self.resolution)?;
+        if tube.is_surely_asked(near.piece, near.found) {
+            tube.check_resolved(apart - tube.stated(near.piece), self.resolution)?;
+        }
         self.decision = Decision::Undecided;
         Ok(())
     }

@@ -5,9 +5,11 @@ mod local_minima;
 mod one_robot;
 mod outline_rows;
 mod outlines;
+mod own_tube;
 mod tubes;
 mod two_robots;
 
 pub(crate) use one_robot::{OneRobot, OwnMemory};
+pub(crate) use own_tube::{OwnTubeMemory, tube_self_clears};
 pub(crate) use tubes::{TubesMemory, clearance_between, place_tubes, tubes_clear};
 pub(crate) use two_robots::{PairMemory, TwoRobots};

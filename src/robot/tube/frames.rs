@@ -20,7 +20,7 @@ use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
 /// How far the directions of two frames at one place may be apart.
-const ONE_DIRECTION: Real = 1.0 / (1_u64 << 16) as Real;
+pub(super) const ONE_DIRECTION: Real = 1.0 / (1_u64 << 16) as Real;
 
 /// The two neighbours of an arch on either side, as far as there are any.
 fn around<'a>(number: usize, find: impl Fn(usize) -> Option<&'a Arch>) -> [[Option<&'a Arch>; 2]; 2] {

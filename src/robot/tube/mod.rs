@@ -21,12 +21,14 @@ mod smoothing_spline;
 mod stated;
 #[cfg(test)]
 mod tests;
+mod turns;
 mod verify;
 
 pub use function::TubeSection;
 pub(super) use function::check_sections;
 pub(crate) use lasting::Lasting;
 pub(crate) use section::{Face, Section};
+pub(crate) use turns::{TooSharp, TubeTurns};
 
 use super::chain::radius_for_all;
 use super::{Cap, RobotError};

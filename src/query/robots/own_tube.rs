@@ -1,0 +1,40 @@
+//! The questions about a tube beside itself: whether it keeps a margin to itself.
+
+use crate::answer::{Decision, ProximityError};
+use crate::pieces::{OwnBeginning, OwnPair, OwnTube};
+use crate::query::clearance::keeps;
+use crate::robot::{TooSharp, Tube, TubeTurns};
+use parry3d_f64::math::Real;
+
+/// What one query leaves for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OwnTubeMemory {
+    turns: TubeTurns,
+    beginning: OwnBeginning,
+    pairs: Vec<OwnPair>,
+}
+
+/// Whether the parts of a tube that can meet keep more than the margin.
+///
+/// # Errors
+/// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
+pub(crate) fn tube_self_clears(
+    tube: &Tube,
+    memory: &mut OwnTubeMemory,
+    margin: Real,
+    resolution: Real,
+) -> Result<Decision, ProximityError> {
+    let OwnTubeMemory { turns, beginning, pairs } = memory;
+    tube.measure_turns(turns).map_err(|too_sharp| match too_sharp {
+        TooSharp::Joint { joint, angle, radius, length } => {
+            ProximityError::JointTooSharp { joint, angle, radius, length }
+        }
+        TooSharp::Bend { arc_length, curvature, radius } => {
+            ProximityError::BendsWithinRadius { arc_length, curvature, radius }
+        }
+    })?;
+    let mut own = OwnTube::new(tube, turns)?;
+    own.begin(margin.max(resolution), margin, beginning, pairs)?;
+    let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;
+    Ok(decision)
+}
