@@ -2,6 +2,8 @@
 
 mod bending;
 mod course;
+#[cfg(test)]
+mod course_tests;
 mod linear;
 mod motion_path;
 mod moving_base;

@@ -7,14 +7,14 @@ use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The point and the direction in the mesh's frame.
-fn at(motion: &dyn Motion, t: Real, section: usize, share: Real) -> (Vector, Vector) {
+pub(super) fn at(motion: &dyn Motion, t: Real, section: usize, share: Real) -> (Vector, Vector) {
     let mut tube = Tube::empty();
     let pose = motion.shape(t, &mut tube).unwrap();
     let here = tube.at_share(&tube.sections()[section], share);
     (pose * here.point, pose.rotation * here.direction)
 }
 
-fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {
+pub(super) fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {
     let mut bend = || random.between(-0.3, 0.3);
     let bends: Vec<_> = radii.iter().map(|_| [bend(), bend()]).collect();
     let sections = radii.iter().zip(bends);
@@ -160,108 +160,4 @@ fn a_path_is_as_fast_as_its_motions() {
     assert!((path.leg(0.5).1 - 0.5).abs() < 1e-15);
     assert!((at(&path, 0.5, 0, 0.0).0 - Vector::X * 3.0).length() < 1e-12);
     assert!(MotionPath::<LinearMotion>::new(Vec::new()).is_err());
-}
-
-/// A piece of a course as it is used at the most: how far a point is from where its way leads, from both ends of the time, as a part
-/// of what is stated.
-fn used_of_course(motion: &dyn Motion, section: usize, shares: [Real; 2], times: [Real; 2]) -> Real {
-    let course = motion.course(section, shares, times).unwrap();
-    let mut most: Real = 0.0;
-    for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
-        let share = shares[0] + (shares[1] - shares[0]) * part;
-        let way = course.way(part);
-        let [first, last] = times.map(|t| at(motion, t, section, share).0);
-        for q in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            let here = at(motion, times[0] + (times[1] - times[0]) * q, section, share).0;
-            let off = (here - first - way * q).length().max((last - here - way * (1.0 - q)).length());
-            most = most.max(off / course.off);
-        }
-    }
-    most
-}
-
-#[test]
-fn stated_courses_hold_between_any_shares_and_times() {
-    let mut random = Random::new(12);
-    let (mut used, mut off) = ([0.0_f64; 5], [0.0_f64; 5]);
-    for _ in 0..300 {
-        let count = 1 + random.below(4) as usize;
-        let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
-        let from: Vec<_> = (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
-        let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
-        let bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
-        let poses = [random.pose(3.0), random.pose(3.0)];
-        let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
-        let mut tube = Tube::empty();
-        bending.shape(random.unit(), &mut tube).unwrap();
-        let moving = MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
-        let path = MotionPath::new(vec![moving.clone(); 3]).unwrap();
-        let motions: [&dyn Motion; 5] = [
-            &LinearMotion::chain(&from, &to, &radii).unwrap(),
-            &RigidMotion::new(tube, poses).unwrap(),
-            &bending,
-            &moving,
-            &path,
-        ];
-        for (kind, motion) in motions.into_iter().enumerate() {
-            let section = random.below(count as u32) as usize;
-            let mut pair = || {
-                let (a, b) = (random.unit(), random.unit());
-                [a.min(b), a.max(b)]
-            };
-            let (shares, times) = (pair(), pair());
-            // Those of one motion of the path.
-            let times = if kind == 4 { times.map(|t| (1.0 + t) / 3.0) } else { times };
-            let most = used_of_course(motion, section, shares, times);
-            used[kind] = used[kind].max(most);
-            off[kind] = off[kind].max(motion.course(section, shares, times).unwrap().off);
-        }
-    }
-    assert!(used.iter().all(|used| *used <= 1.0), "{used:?}");
-    // None is so loose that nothing could leave it; links have only rounding to be off by.
-    assert!(
-        off[0] < 1e-12 && used[1] > 0.8 && used[2] > 0.3 && used[3] > 0.2 && used[4] > 0.2,
-        "{used:?} {off:?}"
-    );
-}
-
-/// Each term of a course is as large as differences: left out, it would be found.
-#[test]
-fn each_term_of_a_course_is_as_large_as_differences() {
-    let section = |length, bend| BendingSection { length, radius: 0.1, bend: [bend, 0.0] };
-    let bending = |from: &[BendingSection], to: &[BendingSection]| {
-        BendingMotion::new(from, to, Pose::IDENTITY).unwrap()
-    };
-    let turned = Pose::rotation(Vector::X * 0.5);
-    let on_base = |motion: &BendingMotion| MovingBase::new(motion.clone(), [Pose::IDENTITY, turned]).unwrap();
-    // At first straight, so that all of the turn is across what turns.
-    let alone = bending(&[section(10.0, 0.0)], &[section(10.0, 0.05)]);
-    // The end of the first section turns all of the second.
-    let carried = bending(&[section(0.5, 0.0), section(10.0, 0.0)], &[section(0.5, 1.0), section(10.0, 0.0)]);
-    let pushed = bending(&[section(0.5, 0.0), section(0.1, 0.0)], &[section(0.5, 0.5), section(10.0, 0.0)]);
-    // Bent across the axis of the turn.
-    let arc = BendingSection { length: 10.0, radius: 0.1, bend: [0.0, 0.08] };
-    let bent = bending(&[arc], &[arc]);
-    let still = bending(&[section(10.0, 0.0)], &[section(10.0, 0.0)]);
-    let growing = bending(&[section(0.1, 0.0)], &[section(10.0, 0.0)]);
-    let mut arc = Tube::empty();
-    bent.shape(0.0, &mut arc).unwrap();
-    let rigid = RigidMotion::new(arc, [Pose::IDENTITY, turned]).unwrap();
-    let (straight, arced, grown) = (on_base(&still), on_base(&bent), on_base(&growing));
-    let early = [0.0, 0.02];
-    type Case<'a> = (&'a str, &'a dyn Motion, usize, [Real; 2], [Real; 2], Real);
-    let cases: [Case; 8] = [
-        ("a bend", &alone, 0, [1.0; 2], early, 0.6),
-        ("what a bend carries", &carried, 1, [1.0; 2], early, 0.6),
-        ("what grows on a bend", &pushed, 1, [1.0; 2], early, 0.6),
-        ("a bend along the curve", &alone, 0, [0.0, 1.0], early, 0.5),
-        ("a turn", &straight, 0, [1.0; 2], [0.0, 0.5], 0.9),
-        ("what grows while it turns", &grown, 0, [1.0; 2], early, 0.6),
-        ("a turn of what is bent", &rigid, 0, [0.0, 1.0], early, 0.6),
-        ("the same on a base", &arced, 0, [0.0, 1.0], early, 0.6),
-    ];
-    for (name, motion, section, shares, times, least) in cases {
-        let used = used_of_course(motion, section, shares, times);
-        assert!((least..=1.0).contains(&used), "{name}: {used}");
-    }
 }
