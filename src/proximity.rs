@@ -110,8 +110,9 @@ pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof,
-    ProximityError, RobotClearance, RobotProximity, SceneContact, SceneError, ShapeInContact, Side,
-    StructureProximity, Tightest, TriangleFeature, TubePiece, Witness, Work,
+    ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact, SceneContact,
+    SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece, Witness,
+    Work,
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,

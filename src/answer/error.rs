@@ -162,6 +162,14 @@ pub enum ProximityError {
     /// A motion has no shape at some time, or breaks a promise.
     #[error(transparent)]
     Motion(#[from] RobotError),
+    /// The same of one of two motions.
+    #[error("`{parameter}`: {fault}")]
+    OneMotion {
+        /// The motion, as the function that was called names it.
+        parameter: &'static str,
+        /// What is wrong with it.
+        fault: RobotError,
+    },
     /// A motion is so fast that time cannot be divided finely enough.
     #[error(
         "section {section} moves at the speed {speed}: time cannot be divided so finely that it moves by {resolution} \
@@ -281,13 +289,14 @@ impl MeshError {
 }
 
 impl ProximityError {
-    /// The same of one of two robots, whose pose the function that was called names so.
+    /// The same of one of two robots, whose pose or motion the function that was called names so.
     pub(crate) fn of_robot(self, parameter: &'static str) -> Self {
         let fault = match self {
             Self::PoseNotFinite => PlacementFault::PoseNotFinite,
             Self::PoseNotRigid { length } => PlacementFault::PoseNotRigid { length },
             Self::OutOfRange { link, limit } => PlacementFault::OutOfRange { link, limit },
             Self::TubeOutOfRange { limit } => PlacementFault::TubeOutOfRange { limit },
+            Self::Motion(fault) => return Self::OneMotion { parameter, fault },
             other => return other,
         };
         Self::Placement { parameter, fault }
@@ -297,7 +306,7 @@ impl ProximityError {
     /// that it passes on.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Motion(error) => error.kind(),
+            Self::Motion(error) | Self::OneMotion { fault: error, .. } => error.kind(),
             Self::Mesh(error) => error.kind(),
             Self::Placement { fault, .. } => fault.kind(),
             #[cfg(feature = "gpu")]

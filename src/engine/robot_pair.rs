@@ -1,12 +1,13 @@
 //! Two robots beside one another.
 
-use crate::answer::{Decision, ProximityError, RobotClearance, RobotProximity};
+use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
+use crate::query::motion::{MotionsMemory, TwoMotions, Wanted};
 use crate::query::robots::{
     OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between, place_tubes,
     tube_self_clears as self_clears_of_tube, tubes_clear,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
-use crate::robot::{Chain, Tube};
+use crate::robot::{Chain, Motion, Tube};
 use parry3d_f64::math::{Pose, Real};
 
 /// Questions about two robots, exactly: which links are closest, and whether all keep a margin.
@@ -40,10 +41,12 @@ pub struct RobotPair {
     own: OwnMemory,
     tubes: TubesMemory,
     own_tube: OwnTubeMemory,
+    motions: MotionsMemory,
 }
 
 /// What the parameters are called.
 const POSES: [&str; 2] = ["pose_a", "pose_b"];
+const MOTIONS: [&str; 2] = ["a", "b"];
 
 impl RobotPair {
     /// With an empty memory.
@@ -185,6 +188,48 @@ impl RobotPair {
         check_decision(margin, resolution)?;
         let mut tubes = place_tubes([a, b], [pose_a, pose_b], POSES)?;
         tubes_clear(&mut tubes, &mut self.tubes, margin, resolution)
+    }
+
+    /// Whether two robots that move at the same time keep more than `margin` between them, at every time from 0 to 1. Both motions
+    /// place their robot in one frame. A robot at rest is a [`RigidMotion`](crate::RigidMotion) from a pose to the same pose.
+    ///
+    /// - `Clear` is proven from the speeds that the motions state, for every instant and not only for some.
+    /// - `Contact` names a time, and two points of the shapes at that time that are at most the margin apart.
+    /// - `Undecided`: the robots come within `resolution` of the margin, or a tube's samples leave open whether they keep it.
+    ///
+    /// The work is one query about two tubes for each time that the proof needs, which are the fewer the slower the robots are beside
+    /// the room between them.
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, RobotPair}};
+    ///
+    /// // Two needles, the tips of which pass one another.
+    /// let needle = |y: f64, x: [f64; 2]| {
+    ///     let ends = x.map(|x| [Vector::new(0.0, y, -40.0), Vector::new(x, y, 0.0)]);
+    ///     LinearMotion::chain(&ends[0], &ends[1], &[1.0])
+    /// };
+    /// let (first, second) = (needle(0.0, [-10.0, 10.0])?, needle(3.0, [10.0, -10.0])?);
+    /// let mut pair = RobotPair::new();
+    /// assert!(pair.clears_motion(&first, &second, 0.9, 1e-3)?.is_clear());
+    /// let found = pair.clears_motion(&first, &second, 1.5, 1e-3)?;
+    /// assert_eq!(found.decision, Decision::Contact);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its sections change, or a stated speed
+    /// is not finite; a robot is out of range; or the resolution is finer than rounding, or than so fast a motion can be divided.
+    pub fn clears_motion(
+        &mut self,
+        a: &impl Motion,
+        b: &impl Motion,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
+        check_decision(margin, resolution)?;
+        let memory = &mut self.motions;
+        let mut motions = TwoMotions { memory, motions: (a, b), names: MOTIONS, shapes: 0 };
+        motions.clear(Wanted { margin, resolution })
     }
 
     /// As [`self_minimum`], with a memory.

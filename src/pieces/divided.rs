@@ -53,6 +53,11 @@ pub(crate) trait Divided {
         true
     }
 
+    /// Whether a piece has a flat end that bodies take for round, since it may become so while it moves.
+    fn may_open(&self, _: &Self::Piece) -> bool {
+        false
+    }
+
     /// What stated errors cost a clearance: they count in both bounds.
     fn uncertainty(&self) -> Real;
 

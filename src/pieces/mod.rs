@@ -20,4 +20,4 @@ pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;
 pub(crate) use refine::{Look, Near, Part, Question, Verdict, refine};
 pub(crate) use tube_in_mesh::{Found, TubeInMesh};
-pub(crate) use two_tubes::{Beginning, FoundBetween, PiecePair, TwoTubes};
+pub(crate) use two_tubes::{Beginning, FoundBetween, PiecePair, Stretch, TwoTubes};

@@ -95,11 +95,6 @@ impl<'a> PlacedTube<'a> {
         of(0).max(of(1))
     }
 
-    /// How far apart the bounds of a piece have to be because of all that was stated of the tube, or was not.
-    pub(crate) fn stated(&self, piece: &Piece) -> Real {
-        self.uncertainty() + self.doubt(piece)
-    }
-
     /// Whether a piece has a flat end that bodies take for round.
     pub(crate) fn may_open(&self, piece: &Piece) -> bool {
         let section = self.section(piece.section);

@@ -103,6 +103,10 @@ impl Divided for TubeInMesh<'_> {
         self.tube.doubt(piece)
     }
 
+    fn may_open(&self, piece: &Piece) -> bool {
+        self.tube.may_open(piece)
+    }
+
     fn uncertainty(&self) -> Real {
         self.tube.uncertainty()
     }

@@ -77,6 +77,17 @@ impl Part<TwoTubes<'_>> for PiecePair {
     }
 }
 
+/// A piece, whatever the shape of its tube.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch<'a> {
+    pub section: u32,
+    /// Where along the section.
+    pub shares: [Real; 2],
+    /// What holds it in the present shape.
+    pub outer: &'a Outer,
+    pub radius: Real,
+}
+
 /// What two tubes are divided into to begin with, in memory that is used again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Beginning {
@@ -91,6 +102,15 @@ impl<'a> TwoTubes<'a> {
         tubes[0].beside(&second);
         tubes[1].beside(&first);
         Self { tubes }
+    }
+
+    /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
+    pub(crate) fn stretches<'p>(&self, pair: &'p PiecePair) -> [Stretch<'p>; 2] {
+        [0, 1].map(|k: usize| {
+            let (tube, piece) = (&self.tubes[k], &pair.pieces[k]);
+            let shares = tube.shares(piece);
+            Stretch { section: piece.section, shares, outer: &pair.outers[k], radius: tube.radius(piece) }
+        })
     }
 
     /// Whether both have the sections.
@@ -279,6 +299,10 @@ impl Divided for TwoTubes<'_> {
 
     fn doubt(&self, pair: &PiecePair) -> Real {
         [0, 1].map(|k: usize| self.tubes[k].doubt(&pair.pieces[k])).iter().sum()
+    }
+
+    fn may_open(&self, pair: &PiecePair) -> bool {
+        (0..2).any(|k| self.tubes[k].may_open(&pair.pieces[k]))
     }
 
     fn uncertainty(&self) -> Real {

@@ -12,7 +12,9 @@
 //! moves less than they leave open.
 
 use super::motion_search::{Interval, MotionSearch};
+use super::moves::Moves;
 use super::moving::Moving;
+use super::pace::Pace;
 use super::waiting::Waiting;
 use crate::answer::{MotionClearance, ProximityError};
 use crate::pieces::{Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict, refine};
@@ -39,22 +41,23 @@ impl<M: Motion> MotionSearch<'_, M> {
                 break;
             }
             let t = interval.middle();
-            let ((nearest, still, is_left), pieces) = self.examine(&interval, |tube, turn, moving| {
-                known.look(tube, t);
-                turn.begin(tube, known.upper().max(tolerance));
-                let mut approach = Approach::new(moving, &mut known, t, tube);
-                refine(tube, turn.pieces, &mut approach)?;
-                if approach.is_answered() {
-                    approach.settle(0.0);
-                }
-                let wanted = approach.wanted();
-                let is_left = if approach.is_answered() {
-                    [true; 2]
-                } else {
-                    approach.moving.leave_by_courses(tube, wanted)
-                };
-                Ok((approach.nearest, approach.moving.still, is_left))
-            })?;
+            let ((nearest, still, is_left), pieces) =
+                self.examine(&interval, |tube, turn, moving, pace| {
+                    known.look(tube, t);
+                    turn.begin(tube, known.upper().max(tolerance));
+                    let mut approach = Approach::new(moving, pace, &mut known, t, tube);
+                    refine(tube, turn.pieces, &mut approach)?;
+                    if approach.is_answered() {
+                        approach.settle(0.0);
+                    }
+                    let wanted = approach.wanted();
+                    let is_left = if approach.is_answered() {
+                        [true; 2]
+                    } else {
+                        approach.moving.leave_by_courses(tube, wanted)
+                    };
+                    Ok((approach.nearest, approach.pace.still, is_left))
+                })?;
             let interval = interval.comes_no_nearer(nearest);
             self.memory.intervals.extend(interval.halves(still, is_left, &pieces).into_iter().flatten());
         }
@@ -137,6 +140,7 @@ impl Known {
 /// The pieces of the shape at the middle of an interval.
 struct Approach<'a, 'b, M> {
     moving: Moving<'a, M>,
+    pace: Pace,
     known: &'b mut Known,
     t: Real,
     /// How far apart the bounds of the answer may stay.
@@ -148,10 +152,10 @@ struct Approach<'a, 'b, M> {
 }
 
 impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
-    fn new(moving: Moving<'a, M>, known: &'b mut Known, t: Real, tube: &TubeInMesh) -> Self {
+    fn new(moving: Moving<'a, M>, pace: Pace, known: &'b mut Known, t: Real, tube: &TubeInMesh) -> Self {
         // So that the bounds of the answer are no farther apart than asked for after they are rounded.
         let aim = (known.tolerance + known.uncertainty - 4.0 * tube.tube.slack()).max(0.0);
-        Self { moving, known, t, aim, nearest: Real::INFINITY, left: MOST_PIECES }
+        Self { moving, pace, known, t, aim, nearest: Real::INFINITY, left: MOST_PIECES }
     }
 
     /// What comes nearer than this still matters.
@@ -161,7 +165,7 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
 
     /// How near a piece comes at least whose body is so far away now.
     fn at_least(&self, distance: Real, tube: &PlacedTube) -> Real {
-        distance - self.moving.reach() - tube.slack()
+        distance - self.pace.reach() - tube.slack()
     }
 
     fn settle(&mut self, lower: Real) {
@@ -174,7 +178,8 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
         self.nearest = self.nearest.min(self.at_least(near.nearest.distance, tube));
         // As long as it is still, it comes no nearer than that.
         self.settle(wanted);
-        self.moving.fail(near, near.nearest.distance - wanted - tube.slack());
+        self.pace.lasts(near.nearest.distance - wanted - tube.slack());
+        self.moving.fail(near, &self.pace);
     }
 }
 
@@ -194,8 +199,8 @@ impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Approach<'_, '_, M> {
         outer: &Outer,
     ) -> Result<Look, ProximityError> {
         self.left = self.left.saturating_sub(1);
-        self.moving.turn_to(part, piece, outer, &tube.tube)?;
-        let (reach, upper) = (self.moving.reach(), self.known.upper());
+        self.pace.speed = self.moving.speed(part, piece, outer, tube)?;
+        let (reach, upper) = (self.pace.reach(), self.known.upper());
         let is_wide = self.left > 0
             && outer.over > 2.0 * self.aim.max(reach)
             && (outer.is_flat() || outer.over > 0.25 * upper);
@@ -222,7 +227,7 @@ impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Approach<'_, '_, M> {
             self.settle(lower);
             return Ok(Verdict::Settled);
         }
-        let (reach, doubt) = (self.moving.reach(), tube.tube.doubt(near.piece));
+        let (reach, doubt) = (self.pace.reach(), tube.tube.doubt(near.piece));
         if doubt > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - doubt {
             let Doubtful { lower: least, doubt: most } = self.known.doubtful;
             self.known.doubtful = Doubtful { lower: least.min(lower), doubt: most.max(doubt) };
@@ -242,9 +247,9 @@ impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Approach<'_, '_, M> {
         tube: &TubeInMesh<'m>,
         near: &Near<TubeInMesh<'m>, Waiting>,
     ) -> Result<(), ProximityError> {
-        let reach = self.moving.reach();
+        let reach = self.pace.reach();
         let is_fine = if tube.tube.may_open(near.piece) {
-            reach.max(self.moving.opening) <= self.aim / 128.0
+            reach.max(self.pace.opening) <= self.aim / 128.0
         } else {
             reach <= (0.25 * self.aim).max(near.found.upper - near.nearest.distance)
         };

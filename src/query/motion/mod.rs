@@ -1,13 +1,21 @@
 //! Whether a motion keeps a margin, until when, and how near it comes.
 
 mod failure;
+mod fast;
 mod least;
 mod moment;
 mod motion_search;
+mod moves;
 mod moving;
+mod moving_pair;
 mod own_directions;
+mod pace;
+mod present;
+mod progress;
 mod side;
+mod two_motions;
 mod waiting;
 
 pub(crate) use moment::Wanted;
 pub(crate) use motion_search::{MotionMemory, MotionSearch};
+pub(crate) use two_motions::{MotionsMemory, TwoMotions};

@@ -1,10 +1,9 @@
 //! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at its middle.
 
-use super::moving::Moving;
-use super::waiting::Waiting;
+use super::moves::Moves;
+use super::pace::Pace;
 use crate::answer::ProximityError;
-use crate::pieces::{Divided, Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict};
-use crate::robot::Motion;
+use crate::pieces::{Body, Bound, Divided, Look, Near, Question, Verdict};
 use parry3d_f64::math::Real;
 
 /// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
@@ -19,30 +18,36 @@ pub(crate) struct Wanted {
 }
 
 /// What the middle shape of an interval shows.
-#[derive(Default)]
-pub(crate) struct Seen {
+pub(crate) struct Seen<F> {
     /// A place where it is at most the margin away.
-    pub contact: Option<Found>,
+    pub contact: Option<F>,
     /// Whether that place moves by no more than half of the resolution.
     pub is_fine: bool,
     /// Whether a piece is too near to the margin for the resolution.
     pub is_undecided: bool,
     /// Whether the shape is above the margin by no more than the resolution.
     pub is_near: bool,
-    /// For how long before and after the shape the pieces that failed keep the margin.
-    pub still: Real,
     /// Whether any piece is left before the shape, and after it.
     pub is_left: [bool; 2],
 }
 
-/// A motion during an interval, and what its middle shape shows.
-pub(crate) struct Moment<'a, M> {
-    pub moving: Moving<'a, M>,
-    pub wanted: Wanted,
-    pub seen: Seen,
+impl<F> Seen<F> {
+    /// Nothing, before anything is looked at.
+    pub(super) fn nothing() -> Self {
+        let (is_fine, is_undecided, is_near) = (false, false, false);
+        Self { contact: None, is_fine, is_undecided, is_near, is_left: [false; 2] }
+    }
 }
 
-impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Moment<'_, M> {
+/// What moves during an interval, and what its middle shape shows.
+pub(crate) struct Moment<V, F> {
+    pub moving: V,
+    pub pace: Pace,
+    pub wanted: Wanted,
+    pub seen: Seen<F>,
+}
+
+impl<D: Divided, P, V: Moves<D, P>> Question<D, P> for Moment<V, D::Found> {
     const NEARER_FIRST: bool = false;
 
     fn is_answered(&self) -> bool {
@@ -51,59 +56,52 @@ impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Moment<'_, M> {
 
     fn look(
         &mut self,
-        tube: &TubeInMesh<'m>,
-        part: &Waiting,
-        piece: &Piece,
-        outer: &Outer,
+        tube: &D,
+        part: &P,
+        piece: &D::Piece,
+        outer: &D::Body,
     ) -> Result<Look, ProximityError> {
-        self.moving.turn_to(part, piece, outer, &tube.tube)?;
-        let (reach, Wanted { margin, resolution }) = (self.moving.reach(), self.wanted);
-        let is_wide = outer.over > 2.0 * reach.max(resolution)
-            && outer.over > 0.5 * tube.tube.radius(piece).max(margin);
+        self.pace.speed = self.moving.speed(part, piece, outer, tube)?;
+        let (reach, Wanted { margin, resolution }) = (self.pace.reach(), self.wanted);
+        let is_wide =
+            outer.over() > 2.0 * reach.max(resolution) && outer.over() > 0.5 * tube.radius(piece).max(margin);
         let aim = reach.max(0.5 * resolution);
-        Ok(Look { bound: self.bound(&tube.tube), is_wide, aim, start: *self.moving.last })
+        Ok(Look { bound: self.bound(tube.slack()), is_wide, aim, start: self.moving.start() })
     }
 
-    fn keeps_away(&mut self, _: &Piece, _: &Outer, _: Real) {}
+    fn keeps_away(&mut self, _: &D::Piece, _: &D::Body, _: Real) {}
 
-    fn judge(
-        &mut self,
-        tube: &TubeInMesh<'m>,
-        near: &Near<TubeInMesh<'m>, Waiting>,
-    ) -> Result<Verdict, ProximityError> {
-        *self.moving.last = Some(near.nearest.triangle);
-        let upper = near.found.upper;
+    fn judge(&mut self, tube: &D, near: &Near<D, P>) -> Result<Verdict, ProximityError> {
+        self.moving.note(near);
+        let upper = near.found.upper();
         if upper <= self.wanted.margin {
             self.seen.contact = Some(*near.found);
             self.seen.is_fine = self.is_fine();
-            self.moving.fail(near, 0.0);
+            self.pace.lasts(0.0);
+            self.moving.fail(near, &self.pace);
             return Ok(Verdict::Answered);
         }
         let is_time_to_blame = !self.is_fine()
-            && (upper <= self.bound(&tube.tube) || near.outer.over <= 0.25 * self.moving.reach());
+            && (upper <= self.bound(tube.slack()) || near.outer.over() <= 0.25 * self.pace.reach());
         if is_time_to_blame {
             self.fail(tube, near)?;
             return Ok(Verdict::Settled);
         }
-        let apart = upper - near.nearest.distance - tube.tube.stated(near.piece);
+        let apart = upper - D::distance(near.nearest) - tube.stated(near.piece);
         if self.is_fine() && apart <= 0.5 * self.wanted.resolution {
             self.seen.is_undecided = true;
             return Ok(Verdict::Settled);
         }
-        Ok(Verdict::Halve(0.25 * near.outer.over))
+        Ok(Verdict::Halve(0.25 * near.outer.over()))
     }
 
-    fn judge_whole(
-        &mut self,
-        tube: &TubeInMesh<'m>,
-        near: &Near<TubeInMesh<'m>, Waiting>,
-    ) -> Result<(), ProximityError> {
-        let (may_open, resolution) = (tube.tube.may_open(near.piece), self.wanted.resolution);
+    fn judge_whole(&mut self, tube: &D, near: &Near<D, P>) -> Result<(), ProximityError> {
+        let (may_open, resolution) = (tube.may_open(near.piece), self.wanted.resolution);
         if self.is_fine() && !may_open {
-            let stated = tube.tube.stated(near.piece);
-            tube.check_resolved(near.found.upper - near.nearest.distance - stated, resolution)?;
+            let stated = tube.stated(near.piece);
+            tube.check_resolved(near.found.upper() - D::distance(near.nearest) - stated, resolution)?;
         }
-        let moved = self.moving.reach().max(self.moving.opening);
+        let moved = self.pace.reach().max(self.pace.opening);
         if self.is_fine() && (!may_open || moved <= resolution / 128.0) {
             self.seen.is_undecided = true;
             return Ok(());
@@ -112,25 +110,30 @@ impl<'m, M: Motion> Question<TubeInMesh<'m>, Waiting> for Moment<'_, M> {
     }
 }
 
-impl<M: Motion> Moment<'_, M> {
+impl<V, F> Moment<V, F> {
     /// What the body of a piece must be farther away than for it to keep the margin all the time.
-    fn bound(&self, tube: &PlacedTube) -> Real {
-        self.wanted.margin + self.moving.reach() + tube.slack()
+    fn bound(&self, slack: Real) -> Real {
+        self.wanted.margin + self.pace.reach() + slack
     }
 
     /// Whether it moves so little that the shape decides.
     fn is_fine(&self) -> bool {
-        self.moving.reach() <= 0.5 * self.wanted.resolution
+        self.pace.reach() <= 0.5 * self.wanted.resolution
     }
 
     /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.
-    fn fail(&mut self, tube: &TubeInMesh, near: &Near<TubeInMesh, Waiting>) -> Result<(), ProximityError> {
-        let (speed, Wanted { margin, resolution }) = (self.moving.speed, self.wanted);
+    fn fail<D: Divided, P>(&mut self, tube: &D, near: &Near<D, P>) -> Result<(), ProximityError>
+    where
+        V: Moves<D, P>,
+    {
+        let (speed, Wanted { margin, resolution }) = (self.pace.speed, self.wanted);
         if speed > MOST_INTERVALS * resolution {
-            return Err(ProximityError::TooFast { section: near.part.section as usize, speed, resolution });
+            let (section, speed) = self.moving.fastest(near, speed);
+            return Err(ProximityError::TooFast { section, speed, resolution });
         }
-        self.seen.is_near |= near.found.upper <= margin + resolution + tube.tube.stated(near.piece);
-        self.moving.fail(near, near.nearest.distance - margin - tube.tube.slack());
+        self.seen.is_near |= near.found.upper() <= margin + resolution + tube.stated(near.piece);
+        self.pace.lasts(D::distance(near.nearest) - margin - tube.slack());
+        self.moving.fail(near, &self.pace);
         Ok(())
     }
 }

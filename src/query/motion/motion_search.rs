@@ -23,21 +23,22 @@ use super::failure::Failure;
 use super::moment::{Moment, Seen, Wanted};
 use super::moving::Moving;
 use super::own_directions::OwnDirections;
+use super::pace::{Pace, middle, rests};
+use super::present::Present;
+use super::progress::{PATIENCE, Progress};
 use super::waiting::Waiting;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
-use crate::distance::Scalar;
 use crate::pieces::{Divided, Found, Piece, PlacedTube, TubeInMesh, refine};
-use crate::robot::{Motion, Sections, Tube};
+use crate::robot::Motion;
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
-use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::math::{Real, Vector};
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Memory of a query, used again by the next.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct MotionMemory {
-    tube: Tube,
-    sections: Sections,
+    present: Present,
     /// Pieces that wait for their turn in the present shape, the next one last.
     pieces: Vec<Waiting>,
     /// Those that the first shape begins with.
@@ -50,22 +51,6 @@ pub(crate) struct MotionMemory {
     /// Where the vertices go, if the mesh moves.
     mesh: MovingMesh,
     directions: OwnDirections,
-}
-
-impl Default for MotionMemory {
-    fn default() -> Self {
-        Self {
-            tube: Tube::empty(),
-            sections: Sections::default(),
-            pieces: Vec::new(),
-            begun: Vec::new(),
-            failed: Vec::new(),
-            failures: Vec::new(),
-            intervals: VecDeque::new(),
-            mesh: MovingMesh::default(),
-            directions: OwnDirections::default(),
-        }
-    }
 }
 
 /// An interval of time and what has to be looked at in it.
@@ -82,7 +67,7 @@ pub(super) struct Interval {
 
 impl Interval {
     pub(super) fn middle(&self) -> Real {
-        0.5 * self.times[0] + 0.5 * self.times[1]
+        middle(self.times)
     }
 
     /// The same, in which the pieces are known to come no nearer than this.
@@ -92,12 +77,13 @@ impl Interval {
 
     /// What is left of it before and after its middle shape, which decides for a while what becomes of the pieces.
     pub(super) fn halves(&self, still: Real, is_left: [bool; 2], pieces: &Range<usize>) -> [Option<Self>; 2] {
-        let t = self.middle();
-        let half = |times: [Real; 2], is_after: bool| {
-            let is_left = is_left[usize::from(is_after)] && !pieces.is_empty() && times[0] < times[1];
-            is_left.then(|| Self { times, pieces: Some(pieces.clone()), is_after, lower: self.lower })
+        let [before, after] = rests(self.times, still);
+        let rest = |times: Option<[Real; 2]>, is_after: bool| {
+            let is_left = is_left[usize::from(is_after)] && !pieces.is_empty();
+            let pieces = Some(pieces.clone());
+            times.filter(|_| is_left).map(|times| Self { times, pieces, is_after, lower: self.lower })
         };
-        [half([self.times[0], t - still], false), half([t + still, self.times[1]], true)]
+        [rest(before, false), rest(after, true)]
     }
 }
 
@@ -118,6 +104,15 @@ impl Turn<'_> {
     }
 }
 
+/// What the middle shape of an interval shows, and for how long.
+struct Judged {
+    seen: Seen<Found>,
+    /// For how long before and after it the pieces keep the margin that failed.
+    still: Real,
+    /// Which of the failed pieces these are.
+    failed: Range<usize>,
+}
+
 /// A motion on its way through a mesh.
 pub(crate) struct MotionSearch<'a, M> {
     pub search: MeshSearch<'a>,
@@ -131,45 +126,25 @@ pub(crate) struct MotionSearch<'a, M> {
     pub does_mesh_move: bool,
 }
 
-/// How many shapes are looked at after one that is above the margin by no more than the resolution, or that leaves an
-/// interval undecided. A contact that is deeper than that, or a proof, shows sooner as a rule; and what stays that near for
-/// long would be divided into as many intervals as the resolution has room for, a million and more.
-const PATIENCE: u64 = 256;
-
 impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
     pub(crate) fn clears(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
-        let mut undecided = None::<[Real; 2]>;
-        // An interval with a shape near the margin, and how many shapes there may be in all then.
-        let mut near = None::<([Real; 2], u64)>;
+        let mut progress = Progress::default();
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_front() {
-            if let Some((near, most)) = near
-                && self.shapes >= most
-            {
-                let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
-                let first = left.chain(undecided).fold(near, |first, times| {
-                    if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
-                });
+            let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
+            if let Some(first) = progress.gives_up(self.shapes, left) {
                 return Ok(MotionAnswer::undecided(first));
             }
-            let (seen, failed) = self.judge(&interval, wanted)?;
-            if seen.is_near && near.is_none() {
-                near = Some((interval.times, self.shapes + PATIENCE));
-            }
+            let Judged { seen, still, failed } = self.judge(&interval, wanted)?;
+            progress.take(interval.times, &seen, self.shapes);
             if let Some(found) = seen.contact {
                 // Of the shapes before it nothing is proven yet but what was asked first.
                 return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.middle(), &found)));
             }
-            if seen.is_undecided {
-                let is_first = undecided.is_none_or(|first| interval.times[0] < first[0]);
-                undecided = if is_first { Some(interval.times) } else { undecided };
-            }
-            self.memory
-                .intervals
-                .extend(interval.halves(seen.still, seen.is_left, &failed).into_iter().flatten());
+            self.memory.intervals.extend(interval.halves(still, seen.is_left, &failed).into_iter().flatten());
         }
-        Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
+        Ok(progress.undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
@@ -185,7 +160,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             let intervals = &mut self.memory.intervals;
             let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
             let Some(interval) = next else { break };
-            let (seen, failed) = self.judge(&interval, wanted)?;
+            let Judged { seen, still, failed } = self.judge(&interval, wanted)?;
             if seen.is_undecided && undecided.is_none() {
                 undecided = Some(interval.times);
                 most = self.shapes + PATIENCE;
@@ -206,9 +181,8 @@ impl<M: Motion> MotionSearch<'_, M> {
                 }
                 continue;
             }
-            self.memory
-                .intervals
-                .extend(interval.halves(seen.still, seen.is_left, &failed).into_iter().rev().flatten());
+            let halves = interval.halves(still, seen.is_left, &failed);
+            self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
             return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
@@ -231,8 +205,8 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Begins with each part of the motion's time.
     pub(super) fn begin(&mut self) {
-        let MotionMemory { sections, intervals, failed, .. } = &mut *self.memory;
-        sections.clear();
+        let MotionMemory { present, intervals, failed, .. } = &mut *self.memory;
+        present.forget();
         intervals.clear();
         failed.clear();
         let legs = self.motion.legs().max(1);
@@ -245,52 +219,34 @@ impl<M: Motion> MotionSearch<'_, M> {
         }));
     }
 
-    /// Fills the tube with the shape at `t`.
-    fn shape(&mut self, t: Real) -> Result<Pose, ProximityError> {
-        let MotionMemory { tube, sections, .. } = &mut *self.memory;
-        // Only what this shape states counts.
-        tube.forget_error();
-        let pose = self.motion.shape(t, tube)?;
-        sections.check(t, tube)?;
-        self.shapes += 1;
-        Ok(pose)
-    }
-
-    /// Whether the margin is kept in an interval, as far as its middle shape shows; and which of the failed pieces are those that
-    /// failed there.
-    fn judge(&mut self, interval: &Interval, wanted: Wanted) -> Result<(Seen, Range<usize>), ProximityError> {
-        self.examine(interval, |tube, turn, moving| {
+    /// Whether the margin is kept in an interval, as far as its middle shape shows.
+    fn judge(&mut self, interval: &Interval, wanted: Wanted) -> Result<Judged, ProximityError> {
+        let ((seen, still), failed) = self.examine(interval, |tube, turn, moving, pace| {
             // Below that, rounding decides.
             tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
             turn.begin(tube, wanted.margin.max(wanted.resolution));
-            let mut moment = Moment { moving, wanted, seen: Seen::default() };
+            let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
             refine(tube, turn.pieces, &mut moment)?;
-            let is_left = if moment.seen.contact.is_some() {
-                [true; 2]
-            } else {
-                moment.moving.leave_by_courses(tube, wanted.margin)
-            };
-            Ok(Seen { still: moment.moving.still, is_left, ..moment.seen })
-        })
+            let Moment { mut moving, pace, mut seen, .. } = moment;
+            let is_contact = seen.contact.is_some();
+            seen.is_left = if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin) };
+            Ok((seen, pace.still))
+        })?;
+        Ok(Judged { seen, still, failed })
     }
 
     /// Asks a question of the middle shape of an interval; and which of the failed pieces are those that failed there.
     pub(super) fn examine<T>(
         &mut self,
         interval: &Interval,
-        ask: impl FnOnce(&mut TubeInMesh, &mut Turn, Moving<M>) -> Result<T, ProximityError>,
+        ask: impl FnOnce(&mut TubeInMesh, &mut Turn, Moving<M>, Pace) -> Result<T, ProximityError>,
     ) -> Result<(T, Range<usize>), ProximityError> {
-        let t = interval.middle();
-        let pose = self.shape(t)?;
-        // The middle is rounded, and so is a motion's own time in a path: by less than 4 u, however short the interval.
-        let half = 0.5 * (interval.times[1] - interval.times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF)
-            + 4.0 * Real::UNIT_ROUNDOFF;
-        let (motion, times) = (self.motion, interval.times);
-        let opening = self.memory.tube.hold_faces(|section, end| {
-            // A speed that is not finite or NaN holds nothing; it is refused below.
-            half * motion.speed(section, [end as Real; 2], times).point
-        });
-        let MotionMemory { tube, pieces, begun, failed, failures, mesh, directions, .. } = &mut *self.memory;
+        let (t, motion, times) = (interval.middle(), self.motion, interval.times);
+        let MotionMemory { present, pieces, begun, failed, failures, mesh, directions, .. } =
+            &mut *self.memory;
+        let pose = present.turn_to(motion, t)?;
+        self.shapes += 1;
+        let pace = Pace::new(times, present.hold_faces(motion, times));
         let MeshSearch { level, hierarchy, .. } = self.search;
         let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
@@ -298,7 +254,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             (reach, mesh_speed) = (reach.max(mesh.reach()), mesh.speed());
             search.moved = Some(MeshAt { moving: mesh, share: t });
         }
-        let tube = PlacedTube::new(tube, &pose, reach)?.moving();
+        let tube = PlacedTube::new(&present.tube, &pose, reach)?.moving();
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
         let failing = interval.pieces.clone().map_or(&[][..], |failing| &failed[failing]);
@@ -311,20 +267,16 @@ impl<M: Motion> MotionSearch<'_, M> {
             motion,
             times,
             t,
-            half,
-            opening,
             mesh_speed,
             failed: &mut *failed,
             first,
             failures,
             last: &mut self.last,
-            speed: 0.0,
             beside: 0.0,
-            still: Real::INFINITY,
             directions,
         };
         let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
-        let seen = ask(&mut tube, &mut turn, moving)?;
+        let seen = ask(&mut tube, &mut turn, moving, pace)?;
         // What a contact left unasked.
         failed.append(pieces);
         Ok((seen, first..failed.len()))

@@ -1,19 +1,17 @@
 //! The pieces of a robot during an interval of time, whose shape is the one at its middle: how far they move from there.
-//!
-//! **How fast.** A body with two round ends holds the balls around all points of its piece of the centreline, and so
-//! whatever the discs become when they turn: V is the speed of the centreline. One with a flat end holds discs, whose
-//! points move by the radius times the turn more. The ball at a round end of a section counts with its front half alone:
-//! the other half is in the discs behind it, or beyond a face, where it is no part of the tube. That half turns like a
-//! disc.
 
 use super::failure::Failure;
+use super::fast::Fast;
+use super::moves::Moves;
 use super::own_directions::{Asked, OwnDirections};
+use super::pace::{Pace, half};
 use super::side::Side;
 use super::waiting::Waiting;
+use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pair::Nearest;
-use crate::pieces::{Near, Outer, Piece, PlacedTube, TubeInMesh};
-use crate::robot::{Motion, RobotError};
+use crate::pieces::{Divided, Near, Outer, Piece, Stretch, TubeInMesh};
+use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
 /// Of more pieces that failed in an interval, courses are not asked: that would take longer than another shape.
@@ -28,10 +26,6 @@ pub(crate) struct Moving<'a, M> {
     pub times: [Real; 2],
     /// When the shape is.
     pub t: Real,
-    /// Half of its length, or a little more.
-    pub half: Real,
-    /// By how much those flat ends that may become round move in that time.
-    pub opening: Real,
     /// How fast the mesh moves at most.
     pub mesh_speed: Real,
     /// Pieces about which the shape decides nothing for the whole interval.
@@ -42,60 +36,50 @@ pub(crate) struct Moving<'a, M> {
     pub failures: &'a mut Vec<Failure>,
     /// The triangle that was found last.
     pub last: &'a mut Option<u32>,
-    /// How fast the piece that is looked at and the mesh move towards each other at most.
-    pub speed: Real,
     /// By how much faster a point of its body may be than the centreline, the mesh's speed included.
     pub beside: Real,
-    /// For how long before and after the shape the pieces that failed are decided.
-    pub still: Real,
     pub directions: &'a mut OwnDirections,
 }
 
-impl<M: Motion> Moving<'_, M> {
-    /// Turns to a piece.
-    ///
-    /// # Errors
-    /// A stated speed is not finite and at least 0.
-    pub(crate) fn turn_to(
+impl<'m, M: Motion> Moves<TubeInMesh<'m>, Waiting> for Moving<'_, M> {
+    fn speed(
         &mut self,
         waiting: &Waiting,
         piece: &Piece,
         outer: &Outer,
-        tube: &PlacedTube,
-    ) -> Result<(), RobotError> {
-        let section = waiting.section as usize;
-        let stated = self.motion.speed(section, waiting.shares, self.times);
-        let radius = tube.radius(piece);
-        // A wire has no rim.
-        let turn = if outer.is_flat() && radius > 0.0 { stated.turn } else { 0.0 };
-        for value in [stated.point, turn] {
-            if !(0.0..Real::INFINITY).contains(&value) {
-                return Err(RobotError::BadSpeed { section, value });
-            }
-        }
-        self.beside = (radius * turn + self.mesh_speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
-        self.speed = (stated.point + self.beside) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
-        Ok(())
+        tube: &TubeInMesh<'m>,
+    ) -> Result<Real, ProximityError> {
+        let Waiting { section, shares, .. } = *waiting;
+        let stretch = Stretch { section, shares, outer, radius: tube.radius(piece) };
+        let Fast { centreline, rim } = Fast::of(self.motion, self.times, &stretch)?;
+        self.beside = (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF);
+        Ok((centreline + self.beside) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
     }
 
-    /// How much nearer to the mesh the piece may be than in the middle shape.
-    pub(crate) fn reach(&self) -> Real {
-        self.half * self.speed
+    fn start(&self) -> Option<u32> {
+        *self.last
     }
 
-    /// Takes note of a piece that is decided for a while before and after the middle shape: as long as it has not come nearer
-    /// by `room`.
-    pub(crate) fn fail(&mut self, near: &Near<TubeInMesh, Waiting>, room: Real) {
-        self.still = self.still.min(still(room, self.speed));
+    fn note(&mut self, near: &Near<TubeInMesh<'m>, Waiting>) {
+        *self.last = Some(near.nearest.triangle);
+    }
+
+    fn fail(&mut self, near: &Near<TubeInMesh<'m>, Waiting>, pace: &Pace) {
         self.failed.push(Waiting { is_left: [true; 2], ..*near.part });
         if self.failures.len() <= MOST_PIECES {
             let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
             let normal = (on_robot - on_mesh).normalize_or_zero();
-            let (body, reach) = (near.outer.body, self.reach());
-            self.failures.push(Failure { body, away, normal, reach, beside: self.beside * self.half });
+            let (body, beside) = (near.outer.body, self.beside * half(self.times));
+            self.failures.push(Failure { body, away, normal, reach: pace.reach(), beside });
         }
     }
 
+    fn fastest(&self, near: &Near<TubeInMesh<'m>, Waiting>, speed: Real) -> (usize, Real) {
+        (near.part.section as usize, speed)
+    }
+}
+
+impl<M: Motion> Moving<'_, M> {
     /// Which of the pieces that failed keep the margin before the middle shape all the same, or after it, by where they go. The
     /// nearest one is asked first, and none after one that does not: that side has to be looked at anyway. Whether any is left
     /// on either side.
@@ -131,11 +115,4 @@ impl<M: Motion> Moving<'_, M> {
         }
         is_left
     }
-}
-
-/// For how long before and after the middle what moves at a speed does not come nearer by more than `room`.
-fn still(room: Real, speed: Real) -> Real {
-    // The quotient is rounded, and so are times, which are at most 1.
-    let time = room.max(0.0) / speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF) - 8.0 * Real::UNIT_ROUNDOFF;
-    time.max(0.0)
 }

@@ -13,6 +13,7 @@ mod narrow;
 mod path;
 mod refused;
 mod speeds;
+mod two_robots;
 
 use continuum_demo::ctr::Robot;
 use continuum_demo::joint_motion::JointMotion;

@@ -1,0 +1,59 @@
+//! An answer about two motions.
+
+use super::checked_fields::checked_fields;
+use super::{Decision, RobotsInContact};
+use parry3d_f64::math::Real;
+
+/// Whether two robots that move keep a margin between them, and which shapes do not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[non_exhaustive]
+pub struct RobotMotionAnswer {
+    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shapes were found that are at most the margin apart,
+    /// but such that are so by the resolution more; or some in which the end of a link becomes flat or round, so close to the
+    /// other robot that this decides.
+    pub decision: Decision,
+    /// The first interval of time in which it is not known whether the margin is kept: it is kept before it. `[1, 1]` where it always
+    /// is; a contact may not be the first one, so that the interval begins with 0.
+    pub interval: [Real; 2],
+    /// Where the decision is `Contact`, two shapes that do not keep it, which stand at the end of the interval.
+    pub contact: Option<RobotsInContact>,
+}
+
+impl RobotMotionAnswer {
+    pub(crate) fn clear() -> Self {
+        Self { decision: Decision::Clear, interval: [1.0; 2], contact: None }
+    }
+
+    pub(crate) fn undecided(interval: [Real; 2]) -> Self {
+        Self { decision: Decision::Undecided, interval, contact: None }
+    }
+
+    pub(crate) fn contact(contact: RobotsInContact) -> Self {
+        Self { decision: Decision::Contact, interval: [0.0, contact.t], contact: Some(contact) }
+    }
+
+    /// Whether the margin is kept at every time. This is proven.
+    pub fn is_clear(&self) -> bool {
+        self.decision == Decision::Clear
+    }
+}
+
+checked_fields!(
+    "RobotMotionAnswer",
+    RobotMotionAnswer {
+        decision: Decision,
+        interval: [Real; 2],
+        contact: Option<RobotsInContact>,
+    },
+    |&Fields { decision, interval: [from, to], contact }| {
+        if !(0.0 <= from && from <= to && to <= 1.0) {
+            return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
+        }
+        if (decision == Decision::Contact) != contact.is_some() {
+            return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
+        }
+        Ok(())
+    }
+);

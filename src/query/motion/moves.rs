@@ -1,0 +1,33 @@
+//! What moves, whatever it moves beside.
+
+use super::pace::Pace;
+use crate::answer::ProximityError;
+use crate::pieces::{Divided, Near};
+use parry3d_f64::math::Real;
+
+/// Parts that move in an interval of time.
+pub(crate) trait Moves<D: Divided, P> {
+    /// How fast a part and what it is beside move towards each other at most.
+    ///
+    /// # Errors
+    /// A stated speed is not finite and at least 0.
+    fn speed(
+        &mut self,
+        part: &P,
+        piece: &D::Piece,
+        body: &D::Body,
+        divided: &D,
+    ) -> Result<Real, ProximityError>;
+
+    /// A triangle that is likely to be near, where there are triangles.
+    fn start(&self) -> Option<u32>;
+
+    /// Takes note of what was found.
+    fn note(&mut self, near: &Near<D, P>);
+
+    /// Takes note of a part about which the middle shape decides nothing for the whole interval.
+    fn fail(&mut self, near: &Near<D, P>, pace: &Pace);
+
+    /// The section that is the fastest of a part which approaches so fast, and how fast it is.
+    fn fastest(&self, near: &Near<D, P>, speed: Real) -> (usize, Real);
+}

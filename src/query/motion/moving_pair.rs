@@ -1,0 +1,58 @@
+//! Two robots during an interval of time, whose shapes are those at its middle.
+
+use super::fast::Fast;
+use super::moves::Moves;
+use super::pace::Pace;
+use crate::answer::ProximityError;
+use crate::distance::Scalar;
+use crate::pieces::{Near, Outer, PiecePair, TwoTubes};
+use crate::robot::{Motion, RobotError};
+use parry3d_f64::math::Real;
+
+/// The pieces of two robots that move, in an interval of time.
+pub(super) struct MovingPair<'a, A, B> {
+    pub motions: (&'a A, &'a B),
+    /// What the motions are called.
+    pub names: [&'static str; 2],
+    pub times: [Real; 2],
+    /// How fast the two pieces are that are looked at.
+    pub speeds: [Real; 2],
+    /// Whether there are pairs about which the middle shapes do not decide for the whole interval.
+    pub is_left: bool,
+}
+
+impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_, A, B> {
+    /// Each may come straight towards the other.
+    fn speed(
+        &mut self,
+        pair: &PiecePair,
+        _: &PiecePair,
+        _: &[Outer; 2],
+        tubes: &TwoTubes<'t>,
+    ) -> Result<Real, ProximityError> {
+        let [first, second] = tubes.stretches(pair);
+        let (a, b) = self.motions;
+        let fast = [Fast::of(a, self.times, &first), Fast::of(b, self.times, &second)];
+        for ((speed, fast), name) in self.speeds.iter_mut().zip(fast).zip(self.names) {
+            let named = |error: RobotError| ProximityError::Motion(error).of_robot(name);
+            let Fast { centreline, rim } = fast.map_err(named)?;
+            *speed = centreline + rim;
+        }
+        Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+    }
+
+    fn start(&self) -> Option<u32> {
+        None
+    }
+
+    fn note(&mut self, _: &Near<TwoTubes<'t>, PiecePair>) {}
+
+    fn fail(&mut self, _: &Near<TwoTubes<'t>, PiecePair>, _: &Pace) {
+        self.is_left = true;
+    }
+
+    fn fastest(&self, near: &Near<TwoTubes<'t>, PiecePair>, _: Real) -> (usize, Real) {
+        let k = usize::from(self.speeds[1] > self.speeds[0]);
+        (near.found.sections[k] as usize, self.speeds[k])
+    }
+}

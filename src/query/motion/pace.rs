@@ -1,0 +1,52 @@
+//! How fast pieces approach in an interval of time, and for how long its middle shape decides.
+
+use crate::distance::Scalar;
+use parry3d_f64::math::Real;
+
+/// What moves in an interval of time, seen from its middle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Half of its length, or a little more.
+    half: Real,
+    /// By how much those flat ends that may become round move in that time.
+    pub opening: Real,
+    /// How fast what is looked at approaches at most.
+    pub speed: Real,
+    /// For how long before and after the middle shape what failed is decided.
+    pub still: Real,
+}
+
+/// The middle of an interval.
+pub(super) fn middle(times: [Real; 2]) -> Real {
+    0.5 * times[0] + 0.5 * times[1]
+}
+
+/// Half of an interval. The middle is rounded, and so is a motion's own time in a path: by less than 4 u, however short the
+/// interval.
+pub(super) fn half(times: [Real; 2]) -> Real {
+    0.5 * (times[1] - times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) + 4.0 * Real::UNIT_ROUNDOFF
+}
+
+/// What is left of an interval before and after its middle, which decides for a while.
+pub(super) fn rests(times: [Real; 2], still: Real) -> [Option<[Real; 2]>; 2] {
+    let t = middle(times);
+    [[times[0], t - still], [t + still, times[1]]].map(|rest| (rest[0] < rest[1]).then_some(rest))
+}
+
+impl Pace {
+    pub(super) fn new(times: [Real; 2], opening: Real) -> Self {
+        Self { half: half(times), opening, speed: 0.0, still: Real::INFINITY }
+    }
+
+    /// How much nearer it may come than in the middle shape.
+    pub(super) fn reach(&self) -> Real {
+        self.half * self.speed
+    }
+
+    /// Takes note of something that is decided for as long as it has not come nearer by `room`.
+    pub(super) fn lasts(&mut self, room: Real) {
+        // The quotient is rounded, and so are times, which are at most 1.
+        let time = room.max(0.0) / self.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF) - 8.0 * Real::UNIT_ROUNDOFF;
+        self.still = self.still.min(time.max(0.0));
+    }
+}

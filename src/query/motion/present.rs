@@ -1,0 +1,47 @@
+//! The shape in which a robot is looked at.
+
+use super::pace::half;
+use crate::robot::{Motion, RobotError, Sections, Tube};
+use parry3d_f64::math::{Pose, Real};
+
+/// The present shape of a robot that moves, in memory that is used again.
+#[derive(Clone, Debug)]
+pub(super) struct Present {
+    pub tube: Tube,
+    sections: Sections,
+}
+
+impl Default for Present {
+    fn default() -> Self {
+        Self { tube: Tube::empty(), sections: Sections::default() }
+    }
+}
+
+impl Present {
+    /// Forgets the sections of an earlier motion.
+    pub(super) fn forget(&mut self) {
+        self.sections.clear();
+    }
+
+    /// Turns to the shape at `t`.
+    ///
+    /// # Errors
+    /// There is none, or its sections are others than before.
+    pub(super) fn turn_to<M: Motion>(&mut self, motion: &M, t: Real) -> Result<Pose, RobotError> {
+        // Only what this shape states counts.
+        self.tube.forget_error();
+        let pose = motion.shape(t, &mut self.tube)?;
+        self.sections.check(t, &self.tube)?;
+        Ok(pose)
+    }
+
+    /// Tells which flat ends stay flat between two times, of which this is the middle shape. By how much those move that may not
+    /// is returned.
+    pub(super) fn hold_faces<M: Motion>(&mut self, motion: &M, times: [Real; 2]) -> Real {
+        let half = half(times);
+        self.tube.hold_faces(|section, end| {
+            // A speed that is not finite or NaN holds nothing; it is refused where it is asked for.
+            half * motion.speed(section, [end as Real; 2], times).point
+        })
+    }
+}

@@ -1,0 +1,136 @@
+//! Whether two robots that move at the same time keep a margin between them.
+//!
+//! An interval of time is judged by the two shapes at its middle, as for one motion (`motion_search`): a point of a piece that moves at V or
+//! slower is within tau V of where it is then, tau being half of the interval, so two pieces come nearer by no more than tau times the sum of
+//! their speeds. Pairs for which that is too much are looked at again in what is left of the interval on either side. These are few,
+//! and which pieces of one robot are near which of the other is seen at once from their bodies: so each shape begins with all pairs that may
+//! come as near as the margin in its interval, instead of a list that the one before left.
+
+use super::moment::{Moment, Seen, Wanted};
+use super::moving_pair::MovingPair;
+use super::pace::{Pace, half, middle, rests};
+use super::present::Present;
+use super::progress::Progress;
+use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
+use crate::distance::Scalar;
+use crate::pieces::{Beginning, Divided, FoundBetween, PiecePair, PlacedTube, TwoTubes, refine};
+use crate::robot::{Motion, RobotError};
+use parry3d_f64::math::Real;
+use std::collections::VecDeque;
+
+/// Memory of a query, used again by the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MotionsMemory {
+    present: [Present; 2],
+    beginning: Beginning,
+    pairs: Vec<PiecePair>,
+    intervals: VecDeque<[Real; 2]>,
+}
+
+/// Two motions beside one another.
+pub(crate) struct TwoMotions<'a, A, B> {
+    pub memory: &'a mut MotionsMemory,
+    pub motions: (&'a A, &'a B),
+    /// What the motions are called.
+    pub names: [&'static str; 2],
+    /// At how many times the shapes were looked at.
+    pub shapes: u64,
+}
+
+impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
+    /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
+    pub(crate) fn clear(&mut self, wanted: Wanted) -> Result<RobotMotionAnswer, ProximityError> {
+        let mut progress = Progress::default();
+        self.begin();
+        while let Some(times) = self.memory.intervals.pop_front() {
+            let left = self.memory.intervals.iter().copied().chain([times]);
+            if let Some(first) = progress.gives_up(self.shapes, left) {
+                return Ok(RobotMotionAnswer::undecided(first));
+            }
+            let (seen, still) = self.judge(times, wanted)?;
+            progress.take(times, &seen, self.shapes);
+            if let Some(FoundBetween { upper, sections, arcs, points: [on_first, on_second] }) = seen.contact
+            {
+                let t = middle(times);
+                let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
+                return Ok(RobotMotionAnswer::contact(contact));
+            }
+            if seen.is_left[0] {
+                self.memory.intervals.extend(rests(times, still).into_iter().flatten());
+            }
+        }
+        Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
+    }
+
+    /// Begins with each part of either motion's time.
+    fn begin(&mut self) {
+        let MotionsMemory { present, intervals, .. } = &mut *self.memory;
+        for present in present {
+            present.forget();
+        }
+        let legs = [self.motions.0.legs(), self.motions.1.legs()].map(|legs| legs.max(1));
+        let ends = legs.into_iter().flat_map(|legs| (0..=legs).map(move |leg| leg as Real / legs as Real));
+        let mut ends: Vec<Real> = ends.collect();
+        ends.sort_unstable_by(Real::total_cmp);
+        ends.dedup();
+        intervals.clear();
+        intervals.extend(ends.windows(2).map(|ends| [ends[0], ends[1]]));
+    }
+
+    /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how long before and after these all
+    /// pairs keep it.
+    fn judge(
+        &mut self,
+        times: [Real; 2],
+        wanted: Wanted,
+    ) -> Result<(Seen<FoundBetween>, Real), ProximityError> {
+        let (motions, names) = (self.motions, self.names);
+        let MotionsMemory { present: [first, second], beginning, pairs, .. } = &mut *self.memory;
+        let [first, second] = [shape(motions.0, first, times), shape(motions.1, second, times)];
+        self.shapes += 1;
+        let first = first.map_err(|error| error.of_robot(names[0]))?;
+        let second = second.map_err(|error| error.of_robot(names[1]))?;
+        let mut tubes = TwoTubes::new([first.tube, second.tube]);
+        // Below that, rounding decides.
+        tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
+        let reach = half(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let Wanted { margin, resolution } = wanted;
+        tubes.begin(margin.max(resolution), margin + reach + tubes.slack(), beginning, pairs)?;
+        let pace = Pace::new(times, first.opening.max(second.opening));
+        let moving = MovingPair { motions, names, times, speeds: [0.0; 2], is_left: false };
+        let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
+        refine(&mut tubes, pairs, &mut moment)?;
+        let Moment { moving, pace, mut seen, .. } = moment;
+        seen.is_left = [moving.is_left; 2];
+        Ok((seen, pace.still))
+    }
+}
+
+/// A robot at the middle of an interval.
+struct Middle<'a> {
+    tube: PlacedTube<'a>,
+    opening: Real,
+    /// How fast any of its points moves at most.
+    speed: Real,
+}
+
+fn shape<'p, M: Motion>(
+    motion: &M,
+    present: &'p mut Present,
+    times: [Real; 2],
+) -> Result<Middle<'p>, ProximityError> {
+    let pose = present.turn_to(motion, middle(times))?;
+    let opening = present.hold_faces(motion, times);
+    let tube = PlacedTube::new(&present.tube, &pose, 0.0)?.moving();
+    let mut most: Real = 0.0;
+    for (number, section) in tube.sections().iter().enumerate() {
+        let stated = motion.speed(number, [0.0, 1.0], times);
+        let speed = stated.point + if section.radius > 0.0 { section.radius * stated.turn } else { 0.0 };
+        // Written so that NaN is an error.
+        if !(0.0..Real::INFINITY).contains(&speed) {
+            return Err(RobotError::BadSpeed { section: number, value: speed }.into());
+        }
+        most = most.max(speed);
+    }
+    Ok(Middle { tube, opening, speed: most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) })
+}
