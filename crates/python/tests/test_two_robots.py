@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import ContinuumError, RobotPair, between, clears_between, self_clears, self_minimum
+from parry_continuum import (
+    ContinuumError,
+    Decision,
+    LinearMotion,
+    MotionPath,
+    RigidMotion,
+    RobotPair,
+    between,
+    clears_between,
+    self_clears,
+    self_minimum,
+)
 from shapes import Array, poses, robots
 
 RADIUS = 0.2
@@ -157,6 +168,40 @@ def test_every_place() -> None:
         assert bool(places) == (distance.min() <= margin)
         several += len(places) > 1
     assert several > 0 and 0 < len(found.distance)
+
+
+def test_both_move() -> None:
+    random = np.random.default_rng(8)
+    ends = random.uniform(-3, 3, (2, 2, 40, 4, 3))
+    ends[1] += [2.5, 0, 0]
+    first, second = (LinearMotion(*way, 0.3) for way in ends)
+    pair, steps = RobotPair(), np.linspace(0, 1, 201)
+    found = pair.clears_motion(first, second, 0.2, 1e-3)
+    assert set(found.decision) == {Decision.CLEAR, Decision.CONTACT}
+    for place in range(40):
+        alone = pair.clears_motion(*(LinearMotion(*way[:, place], 0.3) for way in ends), 0.2, 1e-3)
+        assert alone.decision is Decision(found.decision[place])
+        for one, of_all in zip(alone[1:], found[1:]):
+            assert_array_equal(one, of_all[place])
+        a, b = (start + steps[:, None, None] * (end - start) for start, end in ends[:, :, place])
+        distances = between(a, 0.3, b, 0.3).distance
+        if alone.decision is Decision.CLEAR:
+            assert distances.min() > 0.2
+        else:
+            a, b = (start + alone.t * (end - start) for start, end in ends[:, :, place])
+            assert between(a, 0.3, b, 0.3).distance <= alone.upper <= 0.2
+            assert np.linalg.norm(alone.on_first - alone.on_second) <= alone.upper + 1e-12
+            # Steps come as near, but for what moves between two of them.
+            most = sum(np.abs(end - start).max() for start, end in ends[:, :, place]) * 3**0.5
+            assert distances.min() <= 0.2 + most / 400
+    # One beside all of a batch, and a path of them.
+    one = LinearMotion(*ends[0][:, 0], 0.3)
+    beside = pair.clears_motion(one, second, 0.2, 1e-3)
+    assert beside.decision.shape == (40,) and beside.decision[0] == found.decision[0]
+    there_and_back = MotionPath([one, LinearMotion(*ends[0][::-1, 0], 0.3)])
+    still = RigidMotion(ends[1][0, 0], 0.3, np.eye(4), np.eye(4))
+    answers = {pair.clears_motion(moving, still, 0.2, 1e-3).decision for moving in (one, there_and_back)}
+    assert len(answers) == 1
 
 
 @pytest.mark.parametrize(

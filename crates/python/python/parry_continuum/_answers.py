@@ -263,6 +263,25 @@ class RobotContacts(NamedTuple):
     """(B + 1,): the places of pair k are ``offsets[k]:offsets[k + 1]``."""
 
 
+class RobotMotionAnswer(NamedTuple):
+    """Whether two robots that move keep a margin between them, and which shapes do not."""
+
+    decision: DecisionOrDecisions
+    """Whether the margin is kept at every time from 0 to 1."""
+    interval: Floats
+    """(2,): the margin is kept before the first time, and may not be kept until the second."""
+    t: FloatOrFloats
+    """Where the decision is contact: the time of two shapes that do not keep the margin; else NaN."""
+    upper: FloatOrFloats
+    """The clearance of those shapes is at most this."""
+    on_first: Floats
+    """A point of the first robot's shape, (3,)."""
+    on_second: Floats
+    """A point of the second robot's shape, (3,)."""
+    arc_lengths: Floats
+    """How far along each centreline from the base, (2,)."""
+
+
 class PerStructure(NamedTuple):
     """Where robots are closest to each of M structures of a scene, in the scene's frame."""
 

@@ -23,6 +23,7 @@ from ._answers import (
     PerStructure,
     RobotClearance,
     RobotContacts,
+    RobotMotionAnswer,
     RobotProximity,
     SceneContacts,
     SideOrSides,
@@ -378,6 +379,7 @@ class RobotPair:
         pose_a: ArrayLike | None = None,
         pose_b: ArrayLike | None = None,
     ) -> DecisionOrDecisions: ...
+    def clears_motion(self, a: Motion, b: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
     def self_minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
     def self_clears(
         self, points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted"

@@ -2,6 +2,7 @@
 
 mod bending;
 mod linear;
+mod motion_pair;
 mod motion_path;
 mod moving;
 mod moving_base;
@@ -10,6 +11,7 @@ mod way;
 
 pub(crate) use bending::BendingMotion;
 pub(crate) use linear::{LinearMotion, Maker, maker};
+pub(crate) use motion_pair::MotionPair;
 pub(crate) use motion_path::MotionPath;
 pub(crate) use moving::Moving;
 pub(crate) use moving_base::MovingBase;

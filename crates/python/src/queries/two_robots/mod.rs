@@ -3,6 +3,7 @@
 mod answers;
 mod curves;
 mod functions;
+mod motions;
 mod robot_pair;
 
 pub(crate) use answers::segment_of;
