@@ -162,7 +162,7 @@ pub enum ProximityError {
     /// A motion has no shape at some time, or breaks a promise.
     #[error(transparent)]
     Motion(#[from] RobotError),
-    /// The same of one of two motions.
+    /// One of two motions has no shape at some time, or breaks a promise.
     #[error("`{parameter}`: {fault}")]
     OneMotion {
         /// The motion, as the function that was called names it.
