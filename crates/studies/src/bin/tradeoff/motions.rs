@@ -7,9 +7,9 @@ use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::steer::Random;
 use continuum_demo::ventricle;
 use continuum_studies::machine;
-use parry_continuum::parry::math::{Pose, Real};
+use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Decision};
+use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Course, Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::fmt::Write;
@@ -31,10 +31,16 @@ const TURNS: usize = 3;
 /// Random edges of a length that are tried for each that is wanted: both ends have to keep the margin.
 const TRIES: usize = 300;
 
+/// How far the wall moves where it moves, mm, and how long the wave is in which it does, as a factor of 2 pi mm.
+const WALL_MOVES: Real = 0.5;
+const WAVE: Real = 10.0;
+
 /// A motion that counts its shapes.
 struct Counted<'a> {
     motion: &'a JointMotion,
     shapes: Cell<u64>,
+    /// Whether it says where it goes, and not only how fast.
+    has_courses: Cell<bool>,
 }
 
 impl Motion for Counted<'_> {
@@ -48,7 +54,7 @@ impl Motion for Counted<'_> {
     }
 
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
-        self.motion.course(section, shares, times)
+        if self.has_courses.get() { self.motion.course(section, shares, times) } else { None }
     }
 }
 
@@ -62,13 +68,33 @@ enum Verdict {
 
 type Way<'a> = &'a dyn Fn(&mut BvhSearch, &Counted, Real) -> Result<Verdict, String>;
 
-/// By a bound for each piece.
-fn by_pieces(search: &mut BvhSearch, motion: &Counted, margin: Real) -> Result<Verdict, String> {
-    Ok(match search.clears_motion(motion, margin, RESOLUTION).map_err(text)?.decision {
+fn verdict(decision: Decision) -> Verdict {
+    match decision {
         Decision::Clear => Verdict::Clear,
         Decision::Contact => Verdict::Contact,
         Decision::Undecided => Verdict::Undecided,
-    })
+    }
+}
+
+/// By bounds for each piece, and by where it goes.
+fn by_pieces(search: &mut BvhSearch, motion: &Counted, margin: Real) -> Result<Verdict, String> {
+    Ok(verdict(search.clears_motion(motion, margin, RESOLUTION).map_err(text)?.decision))
+}
+
+/// By bounds on the speed of each piece alone.
+fn by_speeds(search: &mut BvhSearch, motion: &Counted, margin: Real) -> Result<Verdict, String> {
+    motion.has_courses.set(false);
+    by_pieces(search, motion, margin)
+}
+
+/// While the wall moves too.
+fn by_moving_walls(
+    search: &mut BvhSearch,
+    motion: &Counted,
+    to: &[Vector],
+    margin: Real,
+) -> Result<Verdict, String> {
+    Ok(verdict(search.clears_motion_while(to, motion, margin, RESOLUTION).map_err(text)?.decision))
 }
 
 /// By one bound for the whole robot: its clearance in the middle of an interval tells for how long before and after
@@ -164,7 +190,7 @@ fn measure(
         for ((way, search), measured) in ways.iter().zip(&mut *searches).zip(&mut all) {
             let (mut seconds, mut seen) = (Vec::with_capacity(TURNS), None);
             for _ in 0..TURNS {
-                let counted = Counted { motion, shapes: Cell::new(0) };
+                let counted = Counted { motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
                 search.forget();
                 let begin = Instant::now();
                 let verdict = way(search, &counted, *margin)?;
@@ -233,7 +259,15 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.5, margin);
     let fine =
         |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.1, margin);
-    let ways: [Way; 4] = [&by_pieces, &one_bound, &coarse, &fine];
+    let from = search.vertices().to_vec();
+    let wave = |point: &Vector| point + Vector::Z * (WALL_MOVES * (point.x / WAVE).sin());
+    let to: Vec<_> = from.iter().map(wave).collect();
+    let staying = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
+        by_moving_walls(search, motion, &from, margin)
+    };
+    let moving =
+        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_moving_walls(search, motion, &to, margin);
+    let ways: [Way; 7] = [&by_pieces, &by_speeds, &one_bound, &coarse, &fine, &staying, &moving];
     let mut searches: Vec<_> = ways.iter().map(|_| search.clone()).collect();
 
     let mut page = format!(
@@ -241,17 +275,24 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
          Measured on {}, in the mesh of {} triangles. Random edges in joint space, {count} of each length, whose ends keep \
          the margin of {} or {} mm, half of the edges each: shapes of the robot that were looked at, and time with all that it takes to \
          make them. *Proof*: `clears_motion` with a resolution of {RESOLUTION} mm, which bounds the speed of each \
-         piece. *One bound*: the same halving of time, but with the speed of the fastest point for all of the robot, and its \
+         piece and asks where it goes. *Speeds*: the same of a motion that states no courses. *One bound*: the same halving of time, but with the speed of the fastest point for all of the robot, and its \
          clearance (`clearance`). *Steps*: shapes between which the tip moves so far, by `tube_clears`, the middle first; \
          they prove nothing, and *missed* are edges that they accept and in which a contact was found. All on one thread, \
          without the last answers, in means over the edges (the median of {TURNS} turns each).\n\n\
-         | tip moves | proof: shapes, median | mean | time | one bound: shapes | time | 0.5 mm: shapes | time | missed | \
+         | tip moves | proof: shapes, median | mean | time | speeds: shapes | time | one bound: shapes | time | 0.5 mm: shapes | time | missed | \
          0.1 mm: shapes | time | missed | contacts | undecided |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         machine::description(),
         mesh.num_triangles(),
         MARGINS[0],
         MARGINS[1],
+    );
+    let mut walls = format!(
+        "\nThe same edges while the wall moves too, in the same run: `clears_motion` with the wall at rest; `clears_motion_while` \
+         with a wall that stays where it is, which shows what the boxes for the end of the time cost; and with one of which each \
+         vertex moves along z, by {WALL_MOVES} mm at most, in a wave.\n\n\
+         | tip moves | at rest: shapes | time | contacts | stays: shapes | time | contacts | moves: shapes | time | contacts | undecided |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n"
     );
     let (mut random, mut undecided) = (Random(1), Share::default());
     for length in LENGTHS {
@@ -260,7 +301,9 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
             return Err("no edge keeps the margin; move the robot with --base and --axis".into());
         }
         let all = measure(&edges, &ways, &mut searches)?;
-        let [proof, one, coarse, fine] = &all[..] else { return Err("a way is missing".into()) };
+        let [proof, speeds, one, coarse, fine, staying, moving] = &all[..] else {
+            return Err("a way is missing".into());
+        };
         let missed = |steps: &Measured| {
             let pairs = steps.verdicts.iter().zip(&proof.verdicts);
             pairs.filter(|pair| *pair == (&Verdict::Clear, &Verdict::Contact)).count()
@@ -270,10 +313,12 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         // Writing to a string cannot fail.
         let _ = writeln!(
             page,
-            "| {length} mm | {} | {:.1} | {:.0} us | {:.1} | {:.0} us | {:.1} | {:.0} us | {} | {:.1} | {:.0} us | {} | {} | {} |",
+            "| {length} mm | {} | {:.1} | {:.0} us | {:.1} | {:.0} us | {:.1} | {:.0} us | {:.1} | {:.0} us | {} | {:.1} | {:.0} us | {} | {} | {} |",
             quantile(proof.shapes.clone(), 0.5).unwrap_or(f64::NAN),
             proof.shapes(),
             proof.microseconds(),
+            speeds.shapes(),
+            speeds.microseconds(),
             one.shapes(),
             one.microseconds(),
             coarse.shapes(),
@@ -285,13 +330,20 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
             proof.count(Verdict::Contact),
             proof.count(Verdict::Undecided),
         );
+        let _ = write!(walls, "| {length} mm ");
+        for way in [proof, staying, moving] {
+            let contacts = way.count(Verdict::Contact);
+            let _ = write!(walls, "| {:.1} | {:.0} us | {contacts} ", way.shapes(), way.microseconds());
+        }
+        let _ = writeln!(walls, "| {} |", moving.count(Verdict::Undecided));
     }
     let _ = writeln!(page, "\nUndecided in all: {undecided}.");
+    page.push_str(&walls);
     if *base == ventricle::entry() {
         let goal = ventricle::goal();
         let (mut shapes, mut is_clear) = (0, true);
         for motion in insertion(robot, &goal)? {
-            let counted = Counted { motion: &motion, shapes: Cell::new(0) };
+            let counted = Counted { motion: &motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
             is_clear &= by_pieces(&mut search, &counted, MARGINS[1])? == Verdict::Clear;
             shapes += counted.shapes.get();
         }
