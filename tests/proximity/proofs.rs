@@ -2,6 +2,7 @@
 //! tampered with.
 
 use super::contacts::{small_mesh, small_robot};
+use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -445,6 +446,56 @@ fn in_the_ventricle(triangles: usize) -> Option<[(usize, Duration); 2]> {
         (bytes, said.time)
     };
     Some([of(&shape, &said[0], shape_proven), of(&edge, &said[1], edge_proven)])
+}
+
+/// The largest proof of edges of a planner whose tip goes so far, and the longest time that checking one takes.
+fn edges_in_the_ventricle(triangles: usize, distances: &[f64]) -> Option<(usize, Duration)> {
+    let (vertices, triangles) = ventricle::mesh(triangles);
+    let mut search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+    let (robot, mut random) = (ctr::three_tubes(), Random::new(77));
+    let (wall, mut checks, mut all) =
+        (obj(&search), Checks::new(&format!("edges-{}", triangles.len())), vec![]);
+    for &distance in distances {
+        // The first edge that leaves the wall some room.
+        let (motion, least) = std::iter::repeat_with(|| {
+            let motion = JointMotion::random(&robot, ventricle::entry(), distance, || random.unit());
+            let least = search.clearance_of_motion(&motion, 0.01).unwrap().lower;
+            (motion, least)
+        })
+        .take(10_000)
+        .find(|(_, least)| *least > 0.5)
+        .unwrap();
+        let begin = Instant::now();
+        let proof = search.prove_motion(&motion, 0.5 * least, 1e-2).unwrap().unwrap();
+        all.push((distance, least, proof.shapes(), proof.planes(), proof.to_string().len(), begin.elapsed()));
+        checks.add(&wall, &proof.to_string());
+    }
+    let said = checks.run()?;
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+    for ((distance, least, shapes, planes, bytes, proven), said) in all.iter().zip(&said) {
+        println!(
+            "{} triangles, the tip moves {distance} mm, {least:.2} away: {shapes} shapes, {planes} planes, {bytes} bytes, \
+             proven in {proven:?}, checked in {:?}",
+            triangles.len(),
+            said.time
+        );
+    }
+    Some((all.iter().map(|one| one.4).max()?, said.iter().map(|said| said.time).max()?))
+}
+
+#[test]
+fn edges_of_a_planner_are_proven_in_little_space() {
+    let Some((bytes, _)) = edges_in_the_ventricle(ventricle::DEFAULT_TRIANGLES, &[1.0, 5.0, 20.0]) else {
+        return;
+    };
+    assert!(bytes < 1_000_000, "{bytes}");
+}
+
+#[test]
+#[ignore = "a minute: run it by name"]
+fn edges_in_a_fine_ventricle_are_checked_in_time() {
+    let Some((bytes, time)) = edges_in_the_ventricle(82_000, &[1.0, 5.0, 20.0]) else { return };
+    assert!(bytes < 1_000_000 && time < Duration::from_secs(60), "{bytes} {time:?}");
 }
 
 #[test]
