@@ -23,7 +23,9 @@ mod _native {
     #[pymodule_export]
     use super::motions::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion};
     #[pymodule_export]
-    use super::queries::two_robots::{RobotPair, between, clears_between, self_clears, self_minimum};
+    use super::queries::two_robots::{
+        RobotPair, between, clears_between, self_clears, self_minimum, tube_self_clears,
+    };
     #[pymodule_export]
     use super::robots::{simplify, stations};
     #[pymodule_export]

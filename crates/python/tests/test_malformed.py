@@ -115,6 +115,7 @@ def test_five_thousand_inputs() -> None:
             lambda: mesh.certify(answer=mesh.per_link(robot, 0.1), **given),
             lambda: mesh.clearance(tolerance=max(number, 1e-3), **tube),
             lambda: mesh.tube_clears(margin=number, resolution=0.1, **tube),
+            lambda: pair.tube_self_clears(given["points"], given["radii"], number, 0.1, turn=number),
             lambda: mesh.clears_motion(margin=number, resolution=0.1, **motion),
             lambda: mesh.time_of_contact(margin=number, resolution=0.1, **motion),
             lambda: mesh.clears_motion_while(spoilt(random, mesh.vertices), margin=number, resolution=0.1, **motion),

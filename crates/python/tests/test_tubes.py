@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Decision, Mesh, RobotPair
+from parry_continuum import ContinuumError, Decision, Mesh, RobotPair, tube_self_clears
 from shapes import Array
 
 FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
@@ -113,6 +113,38 @@ def test_two_tubes() -> None:
             pair.clearance(*given, 0.1, **stated)
     with pytest.raises(ContinuumError, match="`tolerance`"):
         pair.clearance(*given, np.nan)
+
+
+def test_a_coil_keeps_a_margin_to_itself() -> None:
+    """Its turns are as far apart as the chords of a helix say, which are least a little before a whole turn."""
+    rise, radius = 4 / (2 * np.pi), 10.0
+    chords = np.linspace(6, 2 * np.pi, 100001)
+    true = np.sqrt(2 * radius**2 * (1 - np.cos(chords)) + (rise * chords) ** 2).min() - 2 * RADIUS
+    angle = np.linspace(0, 4 * np.pi, 401)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), rise * angle], axis=1)
+    tangents = np.stack([-radius * np.sin(angle), radius * np.cos(angle), rise + 0 * angle], axis=1)
+    noise = np.random.default_rng(59).normal(size=points.shape)
+    noise *= 0.01 / np.linalg.norm(noise, axis=1)[:, None]
+    pair = RobotPair()
+    for given, ways, off in [
+        (points, {"tangents": tangents[[0, -1]]}, 0.02),
+        (points, {"tangents": tangents}, 0.02),
+        (points + noise, {"deviation": 0.02, "turn": 0.05}, 0.2),
+    ]:
+        for margin, decision in [(0.0, Decision.CLEAR), (true - off, Decision.CLEAR), (true + off, Decision.CONTACT)]:
+            for ask in (tube_self_clears, pair.tube_self_clears):
+                assert ask(given, RADIUS, margin, 0.01, **ways) is decision
+    stretched = np.stack([points, points * [1, 1, 2], points * [1, 1, 0.2]])
+    decided = tube_self_clears(stretched, [RADIUS] * 400, true + 0.1, 0.05)
+    assert decided.dtype == np.int8 and decided.tolist() == [Decision.CONTACT, Decision.CLEAR, Decision.CONTACT]
+    for kind, arguments in [
+        ("negative", (points, RADIUS, -1.0, 0.01)),
+        ("negative", (points, RADIUS, 1.0, np.nan)),
+        ("bends_within_radius", (points, 11.0, 1.0, 0.01)),
+    ]:
+        with pytest.raises(ContinuumError) as caught:
+            tube_self_clears(*arguments)
+        assert caught.value.kind == kind
 
 
 def test_what_was_asked_before_does_not_count() -> None:

@@ -57,6 +57,7 @@ from ._native import (
     self_minimum,
     simplify,
     stations,
+    tube_self_clears,
 )
 
 __all__ = [
@@ -96,4 +97,5 @@ __all__ = [
     "self_minimum",
     "simplify",
     "stations",
+    "tube_self_clears",
 ]

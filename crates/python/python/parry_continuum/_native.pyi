@@ -48,6 +48,7 @@ __all__ = [
     "self_minimum",
     "simplify",
     "stations",
+    "tube_self_clears",
 ]
 
 __version__: str
@@ -384,6 +385,17 @@ class RobotPair:
     def self_clears(
         self, points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted"
     ) -> BoolOrBools: ...
+    def tube_self_clears(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        margin: float,
+        resolution: float,
+        *,
+        tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
+        turn: float | None = None,
+    ) -> DecisionOrDecisions: ...
 
 def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
@@ -411,3 +423,13 @@ def clears_between(
 ) -> BoolOrBools: ...
 def self_minimum(points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
 def self_clears(points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted") -> BoolOrBools: ...
+def tube_self_clears(
+    points: ArrayLike,
+    radii: ArrayLike,
+    margin: float,
+    resolution: float,
+    *,
+    tangents: ArrayLike | None = None,
+    deviation: float = 0.0,
+    turn: float | None = None,
+) -> DecisionOrDecisions: ...

@@ -7,6 +7,7 @@ mod motions;
 mod robot_pair;
 
 pub(crate) use answers::segment_of;
+pub(crate) use curves::tube_self_clears;
 pub(crate) use functions::{between, clears_between, self_clears, self_minimum};
 pub(crate) use robot_pair::RobotPair;
 
