@@ -19,7 +19,7 @@ use super::Tube;
 use super::curve::Curve;
 use super::frames::ONE_DIRECTION;
 use crate::distance::Scalar;
-use crate::robot::scale::direction;
+use crate::robot::scale::{direction, length};
 use parry3d_f64::math::{Real, Vector};
 
 /// What a segment between frames may turn by beyond what it shows, where directions were taken for one: 4 times as much as these
@@ -131,7 +131,7 @@ impl Tube {
                     off = off.max(bound.off + self.merged);
                     let arcs = [samples.arcs[start], samples.arcs[to]];
                     let chord = samples.points[to] - samples.points[start];
-                    let doubt = if off > 0.0 { 4.0 * off / chord.length() } else { 0.0 };
+                    let doubt = if off > 0.0 { 4.0 * off / length(chord) } else { 0.0 };
                     let is_long = doubt <= LEAST_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MOST_TURN;
                     if is_long || tick + 1 == section.last {
                         if doubt <= 1.0 {
