@@ -42,6 +42,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
         "parry's Capsule",
         "parry's Cylinder",
         "7 spheres a link",
+        "tube",
     ] {
         // The page shows one tolerance, the file all.
         let cell = if model.contains(',') { format!("\"{model}\"") } else { model.to_owned() };
@@ -51,7 +52,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
     }
     for (head, file, shown, all) in [
         ("| triangles | shapes | tolerance |", "samples", 8, 16),
-        ("| model | within | margin |", "decisions", 7, 30),
+        ("| model | within | margin |", "decisions", 8, 36),
     ] {
         let file = read(&format!("trade/docs/tradeoff_{file}.csv"));
         assert_eq!((table(&page, head).len(), file.lines().count()), (shown, 1 + all), "{file}");
@@ -77,9 +78,9 @@ fn the_trade_is_measured_drawn_and_quoted() {
     assert!(before.len() == 3 && before[0] == after[0] && before[2] == after[2] && before[1] != after[1]);
     assert!(after[1].contains(" 2 of each length"), "{again}");
     refuse(TRADEOFF, &["--only", "motions", "--out", "trade/nowhere"], "has no such chapter");
-    // Discs and rings for the search of four models at seven tolerances, and in the legend.
+    // Discs and rings for the search of four models and of the tube at seven tolerances, and in the legend.
     let picture = read("trade/docs/tradeoff.svg");
-    assert_eq!(picture.matches("<circle").count(), 2 * 4 * 7 + 2);
+    assert_eq!(picture.matches("<circle").count(), 2 * 5 * 7 + 2);
     // With a GPU the legend has a frame for one precision, and another mark for the other.
     let frame = r##"width="8" height="8" opacity="1" fill="none" stroke="#000000""##;
     assert!(picture.matches(frame).count() <= 1, "{picture}");
