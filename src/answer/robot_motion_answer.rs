@@ -11,7 +11,7 @@ use parry3d_f64::math::Real;
 #[non_exhaustive]
 pub struct RobotMotionAnswer {
     /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shapes were found that are at most the margin apart,
-    /// but such that are so by the resolution more; or some in which the end of a link becomes flat or round, so close to the
+    /// but some that are farther apart than that by no more than the resolution and stated errors; or some in which the end of a link becomes flat or round, so close to the
     /// other robot that this decides.
     pub decision: Decision,
     /// The first interval of time in which it is not known whether the margin is kept: it is kept before it. `[1, 1]` where it always

@@ -195,10 +195,11 @@ impl RobotPair {
     ///
     /// - `Clear` is proven from the speeds that the motions state, for every instant and not only for some.
     /// - `Contact` names a time, and two points of the shapes at that time that are at most the margin apart.
-    /// - `Undecided`: the robots come within `resolution` of the margin, or a tube's samples leave open whether they keep it.
+    /// - `Undecided`: the robots come within `resolution` of the margin and of what they state as their own errors, or an end turns
+    ///   from flat to round there.
     ///
-    /// The work is one query about two tubes for each time that the proof needs, which are the fewer the slower the robots are beside
-    /// the room between them.
+    /// The work is one query about two tubes for each time that the proof needs, which are the fewer, the slower the robots are
+    /// compared with the room between them. The speeds are trusted: see [`verify_motion`](crate::verify_motion).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, RobotPair}};
@@ -218,7 +219,8 @@ impl RobotPair {
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its sections change, or a stated speed
-    /// is not finite; a robot is out of range; or the resolution is finer than rounding, or than so fast a motion can be divided.
+    /// is not finite; a robot is out of range; or the resolution is finer than rounding, than the samples of a shape allow, or
+    /// than so fast a motion can be divided.
     pub fn clears_motion(
         &mut self,
         a: &impl Motion,

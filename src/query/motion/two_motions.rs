@@ -125,12 +125,16 @@ fn shape<'p, M: Motion>(
     let mut most: Real = 0.0;
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
-        let speed = stated.point + if section.radius > 0.0 { section.radius * stated.turn } else { 0.0 };
         // Written so that NaN is an error.
-        if !(0.0..Real::INFINITY).contains(&speed) {
-            return Err(RobotError::BadSpeed { section: number, value: speed }.into());
+        if !(0.0..Real::INFINITY).contains(&stated.point) {
+            return Err(RobotError::BadSpeed { section: number, value: stated.point }.into());
         }
-        most = most.max(speed);
+        // Where no body has a flat end, nobody needs a turn: that of a link without a length is infinite. Where one has, a turn that
+        // is none keeps all pairs, and is refused by the one that needs it.
+        let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
+        let turn = if has_rim { stated.turn } else { 0.0 };
+        let turn = if turn >= 0.0 { turn } else { Real::INFINITY };
+        most = most.max(stated.point + section.radius * turn);
     }
     Ok(Middle { tube, opening, speed: most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) })
 }

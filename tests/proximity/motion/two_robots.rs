@@ -263,6 +263,21 @@ fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
 }
 
 #[test]
+fn a_link_that_loses_its_length_is_no_fault() {
+    // Its direction gets lost, so that it turns as fast as anything; its bodies are round.
+    let (from, to) = ([Vector::ZERO, Vector::Z, Vector::Z * 3.0], [Vector::ZERO, Vector::Z, Vector::Z]);
+    let radii = [0.5; 2];
+    let fading = [LinearMotion::capsules(&from, &to, &radii), LinearMotion::chain(&from, &to, &radii)];
+    let needle = [Vector::new(2.0, 0.0, -9.0), Vector::new(2.0, 0.0, 9.0)];
+    let at_rest = LinearMotion::chain(&needle, &needle, &[0.5]).unwrap();
+    let mut pair = RobotPair::new();
+    for fading in fading.map(Result::unwrap) {
+        assert!(pair.clears_motion(&fading, &at_rest, 0.99, 1e-3).unwrap().is_clear());
+        assert!(pair.clears_motion(&at_rest, &fading, 1.01, 1e-3).unwrap().contact.is_some());
+    }
+}
+
+#[test]
 fn what_is_wrong_names_the_motion() {
     let (mut pair, needle) = (RobotPair::new(), [Vector::ZERO, Vector::Z]);
     let at_rest = LinearMotion::chain(&needle, &needle, &[0.1]).unwrap();
