@@ -35,3 +35,19 @@ macro_rules! checked_fields {
 }
 
 pub(super) use checked_fields;
+
+/// What no answer about a motion has: times that are none, or a contact without that decision, or that without a contact.
+#[cfg(feature = "serde-serialize")]
+pub(super) fn check_motion<C: std::fmt::Debug>(
+    decision: super::Decision,
+    [from, to]: [parry3d_f64::math::Real; 2],
+    contact: Option<&C>,
+) -> Result<(), String> {
+    if !(0.0 <= from && from <= to && to <= 1.0) {
+        return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
+    }
+    if (decision == super::Decision::Contact) != contact.is_some() {
+        return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
+    }
+    Ok(())
+}

@@ -1,5 +1,7 @@
 //! An answer about a motion.
 
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_motion;
 use super::checked_fields::checked_fields;
 use super::{Decision, ShapeInContact};
 use parry3d_f64::math::Real;
@@ -46,13 +48,7 @@ checked_fields!(
         interval: [Real; 2],
         contact: Option<ShapeInContact>,
     },
-    |&Fields { decision, interval: [from, to], contact }| {
-        if !(0.0 <= from && from <= to && to <= 1.0) {
-            return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
-        }
-        if (decision == Decision::Contact) != contact.is_some() {
-            return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
-        }
-        Ok(())
+    |&Fields { decision, interval, contact }| {
+        check_motion(decision, interval, contact.as_ref())
     }
 );

@@ -1,5 +1,7 @@
 //! An answer about two motions.
 
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_motion;
 use super::checked_fields::checked_fields;
 use super::{Decision, RobotsInContact};
 use parry3d_f64::math::Real;
@@ -11,8 +13,8 @@ use parry3d_f64::math::Real;
 #[non_exhaustive]
 pub struct RobotMotionAnswer {
     /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shapes were found that are at most the margin apart,
-    /// but some that are farther apart than that by no more than the resolution and stated errors; or some in which the end of a link becomes flat or round, so close to the
-    /// other robot that this decides.
+    /// but some that are farther apart than that by no more than the resolution and stated errors; or some in which the end of a
+    /// link becomes flat or round, so close to the other robot that this decides.
     pub decision: Decision,
     /// The first interval of time in which it is not known whether the margin is kept: it is kept before it. `[1, 1]` where it always
     /// is; a contact may not be the first one, so that the interval begins with 0.
@@ -47,13 +49,7 @@ checked_fields!(
         interval: [Real; 2],
         contact: Option<RobotsInContact>,
     },
-    |&Fields { decision, interval: [from, to], contact }| {
-        if !(0.0 <= from && from <= to && to <= 1.0) {
-            return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
-        }
-        if (decision == Decision::Contact) != contact.is_some() {
-            return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
-        }
-        Ok(())
+    |&Fields { decision, interval, contact }| {
+        check_motion(decision, interval, contact.as_ref())
     }
 );

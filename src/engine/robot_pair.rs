@@ -3,8 +3,8 @@
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
 use crate::query::motion::{MotionsMemory, TwoMotions, Wanted};
 use crate::query::robots::{
-    OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between, place_tubes,
-    tube_self_clears as self_clears_of_tube, tubes_clear,
+    OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between,
+    own_tube_clears, place_tubes, tubes_clear,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::{Chain, Motion, Tube};
@@ -262,7 +262,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        self_clears_of_tube(tube, &mut self.own_tube, margin, resolution)
+        own_tube_clears(tube, &mut self.own_tube, margin, resolution)
     }
 }
 

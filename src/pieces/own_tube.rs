@@ -117,11 +117,14 @@ impl Part<OwnTube<'_>> for OwnPair {
     }
 }
 
+/// A piece, what holds it, and of which end it is the face.
+type OwnBody = (Piece, Outer, Option<usize>);
+
 /// What a tube is divided into to begin with, in memory that is used again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OwnBeginning {
     pieces: Vec<Piece>,
-    bodies: Vec<(Piece, Outer, Option<usize>)>,
+    bodies: Vec<OwnBody>,
     order: Vec<(Real, [u32; 2])>,
 }
 
@@ -163,8 +166,8 @@ impl<'a> OwnTube<'a> {
         pairs.clear();
         for i in 0..bodies.len() {
             for j in i..bodies.len() {
-                let pair = self.pair(&bodies[i], &bodies[j]);
-                if !pair.is_asked {
+                let pair = pair(&bodies[i], &bodies[j]);
+                if !self.asks(&pair) {
                     continue;
                 }
                 let at_least = self.both.at_least(&pair.outers);
@@ -174,12 +177,12 @@ impl<'a> OwnTube<'a> {
             }
         }
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        pairs.extend(order.iter().map(|&(_, [i, j])| self.pair(&bodies[i as usize], &bodies[j as usize])));
+        pairs.extend(order.iter().map(|&(_, [i, j])| pair(&bodies[i as usize], &bodies[j as usize])));
         Ok(())
     }
 
     /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of its steps.
-    fn push_faces(&self, bodies: &mut Vec<(Piece, Outer, Option<usize>)>) {
+    fn push_faces(&self, bodies: &mut Vec<OwnBody>) {
         let sections = self.tube().sections();
         for (number, section) in sections.iter().enumerate() {
             let before = number.checked_sub(1).and_then(|before| sections.get(before));
@@ -239,19 +242,6 @@ impl<'a> OwnTube<'a> {
             }
             None => PlacedLink::between(centre, centre, radius + wider, [false; 2]),
         }
-    }
-
-    /// A pair of pieces, in the order in which they come along the tube.
-    fn pair(&self, one: &(Piece, Outer, Option<usize>), other: &(Piece, Outer, Option<usize>)) -> OwnPair {
-        let place = |piece: &Piece| (piece.section, piece.from, piece.to);
-        let [one, other] = if place(&one.0) <= place(&other.0) { [one, other] } else { [other, one] };
-        let pair = OwnPair {
-            pieces: [one.0, other.0],
-            outers: [one.1, other.1],
-            faces: [one.2, other.2],
-            is_asked: false,
-        };
-        OwnPair { is_asked: self.asks(&pair), ..pair }
     }
 
     /// By how much a pair may turn between places that are as near along the tube as they can be, and as far.
@@ -642,6 +632,13 @@ impl Divided for OwnTube<'_> {
     fn slack(&self) -> Real {
         self.both.slack()
     }
+}
+
+/// Two pieces as one that is asked about, in the order in which they come along the tube.
+fn pair(one: &OwnBody, other: &OwnBody) -> OwnPair {
+    let place = |piece: &Piece| (piece.section, piece.from, piece.to);
+    let [one, other] = if place(&one.0) <= place(&other.0) { [one, other] } else { [other, one] };
+    OwnPair { pieces: [one.0, other.0], outers: [one.1, other.1], faces: [one.2, other.2], is_asked: true }
 }
 
 /// By how much a way may err along a normal that is off by `tilt`, between bodies that are so far off together.

@@ -7,7 +7,8 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Clearance, Decision, LinkProximity, MotionAnswer, Proximity, Work,
+    BvhSearch, Certificate, Clearance, Decision, LinkProximity, MotionAnswer, Proximity, RobotMotionAnswer,
+    RobotPair, Work,
 };
 use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
@@ -162,4 +163,33 @@ fn what_no_query_about_a_motion_answers_is_an_error() {
     assert_eq!(answer("Undecided", [0.25, 0.5], None), "");
     assert!(answer("Undecided", [0.5, 0.25], None).contains("in order"));
     assert_eq!(answer("Clear", [1.0, 1.0], None), "");
+}
+
+#[test]
+fn answers_about_two_motions_come_back_and_no_others() {
+    let needle = |x: f64| [Vector::new(x, 0.0, 0.0), Vector::new(x, 0.0, 4.0)];
+    let at_rest = LinearMotion::chain(&needle(0.0), &needle(0.0), &[0.5]).unwrap();
+    let passing = LinearMotion::chain(&needle(-9.0), &needle(9.0), &[0.5]).unwrap();
+    let clear = LinearMotion::chain(&needle(9.0), &needle(7.0), &[0.5]).unwrap();
+    let mut pair = RobotPair::new();
+    let [touched, free] =
+        [&passing, &clear].map(|other| pair.clears_motion(&at_rest, other, 1.0, 1e-3).unwrap());
+    assert!(touched.contact.is_some() && free.is_clear());
+    for answer in [touched, free] {
+        assert_eq!(from_str::<RobotMotionAnswer>(&to_string(&answer).unwrap()).unwrap(), answer);
+    }
+
+    let written = to_value(touched).unwrap();
+    let with = |change: &dyn Fn(&mut Value)| {
+        let mut answer = written.clone();
+        change(&mut answer);
+        refusal::<RobotMotionAnswer>(answer)
+    };
+    assert_eq!(with(&|_| ()), "");
+    assert!(with(&|answer| answer["contact"]["t"] = json!(1.5)).contains("from 0 to 1"));
+    assert!(with(&|answer| answer["contact"]["upper"] = json!(-0.25)).contains("the clearance is -0.25"));
+    assert!(with(&|answer| answer["contact"]["on_first"] = json!([0.0, 0.0])).contains("length"));
+    assert!(with(&|answer| answer["interval"] = json!([0.75, 0.5])).contains("in order, not 0.75 to 0.5"));
+    assert!(with(&|answer| answer["contact"] = Value::Null).contains("the contact is None"));
+    assert!(with(&|answer| answer["decision"] = json!("Clear")).contains("the decision is Clear"));
 }

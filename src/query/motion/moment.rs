@@ -27,15 +27,13 @@ pub(crate) struct Seen<F> {
     pub is_undecided: bool,
     /// Whether the shape is above the margin by no more than the resolution.
     pub is_near: bool,
-    /// Whether any piece is left before the shape, and after it.
-    pub is_left: [bool; 2],
 }
 
 impl<F> Seen<F> {
     /// Nothing, before anything is looked at.
     pub(super) fn nothing() -> Self {
         let (is_fine, is_undecided, is_near) = (false, false, false);
-        Self { contact: None, is_fine, is_undecided, is_near, is_left: [false; 2] }
+        Self { contact: None, is_fine, is_undecided, is_near }
     }
 }
 

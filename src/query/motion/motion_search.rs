@@ -109,6 +109,8 @@ struct Judged {
     seen: Seen<Found>,
     /// For how long before and after it the pieces keep the margin that failed.
     still: Real,
+    /// Whether any of these is left before the shape, and after it.
+    is_left: [bool; 2],
     /// Which of the failed pieces these are.
     failed: Range<usize>,
 }
@@ -136,13 +138,13 @@ impl<M: Motion> MotionSearch<'_, M> {
             if let Some(first) = progress.gives_up(self.shapes, left) {
                 return Ok(MotionAnswer::undecided(first));
             }
-            let Judged { seen, still, failed } = self.judge(&interval, wanted)?;
+            let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             progress.take(interval.times, &seen, self.shapes);
             if let Some(found) = seen.contact {
                 // Of the shapes before it nothing is proven yet but what was asked first.
                 return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.middle(), &found)));
             }
-            self.memory.intervals.extend(interval.halves(still, seen.is_left, &failed).into_iter().flatten());
+            self.memory.intervals.extend(interval.halves(still, is_left, &failed).into_iter().flatten());
         }
         Ok(progress.undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -160,7 +162,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             let intervals = &mut self.memory.intervals;
             let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
             let Some(interval) = next else { break };
-            let Judged { seen, still, failed } = self.judge(&interval, wanted)?;
+            let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             if seen.is_undecided && undecided.is_none() {
                 undecided = Some(interval.times);
                 most = self.shapes + PATIENCE;
@@ -181,7 +183,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 }
                 continue;
             }
-            let halves = interval.halves(still, seen.is_left, &failed);
+            let halves = interval.halves(still, is_left, &failed);
             self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
@@ -221,18 +223,18 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Whether the margin is kept in an interval, as far as its middle shape shows.
     fn judge(&mut self, interval: &Interval, wanted: Wanted) -> Result<Judged, ProximityError> {
-        let ((seen, still), failed) = self.examine(interval, |tube, turn, moving, pace| {
+        let ((seen, still, is_left), failed) = self.examine(interval, |tube, turn, moving, pace| {
             // Below that, rounding decides.
             tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
             turn.begin(tube, wanted.margin.max(wanted.resolution));
             let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
             refine(tube, turn.pieces, &mut moment)?;
-            let Moment { mut moving, pace, mut seen, .. } = moment;
+            let Moment { mut moving, pace, seen, .. } = moment;
             let is_contact = seen.contact.is_some();
-            seen.is_left = if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin) };
-            Ok((seen, pace.still))
+            let is_left = if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin) };
+            Ok((seen, pace.still, is_left))
         })?;
-        Ok(Judged { seen, still, failed })
+        Ok(Judged { seen, still, is_left, failed })
     }
 
     /// Asks a question of the middle shape of an interval; and which of the failed pieces are those that failed there.

@@ -17,8 +17,6 @@ pub(super) struct MovingPair<'a, A, B> {
     pub times: [Real; 2],
     /// How fast the two pieces are that are looked at.
     pub speeds: [Real; 2],
-    /// Whether there are pairs about which the middle shapes do not decide for the whole interval.
-    pub is_left: bool,
 }
 
 impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_, A, B> {
@@ -47,9 +45,8 @@ impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_,
 
     fn note(&mut self, _: &Near<TwoTubes<'t>, PiecePair>) {}
 
-    fn fail(&mut self, _: &Near<TwoTubes<'t>, PiecePair>, _: &Pace) {
-        self.is_left = true;
-    }
+    /// The pace knows for how long the others keep the margin, and all are looked at again.
+    fn fail(&mut self, _: &Near<TwoTubes<'t>, PiecePair>, _: &Pace) {}
 
     fn fastest(&self, near: &Near<TwoTubes<'t>, PiecePair>, _: Real) -> (usize, Real) {
         let k = usize::from(self.speeds[1] > self.speeds[0]);

@@ -29,15 +29,11 @@ impl Progress {
     }
 
     /// The first interval of which nothing is known, if no more shapes are to be looked at; these intervals were not.
-    pub(super) fn gives_up(
-        &self,
-        shapes: u64,
-        mut left: impl Iterator<Item = [Real; 2]>,
-    ) -> Option<[Real; 2]> {
+    pub(super) fn gives_up(&self, shapes: u64, left: impl Iterator<Item = [Real; 2]>) -> Option<[Real; 2]> {
         let (near, _) = self.near.filter(|(_, most)| shapes >= *most)?;
         let earlier = |first: [Real; 2], times: [Real; 2]| {
             if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
         };
-        Some(left.by_ref().chain(self.undecided).fold(near, earlier))
+        Some(left.chain(self.undecided).fold(near, earlier))
     }
 }

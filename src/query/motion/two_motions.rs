@@ -55,9 +55,7 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
                 let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
                 return Ok(RobotMotionAnswer::contact(contact));
             }
-            if seen.is_left[0] {
-                self.memory.intervals.extend(rests(times, still).into_iter().flatten());
-            }
+            self.memory.intervals.extend(rests(times, still).into_iter().flatten());
         }
         Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
     }
@@ -78,7 +76,7 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
     }
 
     /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how long before and after these all
-    /// pairs keep it.
+    /// pairs keep it, which is for ever where none failed.
     fn judge(
         &mut self,
         times: [Real; 2],
@@ -97,12 +95,10 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         let Wanted { margin, resolution } = wanted;
         tubes.begin(margin.max(resolution), margin + reach + tubes.slack(), beginning, pairs)?;
         let pace = Pace::new(times, first.opening.max(second.opening));
-        let moving = MovingPair { motions, names, times, speeds: [0.0; 2], is_left: false };
+        let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
         let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
         refine(&mut tubes, pairs, &mut moment)?;
-        let Moment { moving, pace, mut seen, .. } = moment;
-        seen.is_left = [moving.is_left; 2];
-        Ok((seen, pace.still))
+        Ok((moment.seen, moment.pace.still))
     }
 }
 

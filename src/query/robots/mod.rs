@@ -10,6 +10,6 @@ mod tubes;
 mod two_robots;
 
 pub(crate) use one_robot::{OneRobot, OwnMemory};
-pub(crate) use own_tube::{OwnTubeMemory, tube_self_clears};
+pub(crate) use own_tube::{OwnTubeMemory, own_tube_clears};
 pub(crate) use tubes::{TubesMemory, clearance_between, place_tubes, tubes_clear};
 pub(crate) use two_robots::{PairMemory, TwoRobots};

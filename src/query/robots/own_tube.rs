@@ -18,7 +18,7 @@ pub(crate) struct OwnTubeMemory {
 ///
 /// # Errors
 /// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
-pub(crate) fn tube_self_clears(
+pub(crate) fn own_tube_clears(
     tube: &Tube,
     memory: &mut OwnTubeMemory,
     margin: Real,
