@@ -1,10 +1,10 @@
 //! One structure of a scene: a mesh, where it is, and the margin that robots keep from it.
 
+use super::around::Around;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
-use crate::distance::Scalar;
 use crate::engine::{BvhSearch, Proximity};
-use crate::pair::{PlacedLink, PlacedRobot, rigid_pose};
-use crate::robot::{Chain, LinkNode, length};
+use crate::pair::{PlacedRobot, rigid_pose};
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 #[derive(Clone, Debug)]
@@ -14,14 +14,34 @@ pub(super) struct Structure {
     pub search: BvhSearch,
     /// From the mesh's frame to the scene's; none where they are one.
     pose: Option<Pose>,
-    /// The corners of a box around the triangles, in the mesh's frame.
-    around: [Vector; 2],
+    /// The box around the triangles, in the mesh's frame.
+    pub around: Around,
+    /// The largest coordinate of these and of the pose.
+    size: Real,
 }
 
 impl Structure {
     pub fn new(name: String, search: BvhSearch, margin: Option<Real>) -> Self {
-        let around = around(&search);
-        Self { name, margin, search, pose: None, around }
+        let mut new = Self { name, margin, search, pose: None, around: Around::default(), size: 0.0 };
+        new.look_around();
+        new
+    }
+
+    fn look_around(&mut self) {
+        let vertices = self.search.vertices();
+        let corners = self.search.triangles().as_flattened().iter();
+        self.around = Around::points(corners.map(|&corner| vertices[corner as usize]));
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        let translation = self.pose.map_or(0.0, |pose| pose.translation.abs().max_element());
+        self.size = self.around.size().max(translation);
+    }
+
+    /// The largest coordinate of the mesh and of its pose.
+    pub fn size(&self) -> Real {
+        self.size
     }
 
     /// # Errors
@@ -29,6 +49,7 @@ impl Structure {
     pub fn set_pose(&mut self, pose: &Pose) -> Result<(), ProximityError> {
         let pose = rigid_pose(pose)?;
         self.pose = (pose != Pose::IDENTITY).then_some(pose);
+        self.measure();
         Ok(())
     }
 
@@ -36,7 +57,7 @@ impl Structure {
     /// As those of the engine.
     pub fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.search.set_vertices(vertices)?;
-        self.around = around(&self.search);
+        self.look_around();
         Ok(())
     }
 
@@ -58,33 +79,9 @@ impl Structure {
         if self.pose.is_none() { Ok(*placed) } else { PlacedRobot::new(robot, &self.in_mesh(at)) }
     }
 
-    /// What the distance of a robot is at least, by the boxes around the capsule that holds it and around the mesh.
-    ///
-    /// Rounding: with M the largest magnitude of the capsule's ends, its radius and the box' corners, each coordinate of the way
-    /// between the boxes is a difference of sums that errs by 6 u M at most, their length by less than 11 u M for that, and by less
-    /// than 14 u M for its own squares, sums and root; what is taken off errs by less than 6 u M. And what is measured may be less
-    /// than it is by 16 u of an extent of 2 M. So 64 u M are taken off.
-    pub fn at_least(&self, robot: &PlacedRobot) -> Real {
-        let ([start, end], radius, _) = robot.outline(&robot.link_tree()[0]);
-        let [low, high] = self.around;
-        let way = (start.min(end) - radius - high).max(low - (start.max(end) + radius)).max(Vector::ZERO);
-        let largest = start.abs().max(end.abs()).max(low.abs()).max(high.abs()).max_element().max(radius);
-        length(way) - 64.0 * Real::UNIT_ROUNDOFF * largest
-    }
-
-    /// Whether some link of a robot may be at most `bound` away, by the capsules around its links and the box around the mesh.
-    pub fn may_be_within(&self, robot: &PlacedRobot, bound: Real) -> bool {
-        let ([low, high], nodes, mut place) = (self.around, robot.link_tree(), 0);
-        while let Some(node) = nodes.get(place) {
-            let ([start, end], radius, flat) = robot.outline(node);
-            let is_far = PlacedLink::between(start, end, radius, flat).distance_to_box(low, high) > bound;
-            place += match node {
-                LinkNode::Inner { below, .. } if is_far => 1 + below,
-                LinkNode::Leaf(_) if !is_far => return true,
-                _ => 1,
-            };
-        }
-        false
+    /// The box around it in the scene's frame.
+    pub fn around_in_scene(&self) -> Around {
+        self.pose.map_or(self.around, |pose| self.around.moved(&pose))
     }
 
     /// An answer of the mesh's frame in the scene's.
@@ -106,11 +103,4 @@ impl Structure {
         }
         contact
     }
-}
-
-fn around(search: &BvhSearch) -> [Vector; 2] {
-    let vertices = search.vertices();
-    let corners = search.triangles().as_flattened().iter().map(|&vertex| vertices[vertex as usize]);
-    let nothing = [Vector::splat(Real::INFINITY), Vector::splat(Real::NEG_INFINITY)];
-    corners.fold(nothing, |[low, high], corner| [low.min(corner), high.max(corner)])
 }

@@ -1,12 +1,15 @@
 //! A scene, and what is asked of all of it at once.
 
 use super::structure::Structure;
+use super::surroundings::Surroundings;
+use super::watch::Watch;
 use crate::answer::{
     Between, Contact, ProximityError, SceneContact, SceneError, StructureProximity, Tightest,
 };
 use crate::distance::{DoubleDouble, Scalar};
-use crate::engine::{BvhSearch, Proximity, RobotPair};
+use crate::engine::{BvhSearch, Engine, Proximity, RobotPair};
 use crate::pair::PlacedRobot;
+use crate::query::contacts::Asked;
 use crate::query::{check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -21,8 +24,9 @@ use std::cmp::Ordering;
 /// Robots are given to each question, with their poses in the scene's frame. If a
 /// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
 ///
-/// The scene remembers what its engines do, and whom the last answer was about, who is asked first. A clone shares the
-/// meshes and has a memory of its own: one for each thread.
+/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and what each robot kept from
+/// each structure: one that a robot cannot have reached since is not looked at. Robots are told apart by their place in a
+/// question; any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
 ///
 /// ```
 /// use parry_continuum::Chain;
@@ -58,6 +62,8 @@ use std::cmp::Ordering;
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     structures: Vec<Structure>,
+    /// All of these; none where one of them has changed since the last question.
+    all: Option<Surroundings>,
     robot_margin: Option<Real>,
     /// The lower number first.
     nested: Vec<[usize; 2]>,
@@ -65,6 +71,8 @@ pub struct Scene {
     /// Structure and robot that were tightest, and that did not keep a margin.
     tightest: Option<[usize; 2]>,
     met: Option<[usize; 2]>,
+    /// For each robot, by its number, what it keeps.
+    watches: Vec<Watch>,
     /// How much room structures leave robots at least.
     order: Vec<(Real, [usize; 2])>,
     contacts: Vec<Contact>,
@@ -92,6 +100,7 @@ impl Scene {
         let structure = Structure::new(name.into(), search, margin);
         check(margin).map_err(|error| of_structure(&structure, error))?;
         self.structures.push(structure);
+        self.all = None;
         Ok(self.structures.len() - 1)
     }
 
@@ -123,6 +132,7 @@ impl Scene {
         let structure = self.structure(structure)?;
         check(margin).map_err(|error| of_structure(structure, error))?;
         structure.margin = margin;
+        self.all = None;
         Ok(())
     }
 
@@ -131,8 +141,11 @@ impl Scene {
     /// # Errors
     /// There is no such structure, or the pose is not finite or not rigid.
     pub fn set_pose(&mut self, structure: usize, pose: &Pose) -> Result<(), SceneError> {
-        let structure = self.structure(structure)?;
-        structure.set_pose(pose).map_err(|error| of_structure(structure, error))
+        let number = structure;
+        let structure = self.structure(number)?;
+        structure.set_pose(pose).map_err(|error| of_structure(structure, error))?;
+        self.has_moved(number);
+        Ok(())
     }
 
     /// Moves the vertices of a structure's mesh, in the mesh's own frame: [`Proximity::set_vertices`].
@@ -140,8 +153,11 @@ impl Scene {
     /// # Errors
     /// There is no such structure, the number of vertices differs, or one is not finite or out of range.
     pub fn set_vertices(&mut self, structure: usize, vertices: &[Vector]) -> Result<(), SceneError> {
-        let structure = self.structure(structure)?;
-        structure.set_vertices(vertices).map_err(|error| of_structure(structure, error.into()))
+        let number = structure;
+        let structure = self.structure(number)?;
+        structure.set_vertices(vertices).map_err(|error| of_structure(structure, error.into()))?;
+        self.has_moved(number);
+        Ok(())
     }
 
     /// The margin that robots keep from one another; nothing if they are not held against one another, which is so at first.
@@ -168,7 +184,20 @@ impl Scene {
     /// # Errors
     /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's number.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
-        check_poses(robots)?;
+        if self.begin(robots, None)? && !self.clears_structures(robots)? {
+            return Ok(false);
+        }
+        let Some(margin) = self.robot_margin else { return Ok(true) };
+        for [first, second] in pairs_apart(robots.len(), &self.nested) {
+            let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+            if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn clears_structures(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
         if let Some([structure, robot]) = self.met.filter(|met| self.have(*met, robots))
             && !self.clears_one(structure, robot, robots)?
         {
@@ -188,18 +217,7 @@ impl Scene {
             Ok(())
         });
         self.order = order;
-        asked?;
-        if self.met.is_some() {
-            return Ok(false);
-        }
-        let Some(margin) = self.robot_margin else { return Ok(true) };
-        for [first, second] in pairs_apart(robots.len(), &self.nested) {
-            let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-            if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        asked.map(|()| self.met.is_none())
     }
 
     /// The least slack, and whom it is between; nothing if no robot is given or nothing has a margin.
@@ -210,15 +228,15 @@ impl Scene {
     /// # Errors
     /// As [`clears`](Self::clears).
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
-        check_poses(robots)?;
+        self.begin(robots, Some(Real::INFINITY))?;
         let mut best: Best = None;
         if let Some([structure, robot]) = self.tightest.filter(|last| self.have(*last, robots)) {
             self.tighter(structure, robot, robots, &mut best)?;
         }
         // Those that may be tightest are asked first: they rule out the others.
         let mut order = std::mem::take(&mut self.order);
-        let all = |structure: &Structure| structure.margin.map(|margin| (margin, Real::INFINITY));
-        let asked = self.gather(robots, all, &mut order).and_then(|()| {
+        let near = |structure: &Structure| structure.margin.map(|margin| (margin, beyond(&best, margin)));
+        let asked = self.gather(robots, near, &mut order).and_then(|()| {
             order.sort_unstable_by(nearest_first);
             for &(room, [structure, robot]) in &order {
                 if best.as_ref().is_some_and(|(_, best)| room > best.slack.next_up()) {
@@ -292,17 +310,23 @@ impl Scene {
         out: &mut Vec<SceneContact>,
     ) -> Result<(), SceneError> {
         out.clear();
-        let Some(first) = self.structures.first() else { return check_poses(robots) };
-        check_not_negative("reach", reach).map_err(|error| of_structure(first, error))?;
+        if let Some(first) = self.structures.first() {
+            check_not_negative("reach", reach).map_err(|error| of_structure(first, error))?;
+        }
+        if !self.begin(robots, Some(reach))? {
+            return Ok(());
+        }
         let mut order = std::mem::take(&mut self.order);
         let asked = self.gather(robots, |_| Some((0.0, reach)), &mut order).and_then(|()| {
             order.sort_unstable_by_key(|(_, who)| *who);
             for &(_, [number, robot]) in &order {
+                let Some(placed) = self.look(number, robot, robots, reach)? else { continue };
                 let structure = &mut self.structures[number];
-                let (chain, pose) = &robots[robot];
-                let pose = structure.in_mesh(pose);
-                let found = structure.search.within(chain, &pose, reach, 0.0, &mut self.contacts);
-                found.map_err(of_robot(robot))?;
+                let asked = Asked { margin: reach, prominence: 0.0 };
+                structure.search.ask_contacts(placed, asked, &mut self.contacts).map_err(of_robot(robot))?;
+                if !self.contacts.is_empty() {
+                    self.watches[robot].is_near(number);
+                }
                 out.extend(self.contacts.drain(..).map(|contact| SceneContact {
                     structure: number as u32,
                     robot: robot as u32,
@@ -329,38 +353,105 @@ impl Scene {
         structure < self.structures.len() && robot < robots.len()
     }
 
+    /// What robots kept from a structure, they kept from where it was.
+    fn has_moved(&mut self, structure: usize) {
+        self.watches.iter_mut().for_each(|watch| watch.forget(structure));
+        self.all = None;
+    }
+
+    /// A question about all of these robots begins. False if all of them are farther than `bound` from all structures, or than all
+    /// margins where it is not given. Also those are placed that are held against nothing: what is asked afterwards finds no fault
+    /// with one.
+    fn begin(&mut self, robots: &[(&Chain, Pose)], bound: Option<Real>) -> Result<bool, SceneError> {
+        let all = *self.all.get_or_insert_with(|| Surroundings::of(&self.structures));
+        let (mut may_be_near, bound) = (false, bound.unwrap_or(all.margin));
+        for (robot, (chain, pose)) in robots.iter().enumerate() {
+            let placed = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
+            may_be_near = may_be_near || !all.are_beyond(bound, &placed);
+        }
+        if !may_be_near {
+            // Their ways are counted from where they were last, when they are near again.
+            return Ok(false);
+        }
+        if self.watches.len() < robots.len() {
+            self.watches.resize_with(robots.len(), Watch::default);
+        }
+        for (robot, ((chain, pose), watch)) in robots.iter().zip(&mut self.watches).enumerate() {
+            let placed = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
+            watch.begin(placed, self.structures.len());
+        }
+        Ok(true)
+    }
+
     fn clears_one(
         &mut self,
-        structure: usize,
+        number: usize,
         robot: usize,
         robots: &[(&Chain, Pose)],
     ) -> Result<bool, SceneError> {
-        let structure = &mut self.structures[structure];
-        let Some(margin) = structure.margin else { return Ok(true) };
-        let (chain, pose) = &robots[robot];
-        let pose = structure.in_mesh(pose);
-        structure.search.clears(chain, &pose, margin).map_err(of_robot(robot))
+        let Some(margin) = self.structures[number].margin else { return Ok(true) };
+        let Some(placed) = self.look(number, robot, robots, margin)? else { return Ok(true) };
+        let clears = self.structures[number].search.ask_clears(placed, margin).map_err(of_robot(robot))?;
+        if !clears {
+            self.watches[robot].is_near(number);
+        }
+        Ok(clears)
+    }
+
+    /// The robot in the frame of a structure's mesh, or nothing if it keeps more than `bound` at a look: one that speaks for the
+    /// next questions too where the robot moves little, or else one at the boxes alone.
+    fn look<'a>(
+        &mut self,
+        number: usize,
+        robot: usize,
+        robots: &[(&'a Chain, Pose)],
+        bound: Real,
+    ) -> Result<Option<PlacedRobot<'a>>, SceneError> {
+        let (structure, watch) = (&mut self.structures[number], &mut self.watches[robot]);
+        if watch.keeps(number, structure.size()) > bound {
+            return Ok(None);
+        }
+        let (chain, pose) = robots[robot];
+        let placed = PlacedRobot::new(chain, &structure.in_mesh(&pose)).map_err(of_robot(robot))?;
+        if bound == Real::INFINITY {
+            return Ok(Some(placed));
+        }
+        let Some(room) = watch.room() else {
+            return Ok(structure.around.may_be_within(&placed, bound).then_some(placed));
+        };
+        if watch.is_worth_a_look(number) {
+            let far = bound + room;
+            if structure.search.keeps_away(placed, far) {
+                watch.note(number, far, structure.size());
+                return Ok(None);
+            }
+            watch.is_near(number);
+        }
+        Ok(Some(placed))
     }
 
     /// Writes to `order` which robots may be as near to which structures as is asked, and how much room these leave them at least.
     /// `asked` tells a structure's margin, and how far away is near enough; nothing if it takes no part. Each robot is placed
     /// once for all structures that have not moved.
     fn gather(
-        &self,
+        &mut self,
         robots: &[(&Chain, Pose)],
         asked: impl Fn(&Structure) -> Option<(Real, Real)>,
         order: &mut Vec<(Real, [usize; 2])>,
     ) -> Result<(), SceneError> {
         order.clear();
-        for (robot, (chain, pose)) in robots.iter().enumerate() {
+        for (robot, ((chain, pose), watch)) in robots.iter().zip(&mut self.watches).enumerate() {
             let in_scene = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
             for (number, structure) in self.structures.iter().enumerate() {
                 let Some((margin, bound)) = asked(structure) else { continue };
+                if watch.keeps(number, structure.size()) > bound {
+                    continue;
+                }
                 let placed = structure.place(chain, pose, &in_scene).map_err(of_robot(robot))?;
-                let at_least = structure.at_least(&placed);
-                let is_near =
-                    at_least <= bound && (bound == Real::INFINITY || structure.may_be_within(&placed, bound));
-                if is_near {
+                let at_least = structure.around.at_least(&placed);
+                if at_least > bound {
+                    watch.note(number, at_least, structure.size());
+                } else {
                     order.push(((at_least - margin).next_down(), [number, robot]));
                 }
             }
@@ -376,21 +467,20 @@ impl Scene {
         robots: &[(&Chain, Pose)],
         best: &mut Best,
     ) -> Result<(), SceneError> {
-        let structure = &mut self.structures[number];
-        let Some(margin) = structure.margin else { return Ok(()) };
-        let (chain, pose) = &robots[robot];
-        let pose = structure.in_mesh(pose);
-        // No distance with a slack as small is beyond this, whatever is rounded here.
-        let bound =
-            best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up());
-        if bound < Real::INFINITY {
-            let placed = PlacedRobot::new(chain, &pose).map_err(of_robot(robot))?;
-            if !structure.may_be_within(&placed, bound) {
-                return Ok(());
-            }
+        let Some(margin) = self.structures[number].margin else { return Ok(()) };
+        let bound = beyond(best, margin);
+        if bound < 0.0 {
+            return Ok(());
         }
-        let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
+        let Some(placed) = self.look(number, robot, robots, bound)? else { return Ok(()) };
+        let (structure, watch) = (&mut self.structures[number], &mut self.watches[robot]);
+        let far = bound + watch.room().unwrap_or(0.0);
+        let found = structure.search.ask_nearest(placed, far).map_err(of_robot(robot))?;
+        watch.note(number, found.map_or(far, |found| found.distance), structure.size());
         let Some(found) = found else { return Ok(()) };
+        if found.distance <= bound {
+            watch.is_near(number);
+        }
         let slack = slack(found.distance, margin);
         let is_tighter = best.as_ref().is_none_or(|(least, best)| {
             let comes_first = match best.between {
@@ -439,16 +529,69 @@ fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
 }
 
-/// The poses of all robots, also of those that are held against nothing: what is asked afterwards finds no fault with one.
-fn check_poses(robots: &[(&Chain, Pose)]) -> Result<(), SceneError> {
-    for (robot, (chain, pose)) in robots.iter().enumerate() {
-        PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
-    }
-    Ok(())
+/// With this margin no distance beyond this has a slack as small as the best, whatever is rounded here.
+fn beyond(best: &Best, margin: Real) -> Real {
+    best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up())
 }
 
 /// The pairs of so many robots that are held against one another, in order: all but those that are nested.
 fn pairs_apart(robots: usize, nested: &[[usize; 2]]) -> impl Iterator<Item = [usize; 2]> {
     let pairs = (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
     pairs.filter(|pair| !nested.contains(pair))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use continuum_testing::Random;
+    use parry3d_f64::shape::Ball;
+
+    fn scene_of_balls() -> Scene {
+        let mut scene = Scene::new();
+        for number in 0..20 {
+            let (vertices, triangles) = Ball::new(1.0).to_trimesh(16, 8);
+            let mut random = Random::new(number);
+            let away = random.direction();
+            let centre = Vector::new(away.x, away.y, 0.0).normalize() * random.between(2.0, 2.6);
+            let place = |vertex: &Vector| *vertex + centre + Vector::Z * (0.4 * number as Real);
+            let vertices: Vec<_> = vertices.iter().map(place).collect();
+            let search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+            scene.add(format!("ball {number}"), search, Some(0.1)).unwrap();
+        }
+        scene
+    }
+
+    /// Along a smooth walk most structures are passed over, and a scene says what one says that knows of no way of a robot.
+    #[test]
+    fn what_cannot_be_near_is_not_looked_at() {
+        let points: Vec<_> = (0..=8).map(|k| Vector::Z * Real::from(k)).collect();
+        let robot = Chain::from_centreline(&points, &[0.2; 8]).unwrap();
+        let mut scenes = [0; 3].map(|_| [scene_of_balls(), scene_of_balls()]);
+        let (mut silent, mut looked_at, mut contacts) = ([0; 3], [[0; 2]; 3], 0);
+        for tick in 0..400 {
+            let (sin, cos) = (0.02 * Real::from(tick)).sin_cos();
+            let robots = [(&robot, Pose::translation(0.5 * cos, 0.5 * sin, 0.0))];
+            for (question, scenes) in scenes.iter_mut().enumerate() {
+                scenes[1].watches.clear();
+                let [one, other] = scenes.each_mut().map(|scene| {
+                    let (mut clears, mut tightest, mut found) = (false, None, Vec::new());
+                    match question {
+                        0 => clears = scene.clears(&robots).unwrap(),
+                        1 => tightest = scene.tightest(&robots).unwrap(),
+                        _ => scene.contacts(&robots, 0.4, &mut found).unwrap(),
+                    }
+                    (clears, tightest, found)
+                });
+                assert_eq!(one, other);
+                contacts += one.2.len();
+                // Those that were not passed over are put in order.
+                let looked = scenes.each_ref().map(|scene| scene.order.len());
+                silent[question] += u32::from(looked[0] == 0);
+                looked_at[question][0] += looked[0];
+                looked_at[question][1] += looked[1];
+            }
+        }
+        assert!(silent[0] > 100 && contacts > 100, "{silent:?} {contacts}");
+        assert!(looked_at.iter().all(|[with, without]| 2 * with < *without), "{looked_at:?}");
+    }
 }

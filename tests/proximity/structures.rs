@@ -293,3 +293,19 @@ fn what_is_tiny_is_not_left_out() {
         assert!(found.slack < 0.0 && found.slack > -0.02 * away, "{away:e} {found:?}");
     }
 }
+
+#[test]
+fn a_margin_counts_from_when_it_is_set() {
+    let mut scene = Scene::new();
+    scene.add("wall", ball(Vector::ZERO, 1.0), Some(0.1)).unwrap();
+    scene.add("target", ball(Vector::X * 40.0, 1.0), None).unwrap();
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::translation(20.0, 0.0, 0.0))];
+    for (margin, clears) in [(Some(0.1), true), (Some(30.0), false), (Some(0.1), true), (None, true)] {
+        for structure in [0, 1] {
+            scene.set_margin(structure, margin).unwrap();
+            assert_eq!(scene.clears(&robots), Ok(clears));
+            scene.set_margin(structure, None).unwrap();
+        }
+    }
+}

@@ -199,6 +199,13 @@ impl BvhSearch {
         });
     }
 
+    /// Whether a robot keeps more than `margin`, for one that is likely to: neither is it first asked about where it seems to pass
+    /// through the wall, nor does what the last query proved count.
+    pub(crate) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
+        let (search, last) = self.context().search();
+        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }.keeps_away(margin).is_some()
+    }
+
     pub(super) fn prepared(&self) -> &PreparedMesh {
         &self.mesh
     }
@@ -234,7 +241,7 @@ impl<'a> Context<'a> {
     }
 
     fn clears(self, robot: PlacedRobot, margin: Real) -> bool {
-        let sides = self.mesh.sides();
+        let sides = Some(self.mesh.sides());
         let (search, last) = self.search();
         ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)
     }

@@ -36,7 +36,8 @@ impl ClearsMemory {
 /// A search for anything at most a margin from a robot.
 pub(crate) struct ClearsSearch<'a> {
     pub search: MeshSearch<'a>,
-    pub sides: &'a RoughSides,
+    /// They tell where to look first for a robot that passes through the wall.
+    pub sides: Option<&'a RoughSides>,
     pub robot: PlacedRobot<'a>,
     pub memory: &'a mut ClearsMemory,
 }
@@ -59,13 +60,13 @@ impl ClearsSearch<'_> {
     }
 
     /// What of the robot is known to keep more than `margin` away. None where some link does not.
-    fn keeps_away(&mut self, margin: Real) -> Option<KeepsAway> {
+    pub(crate) fn keeps_away(&mut self, margin: Real) -> Option<KeepsAway> {
         let robot = self.robot;
         let MeshSearch { level, hierarchy, scratch, .. } = &mut self.search;
         let (level, mesh) = (*level, &hierarchy.mesh);
         let Scratch { work, .. } = &mut **scratch;
         let ClearsMemory { single, double, .. } = &mut *self.memory;
-        let first = self.sides.crossing(robot);
+        let first = self.sides.and_then(|sides| sides.crossing(robot));
         let search =
             JointSearch { level, tree: hierarchy.single(), robot, margin, first, pairs: single, work };
         let mut answer = search.keeps_away(mesh);

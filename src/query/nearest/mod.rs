@@ -10,6 +10,7 @@ mod per_link;
 mod rough_sides;
 
 pub(crate) use clears::{ClearsMemory, ClearsSearch};
+pub(crate) use memory::{Odometer, Outline};
 pub(crate) use minimum::{MinimumMemory, minimum_within};
 pub(crate) use per_link::{PerLinkMemory, per_link};
 pub(crate) use rough_sides::RoughSides;

@@ -10,11 +10,11 @@ use parry3d_f64::math::{Real, Vector};
 pub(crate) const ROUNDING: Real = 128.0 * f64::EPSILON;
 
 /// A link in the mesh's frame.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Outline {
-    ends: [Vector; 2],
-    radius: Real,
-    flat: [bool; 2],
+    pub(super) ends: [Vector; 2],
+    pub(super) radius: Real,
+    pub(super) flat: [bool; 2],
 }
 
 /// A link where it was, from which its motion is counted.
@@ -68,7 +68,12 @@ impl Outline {
         self.ends[0].abs().max(self.ends[1].abs()).max_element() + self.radius
     }
 
-    fn along(&self) -> Vector {
+    /// How long it is, with its radius at both ends.
+    pub(crate) fn size(&self) -> Real {
+        length(self.along()) + 2.0 * self.radius
+    }
+
+    pub(super) fn along(&self) -> Vector {
         self.ends[1] - self.ends[0]
     }
 }

@@ -1,0 +1,249 @@
+//! What a scene remembers changes no answer: at every step of robots that move in any way it says what a scene says that was
+//! never asked before.
+
+use continuum_testing::Random;
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::parry::shape::Ball;
+use parry_continuum::proximity::{Between, BvhSearch, Scene, Tightest};
+
+/// Where a problem lies and how large its unit is.
+struct Place {
+    origin: Vector,
+    unit: f64,
+}
+
+impl Place {
+    fn of(&self, point: Vector) -> Vector {
+        self.origin + point * self.unit
+    }
+
+    /// The same motion about the place's origin.
+    fn pose(&self, pose: &Pose) -> Pose {
+        let there = Pose::from_translation(self.origin);
+        there * Pose::from_parts(pose.translation * self.unit, pose.rotation) * there.inverse()
+    }
+}
+
+/// A robot that changes a little from step to step.
+struct Walker {
+    points: Vec<Vector>,
+    radii: Vec<f64>,
+    /// How links are made of these.
+    model: u32,
+    pose: Pose,
+    /// What its steps are like: it shifts, turns, bends, grows, or all of that.
+    way: u32,
+    shift: Vector,
+    turn: Vector,
+    step: f64,
+}
+
+impl Walker {
+    fn new(random: &mut Random) -> Self {
+        let mut points = vec![random.point() * 2.0];
+        let length = [0.05, 0.3, 1.0][random.below(3) as usize];
+        let is_aligned = random.below(3) == 0;
+        for _ in 0..1 + random.below(6) {
+            let aligned = [Vector::X, Vector::Z][random.below(2) as usize];
+            let direction = if is_aligned { aligned } else { random.direction() };
+            points.push(points[points.len() - 1] + direction * length);
+        }
+        let radii = vec![[0.02, 0.3, 0.8][random.below(3) as usize]; points.len() - 1];
+        let pose = if is_aligned { Pose::IDENTITY } else { random.pose(1.0) };
+        let (shift, turn) = (random.direction(), random.direction());
+        let step = 10.0_f64.powf(random.between(-4.0, -0.3));
+        Self { points, radii, model: random.below(3), pose, way: random.below(5), shift, turn, step }
+    }
+
+    fn walk(&mut self, random: &mut Random) {
+        let is = |way: &u32, which: u32| *way == which || *way == 4;
+        if is(&self.way, 0) {
+            self.pose.translation += self.shift * self.step;
+        }
+        if is(&self.way, 1) {
+            // About the middle of the robot, so that what is near turns most.
+            let middle = self.pose * self.points[self.points.len() / 2];
+            let about = Pose::from_translation(middle) * Pose::new(Vector::ZERO, self.turn * self.step);
+            self.pose = about * Pose::from_translation(-middle) * self.pose;
+        }
+        if is(&self.way, 2) {
+            let bend = random.point() * self.step;
+            self.points.iter_mut().skip(1).for_each(|point| *point += bend);
+        }
+        if is(&self.way, 3) {
+            self.radii.iter_mut().for_each(|radius| *radius += 0.3 * self.step);
+        }
+        match random.below(40) {
+            0 => *self = Self::new(random),
+            1 => self.model = random.below(3),
+            2 => {
+                let size = [2.0, 12.0][random.below(2) as usize];
+                self.pose = random.pose(size);
+            }
+            3 => (self.shift, self.turn) = (random.direction(), random.direction()),
+            4 => self.radii.iter_mut().for_each(|radius| *radius *= 1.5),
+            _ => {}
+        }
+    }
+
+    fn chain(&self, place: &Place) -> Chain {
+        let points: Vec<_> = self.points.iter().map(|&point| place.of(point)).collect();
+        let radii: Vec<_> = self.radii.iter().map(|radius| radius * place.unit).collect();
+        let make = [Chain::capsules, Chain::cylinders, Chain::from_centreline][self.model as usize];
+        make(&points, &radii).unwrap()
+    }
+}
+
+fn egg(random: &mut Random, place: &Place) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let (vertices, triangles) = Ball::new(1.0).to_trimesh(12, 6);
+    let (centre, axes) = (random.direction() * 3.0, random.point().abs() + 0.3);
+    (vertices.iter().map(|vertex| place.of(centre + *vertex * axes)).collect(), triangles)
+}
+
+/// How often what a walk is to visit was met.
+#[derive(Debug, Default)]
+struct Visited {
+    clear: u32,
+    met: u32,
+    /// The slack was smaller than 1e-8 of the unit.
+    touching: u32,
+    contacts: usize,
+    moved: u32,
+    deformed: u32,
+    /// Two structures were tightest alike.
+    tied: u32,
+}
+
+/// Asks a scene that remembers and one that does not, all questions in some order.
+fn ask_both(
+    random: &mut Random,
+    scene: &mut Scene,
+    never_asked: &Scene,
+    robots: &[(&Chain, Pose)],
+    unit: f64,
+    visited: &mut Visited,
+) -> Option<Tightest> {
+    let mut tightest = None;
+    for _ in 0..3 {
+        let mut fresh = never_asked.clone();
+        match random.below(3) {
+            0 => {
+                let clears = fresh.clears(robots).unwrap();
+                assert_eq!(scene.clears(robots).unwrap(), clears);
+                if clears { visited.clear += 1 } else { visited.met += 1 }
+            }
+            1 => {
+                tightest = fresh.tightest(robots).unwrap();
+                assert_eq!(scene.tightest(robots).unwrap(), tightest);
+                let touches = tightest.is_some_and(|found| found.slack.abs() < 1e-8 * unit);
+                visited.touching += u32::from(touches);
+            }
+            _ => {
+                let reach = unit * random.between(0.0, 1.0);
+                let (mut found, mut expected) = (Vec::new(), Vec::new());
+                fresh.contacts(robots, reach, &mut expected).unwrap();
+                scene.contacts(robots, reach, &mut found).unwrap();
+                assert_eq!(found, expected);
+                visited.contacts += found.len();
+            }
+        }
+    }
+    tightest
+}
+
+fn walks(rounds: std::ops::Range<u64>, place: &Place, visited: &mut Visited) {
+    for round in rounds {
+        let random = &mut Random::new(round);
+        let (mut scene, mut meshes) = (Scene::new(), Vec::new());
+        for number in 0..6 {
+            let (vertices, triangles) = egg(random, place);
+            let search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+            let margin = [None, Some(0.0), Some(0.2 * place.unit)][random.below(3) as usize];
+            scene.add(format!("organ {number}"), search, margin).unwrap();
+            meshes.push(vertices);
+        }
+        scene.set_robot_margin([None, Some(0.1 * place.unit)][random.below(2) as usize]).unwrap();
+        // The last is the first once more.
+        let first = BvhSearch::from_triangles(&meshes[0], &egg(random, place).1).unwrap();
+        scene.add("twin", first, scene.margin(0)).unwrap();
+        meshes.push(meshes[0].clone());
+        let mut are_twins = true;
+        let mut never_asked = scene.clone();
+        let mut walkers = [Walker::new(random), Walker::new(random)];
+        for _ in 0..50 {
+            walkers.iter_mut().for_each(|walker| walker.walk(random));
+            let number = random.below(7) as usize;
+            let before = visited.moved + visited.deformed;
+            match random.below(16) {
+                0 => {
+                    let size = [0.01, 1.0][random.below(2) as usize];
+                    let pose = random.pose(size);
+                    let pose = [place.pose(&pose), Pose::IDENTITY][random.below(2) as usize];
+                    for scene in [&mut scene, &mut never_asked] {
+                        scene.set_pose(number, &pose).unwrap();
+                    }
+                    visited.moved += 1;
+                }
+                1 => {
+                    let by = random.direction() * (place.unit * [0.01, 1.0][random.below(2) as usize]);
+                    meshes[number].iter_mut().for_each(|vertex| *vertex += by);
+                    for scene in [&mut scene, &mut never_asked] {
+                        scene.set_vertices(number, &meshes[number]).unwrap();
+                    }
+                    visited.deformed += 1;
+                }
+                _ => {}
+            }
+            are_twins &= before == visited.moved + visited.deformed || (1..6).contains(&number);
+            let chains = walkers.each_ref().map(|walker| walker.chain(place));
+            let mut robots = vec![];
+            for (walker, chain) in walkers.iter().zip(&chains) {
+                robots.push((chain, place.pose(&walker.pose)));
+            }
+            robots.truncate([2, 2, 2, 1][random.below(4) as usize]);
+            let found = ask_both(random, &mut scene, &never_asked, &robots, place.unit, visited);
+            if let Some(Tightest { between: Between::Structure(near), .. }) = found {
+                assert!(!are_twins || near.structure != 6);
+                visited.tied += u32::from(are_twins && near.structure == 0);
+            }
+            // A margin that is kept or missed by next to nothing.
+            if let Some(Tightest { between: Between::Structure(near), .. }) = found
+                && random.below(4) == 0
+            {
+                let by = [-1e-9, -1e-13, 0.0, 1e-13, 1e-9][random.below(5) as usize];
+                let margin = Some((near.nearest.distance + by * place.unit).max(0.0));
+                are_twins &= (1..6).contains(&near.structure);
+                for scene in [&mut scene, &mut never_asked] {
+                    scene.set_margin(near.structure as usize, margin).unwrap();
+                }
+                ask_both(random, &mut scene, &never_asked, &robots, place.unit, visited);
+            }
+        }
+    }
+}
+
+fn check(visited: &Visited, rounds: u32) {
+    let Visited { clear, met, touching, contacts, moved, deformed, tied } = visited;
+    let enough = *clear > 15 * rounds && *met > 10 * rounds && *touching > rounds;
+    assert!(enough && *contacts > 50 * rounds as usize && *moved > 2 * rounds, "{visited:?}");
+    assert!(*deformed > 2 * rounds && *tied > rounds / 4, "{visited:?}");
+}
+
+#[test]
+fn a_scene_that_remembers_says_what_a_new_one_says() {
+    let mut visited = Visited::default();
+    walks(0..120, &Place { origin: Vector::ZERO, unit: 1.0 }, &mut visited);
+    check(&visited, 120);
+}
+
+#[test]
+fn so_it_does_far_out_and_where_all_is_tiny() {
+    let far = Place { origin: Vector::new(1e6, -2e6, 5e5), unit: 1.0 };
+    let tiny = Place { origin: Vector::ZERO, unit: 1e-12 };
+    for place in [far, tiny] {
+        let mut visited = Visited::default();
+        walks(200..250, &place, &mut visited);
+        check(&visited, 50);
+    }
+}
