@@ -61,6 +61,7 @@
 //! | a proof of the distance of its two links | [`RobotProximity::certify`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does it keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
+//! | does a robot keep a margin to itself while it moves? | [`motion_self_clears`], [`RobotPair::motion_self_clears`] |
 //! | does a tube keep a margin to itself? | [`tube_self_clears`], [`RobotPair::tube_self_clears`] |
 //!
 //! **Several structures and robots**
@@ -115,7 +116,7 @@ pub use crate::answer::{
     Work,
 };
 pub use crate::engine::{
-    BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between, self_clears,
-    self_minimum, tube_self_clears,
+    BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between,
+    motion_self_clears, self_clears, self_minimum, tube_self_clears,
 };
 pub use crate::scene::Scene;

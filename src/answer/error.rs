@@ -1,6 +1,6 @@
 //! Why there is no answer. Each message names the value at fault and what to change.
 
-use crate::robot::RobotError;
+use crate::robot::{RobotError, TooSharp};
 #[cfg(feature = "gpu")]
 use gpu_batch::DeviceFailure;
 use parry3d_f64::math::Real;
@@ -183,6 +183,18 @@ pub enum ProximityError {
         /// What was asked for.
         resolution: Real,
     },
+    /// A direction turns so fast that time cannot be divided finely enough.
+    #[error(
+        "section {section} turns at {turn} rad, more than {limit:e}, in the motion's time; state a smaller turn, or divide the motion"
+    )]
+    TurnsTooFast {
+        /// The section, counted from the base.
+        section: usize,
+        /// The turn that the motion states for it.
+        turn: Real,
+        /// The largest that is accepted.
+        limit: Real,
+    },
     /// An answer names a link that the robot does not have.
     #[error(
         "the answer is about link {link}, but the robot has {links} links; give the robot that was asked about"
@@ -285,6 +297,19 @@ impl MeshError {
     /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
     pub fn kind(&self) -> &'static str {
         self.into()
+    }
+}
+
+impl From<TooSharp> for ProximityError {
+    fn from(too_sharp: TooSharp) -> Self {
+        match too_sharp {
+            TooSharp::Joint { joint, angle, radius, length } => {
+                Self::JointTooSharp { joint, angle, radius, length }
+            }
+            TooSharp::Bend { arc_length, curvature, radius } => {
+                Self::BendsWithinRadius { arc_length, curvature, radius }
+            }
+        }
     }
 }
 

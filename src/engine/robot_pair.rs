@@ -1,7 +1,7 @@
 //! Two robots beside one another.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
-use crate::query::motion::{MotionsMemory, TwoMotions, Wanted};
+use crate::query::motion::{MotionsMemory, OwnMotionMemory, TwoMotions, Wanted, own_motion_clears};
 use crate::query::robots::{
     OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between,
     own_tube_clears, place_tubes, tubes_clear,
@@ -42,6 +42,7 @@ pub struct RobotPair {
     tubes: TubesMemory,
     own_tube: OwnTubeMemory,
     motions: MotionsMemory,
+    own_motion: OwnMotionMemory,
 }
 
 /// What the parameters are called.
@@ -229,8 +230,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        let memory = &mut self.motions;
-        let mut motions = TwoMotions { memory, motions: (a, b), names: MOTIONS, shapes: 0 };
+        let mut motions = TwoMotions { memory: &mut self.motions, motions: (a, b), names: MOTIONS };
         motions.clear(Wanted { margin, resolution })
     }
 
@@ -263,6 +263,20 @@ impl RobotPair {
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
         own_tube_clears(tube, &mut self.own_tube, margin, resolution)
+    }
+
+    /// As [`motion_self_clears`], in memory that is used again.
+    ///
+    /// # Errors
+    /// As [`motion_self_clears`].
+    pub fn motion_self_clears(
+        &mut self,
+        motion: &impl Motion,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
+        check_decision(margin, resolution)?;
+        own_motion_clears(motion, &mut self.own_motion, Wanted { margin, resolution })
     }
 }
 
@@ -399,4 +413,39 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// ```
 pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<Decision, ProximityError> {
     RobotPair::new().tube_self_clears(tube, margin, resolution)
+}
+
+/// Whether a robot that moves keeps more than `margin` to itself, at every time from 0 to 1.
+///
+/// - `Clear` is proven from the speeds and turns that the motion states: at no instant are two places closest to one another, and at
+///   most the margin apart, unless they are neighbours.
+/// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`] asks for it, and two points of that
+///   shape in the mesh's frame.
+/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or few
+///   samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there.
+///
+/// The work is one query about a tube beside itself for each time that the proof needs: four for each rad that a part of the robot
+/// turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion).
+///
+/// ```
+/// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};
+///
+/// // A hairpin of straight links, whose tip swings past its base.
+/// let hairpin = |y: f64| [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]].map(Vector::from_array);
+/// let motion = LinearMotion::chain(&hairpin(-6.0), &hairpin(6.0), &[1.0; 3])?;
+/// assert!(motion_self_clears(&motion, 1.5, 1e-3)?.is_clear());
+/// assert_eq!(motion_self_clears(&motion, 2.5, 1e-3)?.decision, Decision::Contact);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one that [`tube_self_clears`] refuses;
+/// its sections change; a stated speed or turn is not finite; or the resolution is finer than rounding, than the samples of a shape
+/// allow, or than so fast a motion can be divided.
+pub fn motion_self_clears(
+    motion: &impl Motion,
+    margin: Real,
+    resolution: Real,
+) -> Result<RobotMotionAnswer, ProximityError> {
+    RobotPair::new().motion_self_clears(motion, margin, resolution)
 }

@@ -4,6 +4,9 @@ mod divided;
 mod on_loose_tube;
 mod on_tube;
 mod outer;
+mod own_moves;
+#[cfg(test)]
+mod own_moves_tests;
 mod own_tube;
 mod piece;
 mod placed_tube;
@@ -15,6 +18,7 @@ mod two_tubes;
 
 pub(crate) use divided::{Body, Bound, Divided};
 pub(crate) use outer::Outer;
+pub(crate) use own_moves::{MOST_GROWTH, Moved, OwnMoves};
 pub(crate) use own_tube::{OwnBeginning, OwnPair, OwnTube};
 pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;

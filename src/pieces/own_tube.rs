@@ -50,6 +50,9 @@
 //! **Errors that are stated** say where the curve may be, not how it turns. So what is asked about is decided by the curve as
 //! it is given, and errors count in every distance.
 //!
+//! **While it moves** places may be asked about that are not in the shape that is looked at: `own_moves` has by how much more turn, and
+//! how much farther ahead. Of what is found in that shape counts what counts at rest.
+//!
 //! **What counts on either side.** If two places turn by more than is asked for, what is left is shared out: all places up to
 //! the first arc length and from the second on have enough between them (`TubeTurns::room`). Within these two parts each point
 //! between them shows how near both are (`on_tube`).
@@ -57,10 +60,11 @@
 use super::divided::{Body, Divided};
 use super::on_tube::OnTube;
 use super::outer::Outer;
+use super::own_moves::{Moved, OwnMoves};
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
 use super::refine::Part;
-use super::two_tubes::{FoundBetween, TwoTubes, found_from, half_way};
+use super::two_tubes::{FoundBetween, Stretch, TwoTubes, found_from, half_way};
 use crate::answer::ProximityError;
 use crate::pair::{NearestOfLinks, PlacedLink};
 use crate::robot::{Face, Tube, TubeTurns};
@@ -85,15 +89,17 @@ pub(crate) struct OwnTube<'a> {
     /// Twice the same.
     both: TwoTubes<'a>,
     turns: &'a TubeTurns,
+    /// What may change of it; none at rest.
+    moves: Option<&'a OwnMoves>,
 }
 
 /// Two pieces, the first of which comes first along the tube. Either may be a face: a piece without length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OwnPair {
-    pieces: [Piece; 2],
+    pub(super) pieces: [Piece; 2],
     outers: [Outer; 2],
     /// The end of its section at which a piece is a face.
-    faces: [Option<usize>; 2],
+    pub(super) faces: [Option<usize>; 2],
     is_asked: bool,
 }
 
@@ -133,7 +139,37 @@ impl<'a> OwnTube<'a> {
     /// The tube has no section or is out of range.
     pub(crate) fn new(tube: &'a Tube, turns: &'a TubeTurns) -> Result<Self, ProximityError> {
         let placed = PlacedTube::new(tube, &Pose::IDENTITY, 0.0)?;
-        Ok(Self { both: TwoTubes::new([placed; 2]), turns })
+        Ok(Self { both: TwoTubes::new([placed; 2]), turns, moves: None })
+    }
+
+    /// A tube that moves, in the shape at the middle of an interval of time.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn moving(
+        tube: &'a Tube,
+        turns: &'a TubeTurns,
+        moves: &'a OwnMoves,
+    ) -> Result<Self, ProximityError> {
+        let placed = PlacedTube::new(tube, &Pose::IDENTITY, 0.0)?.moving();
+        Ok(Self { both: TwoTubes::new([placed; 2]), turns, moves: Some(moves) })
+    }
+
+    /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
+    pub(crate) fn stretches<'p>(&self, pair: &'p OwnPair) -> [Stretch<'p>; 2] {
+        [0, 1].map(|k: usize| self.tube().stretch(&pair.pieces[k], &pair.outers[k]))
+    }
+
+    /// By how much more a pair may turn, as far as it matters, while the tube moves.
+    pub(crate) fn growth(&self, pair: &OwnPair) -> Real {
+        self.moves.map_or(0.0, |moves| moves.growth(pair.pieces[1].section))
+    }
+
+    /// By how much both pieces of a pair may move, and the first or the second turn.
+    fn moved(&self, pair: &OwnPair, turning: usize) -> Moved {
+        let Some(moves) = self.moves else { return Moved::default() };
+        let [one, two] = pair.pieces.map(|piece| moves.of(piece.section));
+        Moved { points: one.points + two.points, turn: [one, two][turning].turn }
     }
 
     fn tube(&self) -> &PlacedTube<'a> {
@@ -266,39 +302,44 @@ impl<'a> OwnTube<'a> {
         let [one, two] = pair.pieces;
         // Neighbours of a chain share a joint; and of a piece and itself nothing is asked but what turns.
         let apart = two.section - one.section;
-        if (self.turns.has_joints() && apart < 2) || !self.turns.may_reach(most, Self::angle(pair)) {
+        if (self.turns.has_joints() && apart < 2) || !self.may_turn(pair, most) {
             return false;
         }
         let Some(k) = pair.faces.iter().position(Option::is_some) else { return true };
-        let is_before = |k: usize| {
-            let Some(end) = pair.faces[k] else { return true };
-            self.may_be_before(&pair.pieces[k], end, &pair.outers[1 - k].body)
-        };
         let is_same = pair.faces == [Some(0), Some(0)] || pair.faces == [Some(1), Some(1)];
         if is_same && apart == 0 {
             return false;
         }
-        is_before(k) && is_before(1 - k) && self.ways_leave(pair)
+        self.may_be_before(pair, k) && self.may_be_before(pair, 1 - k) && self.ways_leave(pair)
     }
 
-    /// Whether a body may be in front of a face somewhere.
-    fn may_be_before(&self, piece: &Piece, end: usize, body: &PlacedLink) -> bool {
-        self.face(piece, end).is_none_or(|face| self.ahead(piece, &face, body, 1.0) >= 0.0)
+    /// Whether a pair that turns by `most` at most may turn by what is asked for.
+    fn may_turn(&self, pair: &OwnPair, most: Real) -> bool {
+        self.turns.may_reach(most + self.growth(pair), Self::angle(pair))
     }
 
-    /// How far ahead of a face some place of a body is at most (`sign` 1), or how far behind it at most (-1).
-    fn ahead(&self, piece: &Piece, face: &Face, body: &PlacedLink, sign: Real) -> Real {
+    /// Whether the one body of a pair may be in front of the other, a face, somewhere.
+    fn may_be_before(&self, pair: &OwnPair, k: usize) -> bool {
+        let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
+        face.is_none_or(|face| self.ahead(pair, k, &face, 1.0, self.moved(pair, k)) >= 0.0)
+    }
+
+    /// How far ahead of a face some place of the other body is at most (`sign` 1), or how far behind it at most (-1), after both have
+    /// moved so much.
+    fn ahead(&self, pair: &OwnPair, k: usize, face: &Face, sign: Real, moved: Moved) -> Real {
+        let body = &pair.outers[1 - k].body;
         let ends = [body.start(), body.end()].map(|end| end - face.centre);
         let ahead = (sign * ends[0].dot(face.outward)).max(sign * ends[1].dot(face.outward)) + body.radius();
-        let away = ends[0].length().max(ends[1].length()) + body.radius();
-        ahead + away * face.tilt + 2.0 * self.off(face, self.tube().radius(piece))
+        let away = ends[0].length().max(ends[1].length()) + body.radius() + moved.points;
+        let off = self.off(face, self.tube().radius(&pair.pieces[k]));
+        ahead + moved.points + away * (face.tilt + moved.turn) + 2.0 * off
     }
 
     /// Whether all of a pair is in front of its faces.
     fn is_before(&self, pair: &OwnPair) -> bool {
         (0..2).all(|k| {
             let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
-            face.is_none_or(|face| self.ahead(&pair.pieces[k], &face, &pair.outers[1 - k].body, -1.0) <= 0.0)
+            face.is_none_or(|face| self.ahead(pair, k, &face, -1.0, Moved::default()) <= 0.0)
         })
     }
 
@@ -312,14 +353,15 @@ impl<'a> OwnTube<'a> {
     fn ways_leave(&self, pair: &OwnPair) -> bool {
         pair.faces == [None; 2] || !self.is_whole(pair) || {
             let nearest = self.between_faces(pair);
-            self.leave(pair, &nearest, |k| -self.doubt_of_way(pair, k, nearest.distance))
+            self.leave(pair, &nearest, |k| -self.doubt_of_way(pair, k, nearest.distance, self.moved(pair, k)))
         }
     }
 
     /// Whether it certainly does, but for rounding.
     fn ways_surely_leave(&self, pair: &OwnPair, nearest: &NearestOfLinks) -> bool {
         let rounding = doubt_of_way(ROUNDING_OF_FACES * self.tube().slack(), nearest.distance, 0.0);
-        self.leave(pair, nearest, |k| self.doubt_of_way(pair, k, nearest.distance) - 2.0 * rounding)
+        let doubt = |k| self.doubt_of_way(pair, k, nearest.distance, Moved::default());
+        self.leave(pair, nearest, |k| doubt(k) - 2.0 * rounding)
     }
 
     /// Whether a way leaves all faces of a pair by at least so much along their normals, as far as these are known.
@@ -341,10 +383,11 @@ impl<'a> OwnTube<'a> {
         }
     }
 
-    /// By how much a way of the length `distance` may err along the normal of a face.
-    fn doubt_of_way(&self, pair: &OwnPair, k: usize, distance: Real) -> Real {
+    /// By how much a way of the length `distance` may err along the normal of a face, after both bodies have moved so much.
+    fn doubt_of_way(&self, pair: &OwnPair, k: usize, distance: Real, moved: Moved) -> Real {
         let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
-        doubt_of_way(self.off_of_bodies(pair), distance, face.map_or(0.0, |face| face.tilt))
+        let tilt = face.map_or(0.0, |face| face.tilt) + moved.turn;
+        doubt_of_way(self.off_of_bodies(pair) + moved.points, distance, tilt)
     }
 
     /// How far the bodies of faces and links may be from what they stand for, together.
@@ -615,6 +658,10 @@ impl Divided for OwnTube<'_> {
 
     fn doubt(&self, pair: &OwnPair) -> Real {
         pair.pieces.iter().map(|piece| self.tube().doubt(piece)).sum()
+    }
+
+    fn may_open(&self, pair: &OwnPair) -> bool {
+        pair.pieces.iter().any(|piece| self.tube().may_open(piece))
     }
 
     fn is_surely_asked(&self, pair: &OwnPair, found: &FoundBetween) -> bool {

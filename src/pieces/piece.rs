@@ -1,6 +1,8 @@
 //! Pieces of the centreline, and how a query divides them.
 
+use super::outer::Outer;
 use super::placed_tube::PlacedTube;
+use super::two_tubes::Stretch;
 use crate::robot::Section;
 use parry3d_f64::math::Real;
 
@@ -36,6 +38,11 @@ impl PlacedTube<'_> {
     pub(crate) fn shares(&self, piece: &Piece) -> [Real; 2] {
         let section = self.section(piece.section);
         [piece.from, piece.to].map(|tick| self.tube.share(section, tick))
+    }
+
+    /// A piece whatever the shape of the tube, and the body that holds it in this one.
+    pub(super) fn stretch<'o>(&self, piece: &Piece, outer: &'o Outer) -> Stretch<'o> {
+        Stretch { section: piece.section, shares: self.shares(piece), outer, radius: self.radius(piece) }
     }
 
     /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.

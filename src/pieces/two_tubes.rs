@@ -106,11 +106,7 @@ impl<'a> TwoTubes<'a> {
 
     /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
     pub(crate) fn stretches<'p>(&self, pair: &'p PiecePair) -> [Stretch<'p>; 2] {
-        [0, 1].map(|k: usize| {
-            let (tube, piece) = (&self.tubes[k], &pair.pieces[k]);
-            let shares = tube.shares(piece);
-            Stretch { section: piece.section, shares, outer: &pair.outers[k], radius: tube.radius(piece) }
-        })
+        [0, 1].map(|k: usize| self.tubes[k].stretch(&pair.pieces[k], &pair.outers[k]))
     }
 
     /// Whether both have the sections.

@@ -1,14 +1,13 @@
 //! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at its middle.
 
 use super::moves::Moves;
-use super::pace::Pace;
+use super::pace::{MOST_INTERVALS, Pace};
 use crate::answer::ProximityError;
 use crate::pieces::{Body, Bound, Divided, Look, Near, Question, Verdict};
 use parry3d_f64::math::Real;
 
-/// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
-/// far less; and more shapes than this nobody waits for.
-const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
+/// What may turn by no more than this beyond what a shape shows, in rad, is decided by the shape.
+const LEAST_GROWTH: Real = 1.0 / 64.0;
 
 /// The margin that is to be kept, and how near to it an answer may stay open.
 #[derive(Clone, Copy)]
@@ -60,6 +59,7 @@ impl<D: Divided, P, V: Moves<D, P>> Question<D, P> for Moment<V, D::Found> {
         outer: &D::Body,
     ) -> Result<Look, ProximityError> {
         self.pace.speed = self.moving.speed(part, piece, outer, tube)?;
+        self.pace.growth = self.moving.growth(part, tube);
         let (reach, Wanted { margin, resolution }) = (self.pace.reach(), self.wanted);
         let is_wide =
             outer.over() > 2.0 * reach.max(resolution) && outer.over() > 0.5 * tube.radius(piece).max(margin);
@@ -95,12 +95,13 @@ impl<D: Divided, P, V: Moves<D, P>> Question<D, P> for Moment<V, D::Found> {
 
     fn judge_whole(&mut self, tube: &D, near: &Near<D, P>) -> Result<(), ProximityError> {
         let (may_open, resolution) = (tube.may_open(near.piece), self.wanted.resolution);
-        if self.is_fine() && !may_open {
+        if self.is_fine() && !may_open && tube.is_surely_asked(near.piece, near.found) {
             let stated = tube.stated(near.piece);
             tube.check_resolved(near.found.upper() - D::distance(near.nearest) - stated, resolution)?;
         }
         let moved = self.pace.reach().max(self.pace.opening);
-        if self.is_fine() && (!may_open || moved <= resolution / 128.0) {
+        let is_open_end_decided = moved <= resolution / 128.0 || self.pace.opens_too_fast(resolution);
+        if self.is_fine() && (!may_open || is_open_end_decided) {
             self.seen.is_undecided = true;
             return Ok(());
         }
@@ -116,7 +117,7 @@ impl<V, F> Moment<V, F> {
 
     /// Whether it moves so little that the shape decides.
     fn is_fine(&self) -> bool {
-        self.pace.reach() <= 0.5 * self.wanted.resolution
+        self.pace.reach() <= 0.5 * self.wanted.resolution && self.pace.growth <= LEAST_GROWTH
     }
 
     /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.

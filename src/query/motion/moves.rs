@@ -19,6 +19,11 @@ pub(crate) trait Moves<D: Divided, P> {
         divided: &D,
     ) -> Result<Real, ProximityError>;
 
+    /// By how much more a part may turn than its middle shape shows, where that decides whether it is asked about.
+    fn growth(&self, _: &P, _: &D) -> Real {
+        0.0
+    }
+
     /// A triangle that is likely to be near, where there are triangles.
     fn start(&self) -> Option<u32>;
 

@@ -3,6 +3,10 @@
 use crate::distance::Scalar;
 use parry3d_f64::math::Real;
 
+/// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
+/// far less; and more shapes than this nobody waits for.
+pub(super) const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
+
 /// What moves in an interval of time, seen from its middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
@@ -12,6 +16,8 @@ pub(crate) struct Pace {
     pub opening: Real,
     /// How fast what is looked at approaches at most.
     pub speed: Real,
+    /// By how much more it may turn than the middle shape shows, where that matters.
+    pub growth: Real,
     /// For how long before and after the middle shape what failed is decided.
     pub still: Real,
 }
@@ -35,12 +41,17 @@ pub(super) fn rests(times: [Real; 2], still: Real) -> [Option<[Real; 2]>; 2] {
 
 impl Pace {
     pub(super) fn new(times: [Real; 2], opening: Real) -> Self {
-        Self { half: half(times), opening, speed: 0.0, still: Real::INFINITY }
+        Self { half: half(times), opening, speed: 0.0, growth: 0.0, still: Real::INFINITY }
     }
 
     /// How much nearer it may come than in the middle shape.
     pub(super) fn reach(&self) -> Real {
         self.half * self.speed
+    }
+
+    /// Whether flat ends that may become round are so fast that this takes no interval of the least length to be told.
+    pub(super) fn opens_too_fast(&self, resolution: Real) -> bool {
+        self.opening > MOST_INTERVALS * resolution * self.half
     }
 
     /// Takes note of something that is decided for as long as it has not come nearer by `room`.

@@ -40,8 +40,9 @@ impl Present {
     pub(super) fn hold_faces<M: Motion>(&mut self, motion: &M, times: [Real; 2]) -> Real {
         let half = half(times);
         self.tube.hold_faces(|section, end| {
-            // A speed that is not finite or NaN holds nothing; it is refused where it is asked for.
-            half * motion.speed(section, [end as Real; 2], times).point
+            // A speed that is none holds nothing; it is refused where it is asked for.
+            let speed = motion.speed(section, [end as Real; 2], times).point;
+            half * if speed >= 0.0 { speed } else { Real::INFINITY }
         })
     }
 }

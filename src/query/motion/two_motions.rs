@@ -6,12 +6,12 @@
 //! and which pieces of one robot are near which of the other is seen at once from their bodies: so each shape begins with all pairs that may
 //! come as near as the margin in its interval, instead of a list that the one before left.
 
+use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
 use super::moving_pair::MovingPair;
-use super::pace::{Pace, half, middle, rests};
+use super::pace::{Pace, half, middle};
 use super::present::Present;
-use super::progress::Progress;
-use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
+use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
 use crate::pieces::{Beginning, Divided, FoundBetween, PiecePair, PlacedTube, TwoTubes, refine};
 use crate::robot::{Motion, RobotError};
@@ -33,46 +33,19 @@ pub(crate) struct TwoMotions<'a, A, B> {
     pub motions: (&'a A, &'a B),
     /// What the motions are called.
     pub names: [&'static str; 2],
-    /// At how many times the shapes were looked at.
-    pub shapes: u64,
 }
 
 impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
-    /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
+    /// Whether the margin is kept at all times.
     pub(crate) fn clear(&mut self, wanted: Wanted) -> Result<RobotMotionAnswer, ProximityError> {
-        let mut progress = Progress::default();
-        self.begin();
-        while let Some(times) = self.memory.intervals.pop_front() {
-            let left = self.memory.intervals.iter().copied().chain([times]);
-            if let Some(first) = progress.gives_up(self.shapes, left) {
-                return Ok(RobotMotionAnswer::undecided(first));
-            }
-            let (seen, still) = self.judge(times, wanted)?;
-            progress.take(times, &seen, self.shapes);
-            if let Some(FoundBetween { upper, sections, arcs, points: [on_first, on_second] }) = seen.contact
-            {
-                let t = middle(times);
-                let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
-                return Ok(RobotMotionAnswer::contact(contact));
-            }
-            self.memory.intervals.extend(rests(times, still).into_iter().flatten());
-        }
-        Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
-    }
-
-    /// Begins with each part of either motion's time.
-    fn begin(&mut self) {
-        let MotionsMemory { present, intervals, .. } = &mut *self.memory;
-        for present in present {
+        let mut intervals = std::mem::take(&mut self.memory.intervals);
+        for present in &mut self.memory.present {
             present.forget();
         }
-        let legs = [self.motions.0.legs(), self.motions.1.legs()].map(|legs| legs.max(1));
-        let ends = legs.into_iter().flat_map(|legs| (0..=legs).map(move |leg| leg as Real / legs as Real));
-        let mut ends: Vec<Real> = ends.collect();
-        ends.sort_unstable_by(Real::total_cmp);
-        ends.dedup();
-        intervals.clear();
-        intervals.extend(ends.windows(2).map(|ends| [ends[0], ends[1]]));
+        intervals::begin(&mut intervals, [self.motions.0.legs(), self.motions.1.legs()]);
+        let answer = intervals::clear(&mut intervals, |times| self.judge(times, wanted));
+        self.memory.intervals = intervals;
+        answer
     }
 
     /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how long before and after these all
@@ -85,7 +58,6 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         let (motions, names) = (self.motions, self.names);
         let MotionsMemory { present: [first, second], beginning, pairs, .. } = &mut *self.memory;
         let [first, second] = [shape(motions.0, first, times), shape(motions.1, second, times)];
-        self.shapes += 1;
         let first = first.map_err(|error| error.of_robot(names[0]))?;
         let second = second.map_err(|error| error.of_robot(names[1]))?;
         let mut tubes = TwoTubes::new([first.tube, second.tube]);
@@ -93,7 +65,12 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
         let reach = half(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let Wanted { margin, resolution } = wanted;
-        tubes.begin(margin.max(resolution), margin + reach + tubes.slack(), beginning, pairs)?;
+        tubes.begin(
+            margin.max(resolution).max(0.25 * reach),
+            margin + reach + tubes.slack(),
+            beginning,
+            pairs,
+        )?;
         let pace = Pace::new(times, first.opening.max(second.opening));
         let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
         let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };

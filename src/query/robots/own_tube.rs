@@ -3,7 +3,7 @@
 use crate::answer::{Decision, ProximityError};
 use crate::pieces::{OwnBeginning, OwnPair, OwnTube};
 use crate::query::clearance::keeps;
-use crate::robot::{TooSharp, Tube, TubeTurns};
+use crate::robot::{Tube, TubeTurns};
 use parry3d_f64::math::Real;
 
 /// What one query leaves for the next.
@@ -25,14 +25,7 @@ pub(crate) fn own_tube_clears(
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
     let OwnTubeMemory { turns, beginning, pairs } = memory;
-    tube.measure_turns(turns).map_err(|too_sharp| match too_sharp {
-        TooSharp::Joint { joint, angle, radius, length } => {
-            ProximityError::JointTooSharp { joint, angle, radius, length }
-        }
-        TooSharp::Bend { arc_length, curvature, radius } => {
-            ProximityError::BendsWithinRadius { arc_length, curvature, radius }
-        }
-    })?;
+    tube.measure_turns(turns)?;
     let mut own = OwnTube::new(tube, turns)?;
     own.begin(margin.max(resolution), margin, beginning, pairs)?;
     let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;

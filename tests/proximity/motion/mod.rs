@@ -10,6 +10,7 @@ mod left_out;
 mod moving_base;
 mod moving_mesh;
 mod narrow;
+mod own;
 mod path;
 mod refused;
 mod speeds;

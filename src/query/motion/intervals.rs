@@ -1,0 +1,47 @@
+//! The loop over intervals of time, for robots beside robots.
+
+use super::moment::Seen;
+use super::pace::{middle, rests};
+use super::progress::Progress;
+use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
+use crate::pieces::FoundBetween;
+use parry3d_f64::math::Real;
+use std::collections::VecDeque;
+
+/// Whether a margin is kept in all intervals. `judge` looks at the middle of one, and says for how long before and after it what failed
+/// there is decided: for ever where nothing did. Breadth first: contacts that last show early.
+///
+/// # Errors
+/// As `judge`.
+pub(super) fn clear(
+    intervals: &mut VecDeque<[Real; 2]>,
+    mut judge: impl FnMut([Real; 2]) -> Result<(Seen<FoundBetween>, Real), ProximityError>,
+) -> Result<RobotMotionAnswer, ProximityError> {
+    let (mut progress, mut shapes) = (Progress::default(), 0);
+    while let Some(times) = intervals.pop_front() {
+        if let Some(first) = progress.gives_up(shapes, intervals.iter().copied().chain([times])) {
+            return Ok(RobotMotionAnswer::undecided(first));
+        }
+        let (seen, still) = judge(times)?;
+        shapes += 1;
+        progress.take(times, &seen, shapes);
+        if let Some(FoundBetween { upper, sections, arcs, points: [on_first, on_second] }) = seen.contact {
+            let t = middle(times);
+            let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
+            return Ok(RobotMotionAnswer::contact(contact));
+        }
+        intervals.extend(rests(times, still).into_iter().flatten());
+    }
+    Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
+}
+
+/// Begins with each part of the time of all motions, which have so many.
+pub(super) fn begin(intervals: &mut VecDeque<[Real; 2]>, legs: impl IntoIterator<Item = usize>) {
+    let legs = legs.into_iter().map(|legs| legs.max(1));
+    let ends = legs.flat_map(|legs| (0..=legs).map(move |leg| leg as Real / legs as Real));
+    let mut ends: Vec<Real> = ends.collect();
+    ends.sort_unstable_by(Real::total_cmp);
+    ends.dedup();
+    intervals.clear();
+    intervals.extend(ends.windows(2).map(|ends| [ends[0], ends[1]]));
+}
