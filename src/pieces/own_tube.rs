@@ -74,6 +74,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Pairs of which nobody knows whether they are asked about are not halved any more where both turn by less.
 const LEAST_TURN: Real = 1.0 / 1024.0;
 
+/// Nor are they where they turn by less than this part of what they may turn more while they move.
+const MOST_SHARE_OF_GROWTH: Real = 1.0 / 16.0;
+
 /// How far the body of a face goes into the tube, in radii.
 const INTO_TUBE: Real = 1.0 / 1024.0;
 
@@ -417,7 +420,10 @@ impl<'a> OwnTube<'a> {
             let has_face = |end: usize| self.tube().section(piece.section).faces[end].is_some();
             pair.faces[k].is_none_or(|end| !has_face(end) || self.face(piece, end).is_some())
         });
-        let counts = pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest);
+        // What may be asked about at another time does not count in this shape.
+        let is_asked = self.turns.may_reach(self.turns(pair)[0], Self::angle(pair));
+        let counts =
+            is_asked && (pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest));
         let upper = if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
         FoundBetween { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
     }
@@ -575,7 +581,9 @@ impl Divided for OwnTube<'_> {
 
     fn halves(&self, pair: &OwnPair, _: &OwnPair, aim: Real) -> Option<[OwnPair; 2]> {
         let (tube, [least, most]) = (self.tube(), self.turns(pair));
-        if least < Self::angle(pair) && most - least < LEAST_TURN && most > least {
+        // Where time is to blame for the doubt, a shorter interval is better than shorter pieces.
+        let open = LEAST_TURN.max(MOST_SHARE_OF_GROWTH * self.growth(pair));
+        if least < Self::angle(pair) && most - least < open && most > least {
             return None;
         }
         let gains = |k: usize| pair.outers[k].narrows > 0.5 * tube.slack();

@@ -26,13 +26,15 @@ pub(crate) struct Seen<F> {
     pub is_undecided: bool,
     /// Whether the shape is above the margin by no more than the resolution.
     pub is_near: bool,
+    /// Whether it was not looked at to the end, nor is any other shape to be.
+    pub gives_up: bool,
 }
 
 impl<F> Seen<F> {
     /// Nothing, before anything is looked at.
     pub(super) fn nothing() -> Self {
-        let (is_fine, is_undecided, is_near) = (false, false, false);
-        Self { contact: None, is_fine, is_undecided, is_near }
+        let (is_fine, is_undecided, is_near, gives_up) = (false, false, false, false);
+        Self { contact: None, is_fine, is_undecided, is_near, gives_up }
     }
 }
 
@@ -48,7 +50,7 @@ impl<D: Divided, P, V: Moves<D, P>> Question<D, P> for Moment<V, D::Found> {
     const NEARER_FIRST: bool = false;
 
     fn is_answered(&self) -> bool {
-        false
+        self.moving.gives_up()
     }
 
     fn look(

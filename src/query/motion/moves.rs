@@ -24,6 +24,11 @@ pub(crate) trait Moves<D: Divided, P> {
         0.0
     }
 
+    /// Whether no more parts are to be looked at, for want of an end.
+    fn gives_up(&self) -> bool {
+        false
+    }
+
     /// A triangle that is likely to be near, where there are triangles.
     fn start(&self) -> Option<u32>;
 

@@ -15,6 +15,8 @@ pub(super) struct MovingOwn<'a, M> {
     pub times: [Real; 2],
     /// How fast the two pieces are that are looked at.
     pub speeds: [Real; 2],
+    /// How many pairs of pieces may still be looked at, in this shape and all others.
+    pub left: &'a mut u32,
 }
 
 impl<'t, M: Motion> Moves<OwnTube<'t>, OwnPair> for MovingOwn<'_, M> {
@@ -26,6 +28,7 @@ impl<'t, M: Motion> Moves<OwnTube<'t>, OwnPair> for MovingOwn<'_, M> {
         _: &OwnPair,
         own: &OwnTube<'t>,
     ) -> Result<Real, ProximityError> {
+        *self.left = self.left.saturating_sub(1);
         for (speed, stretch) in self.speeds.iter_mut().zip(own.stretches(pair)) {
             let Fast { centreline, rim } = Fast::of(self.motion, self.times, &stretch)?;
             *speed = centreline + rim;
@@ -35,6 +38,10 @@ impl<'t, M: Motion> Moves<OwnTube<'t>, OwnPair> for MovingOwn<'_, M> {
 
     fn growth(&self, pair: &OwnPair, own: &OwnTube<'t>) -> Real {
         own.growth(pair)
+    }
+
+    fn gives_up(&self) -> bool {
+        *self.left == 0
     }
 
     fn start(&self) -> Option<u32> {

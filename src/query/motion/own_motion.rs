@@ -6,6 +6,7 @@
 
 use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
+use super::moves::Moves;
 use super::moving_own::MovingOwn;
 use super::pace::{Pace, half, middle};
 use super::present::Present;
@@ -20,6 +21,10 @@ use std::collections::VecDeque;
 
 /// A direction that turns faster than this, in rad, would have time divided into a million intervals at once.
 const FASTEST_TURN: Real = (1_u64 << 18) as Real;
+
+/// So many pairs of pieces are looked at in all shapes together, 2^20. Where the margin is as wide as a bend, there may be no end of
+/// pairs of which nobody knows whether they are asked about.
+const MOST_PAIRS: u32 = 1 << 20;
 
 /// Memory of a query, used again by the next.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +50,8 @@ pub(crate) fn own_motion_clears<M: Motion>(
     let mut intervals = std::mem::take(&mut memory.intervals);
     memory.present.forget();
     intervals::begin(&mut intervals, [motion.legs()]);
-    let answer = intervals::clear(&mut intervals, |times| judge(motion, memory, times, wanted));
+    let mut left = MOST_PAIRS;
+    let answer = intervals::clear(&mut intervals, |times| judge(motion, memory, times, wanted, &mut left));
     memory.intervals = intervals;
     answer
 }
@@ -57,6 +63,7 @@ fn judge<M: Motion>(
     memory: &mut OwnMotionMemory,
     times: [Real; 2],
     wanted @ Wanted { margin, resolution }: Wanted,
+    left: &mut u32,
 ) -> Result<(Seen<FoundBetween>, Real), ProximityError> {
     let OwnMotionMemory { present, turns, moves, beginning, pairs, .. } = memory;
     let pose = present.turn_to(motion, middle(times))?;
@@ -71,10 +78,13 @@ fn judge<M: Motion>(
     own.check_resolved(32.0 * own.slack(), resolution)?;
     let reach = 2.0 * moves.farthest() * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
     own.begin(margin.max(resolution).max(0.25 * reach), margin + reach + own.slack(), beginning, pairs)?;
-    let moving = MovingOwn { motion, times, speeds: [0.0; 2] };
+    let moving = MovingOwn { motion, times, speeds: [0.0; 2], left };
     let mut moment = Moment { moving, pace: Pace::new(times, opening), wanted, seen: Seen::nothing() };
     refine(&mut own, pairs, &mut moment)?;
-    let Moment { pace, mut seen, .. } = moment;
+    let Moment { moving, pace, mut seen, .. } = moment;
+    if moving.gives_up() && seen.contact.is_none() {
+        (seen.is_undecided, seen.gives_up) = (true, true);
+    }
     if let Some(found) = &mut seen.contact {
         found.points = found.points.map(|point| pose * point);
     }

@@ -23,6 +23,9 @@ impl Progress {
         if seen.is_near && self.near.is_none() {
             self.near = Some((times, shapes + PATIENCE));
         }
+        if seen.gives_up {
+            self.near = Some((times, shapes));
+        }
         if seen.is_undecided && self.undecided.is_none_or(|first| times[0] < first[0]) {
             self.undecided = Some(times);
         }

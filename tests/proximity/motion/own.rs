@@ -1,12 +1,16 @@
 //! Motions of one robot beside itself: against each of many steps, and against what may be between these.
 
+use super::speeds::Understated;
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::disc_disc;
+use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{Decision, RobotPair};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, Speed, Tube, verify_motion,
+    BendingMotion, BendingSection, Chain, ConstantCurvature, LinearMotion, Motion, RigidMotion, RobotError,
+    Speed, Tube, verify_motion,
 };
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 const STEPS: usize = 250;
 const RESOLUTION: Real = 1e-3;
@@ -187,11 +191,176 @@ fn a_robot_keeps_clear_of_itself_where_its_steps_do() {
         curling(&mut random).check(&mut pair, &margins, &mut counts[0]);
         hairpin(&mut random).check(&mut pair, &margins, &mut counts[1]);
         stepped(&mut random).check(&mut pair, &margins, &mut counts[2]);
+        // Up to where parts are near that turn by less than pi.
+        let margins = margins.map(|margin| 4.0 * margin);
         carried(&mut random).check(&mut pair, &margins, &mut counts[3]);
     }
     println!("{counts:?}");
     for kind in counts {
-        assert!(kind.decisions[0] >= 15 && kind.decisions[1] >= 5, "{counts:?}");
-        assert!(kind.clear_steps >= 10 && kind.contact_steps >= 5, "{counts:?}");
+        assert!(kind.decisions[0] >= 15 && kind.decisions[1] >= 4, "{counts:?}");
+        assert!(kind.clear_steps >= 10 && kind.contact_steps >= 4, "{counts:?}");
     }
+}
+
+/// A robot that is straight, but for a moment in which it curls up.
+struct Flick {
+    length: Real,
+    radius: Real,
+    /// By how much it turns then.
+    turn: Real,
+    at: Real,
+    /// For how long before and after that it bends at all.
+    lasts: Real,
+}
+
+impl Flick {
+    /// How near its discs come that turn by pi between them.
+    fn apart(&self) -> Real {
+        let disc = |k: u32| {
+            let angle = self.turn * Real::from(k) / 200.0;
+            let bend = self.length / self.turn;
+            let centre = Vec3::from([bend * (1.0 - angle.cos()), 0.0, bend * angle.sin()]);
+            (angle, centre, Vec3::from([angle.sin(), 0.0, angle.cos()]))
+        };
+        let discs: Vec<_> = (0..=200).map(disc).collect();
+        let mut apart = Real::INFINITY;
+        for (first, from, normal) in &discs {
+            for (second, to, direction) in &discs {
+                if second - first >= PI {
+                    let found = disc_disc(*from, *normal, self.radius, *to, *direction, self.radius);
+                    apart = apart.min(found.distance);
+                }
+            }
+        }
+        apart
+    }
+}
+
+impl Motion for Flick {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let share = (1.0 - (t - self.at).abs() / self.lasts).max(0.0);
+        let bend = [share * self.turn / self.length, 0.0];
+        let section = BendingSection { length: self.length, radius: self.radius, bend };
+        *tube = ConstantCurvature::new(&[section])?.tube()?;
+        Ok(Pose::IDENTITY)
+    }
+
+    fn speed(&self, _: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let rate = if times[1] < self.at - self.lasts || times[0] > self.at + self.lasts {
+            0.0
+        } else {
+            self.turn / self.length / self.lasts
+        };
+        let arc = self.length * shares[1];
+        Speed { point: 0.5 * rate * arc * arc, turn: rate * arc }
+    }
+}
+
+#[test]
+fn a_flick_between_two_steps_is_seen() {
+    let mut pair = RobotPair::new();
+    for (radius, lasts) in [(0.0, 0.01), (0.5, 0.01), (1.0, 0.2)] {
+        let flick = Flick { length: 40.0, radius, turn: 5.5, at: 0.7, lasts };
+        verify_motion(&flick, 1000).unwrap();
+        let apart = flick.apart();
+        let found = pair.motion_self_clears(&flick, apart + 0.5, 1e-2).unwrap();
+        let contact = found.contact.unwrap();
+        assert!((contact.t - 0.7).abs() < lasts, "{found:?}");
+        assert!(pair.motion_self_clears(&flick, apart - 0.1, 1e-2).unwrap().is_clear());
+        // Who states too low speeds is told what is wrong with them, and else nothing would be.
+        let slow = Understated(&flick, 1e-6);
+        assert!(verify_motion(&slow, 1000).is_err());
+        assert!(pair.motion_self_clears(&slow, apart - 0.1, 1e-2).unwrap().is_clear());
+    }
+}
+
+/// A robot the tip of which passes its base, carried along by a part that grows a thousand times as fast as it is thick.
+fn passing(gap: Real) -> LinearMotion {
+    let at = |z: Real| {
+        let tip = [Vector::new(10.0, 0.0, z), Vector::new(0.5 + gap, 0.0, z)];
+        let way =
+            [[0.0, -3.0, 0.0], [0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [10.0, 3.0, -1000.0], [10.0, 0.0, -1000.0]];
+        way.map(Vector::from_array).into_iter().chain(tip).collect::<Vec<_>>()
+    };
+    LinearMotion::chain(&at(-700.0), &at(300.0), &[0.5; 6]).unwrap()
+}
+
+#[test]
+fn a_pass_between_two_steps_is_seen() {
+    let mut pair = RobotPair::new();
+    // The other parts that are near one another keep 2.
+    for gap in [0.25, 1.5] {
+        // The tip is flat, and the base's side is round.
+        let motion = passing(gap);
+        let contact = pair.motion_self_clears(&motion, gap + 0.05, 1e-3).unwrap().contact.unwrap();
+        assert!((contact.t - 0.7).abs() < 2e-3 && contact.sections == [0, 5], "{contact:?}");
+        assert!(pair.motion_self_clears(&motion, gap - 2e-3, 1e-3).unwrap().is_clear());
+        let slow = Understated(&motion, 1e-6);
+        assert!(pair.motion_self_clears(&slow, 0.9 * gap, 1e-3).unwrap().is_clear());
+    }
+}
+
+#[test]
+fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
+    // A thick arc, parts of which are near one another that turn by three quarters of that. Points move by less than the resolution,
+    // so that one shape would do for these, but for how they turn.
+    let at = |turn: Real| [BendingSection { length: turn / 0.9, radius: 1.0, bend: [0.9, 0.0] }];
+    let motion = BendingMotion::new(&at(2.2), &at(2.6), Pose::IDENTITY).unwrap();
+    let mut pair = RobotPair::new();
+    assert!(pair.motion_self_clears(&motion, 0.1, 10.0).unwrap().is_clear());
+    // What turns by far more comes as near as that.
+    let motion = BendingMotion::new(&at(2.6), &at(5.8), Pose::IDENTITY).unwrap();
+    assert!(pair.motion_self_clears(&motion, 0.1, 1e-3).unwrap().contact.is_some());
+    // Beside a margin that is wider than the bend nobody knows what is asked about, and that is soon said.
+    let motion = BendingMotion::new(&at(2.9), &at(3.1), Pose::IDENTITY).unwrap();
+    assert_eq!(pair.motion_self_clears(&motion, 0.5, 1e-3).unwrap().decision, Decision::Undecided);
+}
+
+/// A hairpin at rest, that states any speed, and has any joints.
+struct Any {
+    speed: Speed,
+    joint: Vector,
+    count: usize,
+}
+
+impl Motion for Any {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let ends = [Vector::new(5.0, 0.0, 30.0), Vector::new(5.0, 0.0, 0.0), Vector::new(5.0, 0.0, -9.0)];
+        let count = if t > 0.6 { self.count } else { 1 };
+        let points: Vec<_> =
+            [Vector::ZERO, self.joint].into_iter().chain(ends.into_iter().take(count + 1)).collect();
+        tube.set_chain(&Chain::from_centreline(&points, &vec![0.5; points.len() - 1])?);
+        Ok(Pose::translation(0.0, 5.0, 0.0))
+    }
+
+    fn speed(&self, _: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+        self.speed
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told() {
+    let mut pair = RobotPair::new();
+    let any = |point: Real, turn: Real| {
+        let speed = Speed { point, turn };
+        Any { speed, joint: Vector::Z * 30.0, count: 1 }
+    };
+    assert!(pair.motion_self_clears(&any(0.0, 0.0), 1.0, 1e-3).unwrap().is_clear());
+    let mut kind = |motion: &Any, margin, resolution| {
+        pair.motion_self_clears(motion, margin, resolution).unwrap_err().kind().to_owned()
+    };
+    for wrong in [Real::NAN, Real::INFINITY, -1.0] {
+        assert_eq!(kind(&any(wrong, 0.0), 1.0, 1e-3), "bad_speed");
+        assert_eq!(kind(&any(0.0, wrong), 1.0, 1e-3), "bad_speed");
+    }
+    assert_eq!(kind(&any(0.0, 1e6), 1.0, 1e-3), "turns_too_fast");
+    assert_eq!(kind(&any(1e12, 0.0), 3.9, 1e-9), "too_fast");
+    assert_eq!(kind(&any(0.0, 0.0), -1.0, 1e-3), "negative");
+    assert_eq!(kind(&any(0.0, 0.0), 1.0, Real::NAN), "negative");
+    assert_eq!(kind(&any(0.0, 0.0), 1.0, 0.0), "tolerance_too_fine");
+    assert_eq!(kind(&Any { count: 2, ..any(0.0, 9.0) }, 1.0, 1e-3), "sections_change");
+    assert_eq!(
+        kind(&Any { joint: Vector::new(5.0, 0.0, 29.8), ..any(0.0, 0.0) }, 1.0, 1e-3),
+        "joint_too_sharp"
+    );
 }
