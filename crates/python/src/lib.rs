@@ -24,7 +24,7 @@ mod _native {
     use super::motions::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion};
     #[pymodule_export]
     use super::queries::two_robots::{
-        RobotPair, between, clears_between, self_clears, self_minimum, tube_self_clears,
+        RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum, tube_self_clears,
     };
     #[pymodule_export]
     use super::robots::{simplify, stations};

@@ -15,6 +15,7 @@ from parry_continuum import (
     RobotPair,
     between,
     clears_between,
+    motion_self_clears,
     self_clears,
     self_minimum,
 )
@@ -202,6 +203,34 @@ def test_both_move() -> None:
     still = RigidMotion(ends[1][0, 0], 0.3, np.eye(4), np.eye(4))
     answers = {pair.clears_motion(moving, still, 0.2, 1e-3).decision for moving in (one, there_and_back)}
     assert len(answers) == 1
+
+
+def test_a_robot_moves_beside_itself() -> None:
+    random = np.random.default_rng(9)
+
+    def hairpins() -> Array:
+        tips = random.uniform([1, -8, 1], [7, 8, 12], (40, 3))
+        fixed = [[0, 0, 0], [0, 0, 30], [3, 0, 33], [6, 0, 30]]
+        return np.concatenate([np.broadcast_to(fixed, (40, 4, 3)), tips[:, None]], axis=1)
+
+    starts, ends = hairpins(), hairpins()
+    swings, pair, steps = LinearMotion(starts, ends, 0.5), RobotPair(), np.linspace(0, 1, 201)
+    found = pair.motion_self_clears(swings, 1.5, 1e-3)
+    assert {Decision.CLEAR, Decision.CONTACT} <= set(found.decision)
+    for place, (start, end) in enumerate(zip(starts, ends)):
+        alone = motion_self_clears(LinearMotion(start, end, 0.5), 1.5, 1e-3)
+        assert alone.decision is Decision(found.decision[place])
+        for one, of_all in zip(alone[1:], found[1:]):
+            assert_array_equal(one, of_all[place])
+        clear = self_clears(start + steps[:, None, None] * (end - start), 0.5, 1.5)
+        if alone.decision is Decision.CLEAR:
+            assert clear.all()
+        elif alone.decision is Decision.CONTACT:
+            assert self_minimum(start + alone.t * (end - start), 0.5).distance <= alone.upper <= 1.5
+            assert np.linalg.norm(alone.on_first - alone.on_second) <= alone.upper + 1e-12
+    with pytest.raises(ContinuumError) as caught:
+        motion_self_clears(swings, -1.0, 1e-3)
+    assert caught.value.kind == "negative"
 
 
 @pytest.mark.parametrize(

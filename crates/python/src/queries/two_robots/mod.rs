@@ -9,6 +9,7 @@ mod robot_pair;
 pub(crate) use answers::segment_of;
 pub(crate) use curves::tube_self_clears;
 pub(crate) use functions::{between, clears_between, self_clears, self_minimum};
+pub(crate) use motions::motion_self_clears;
 pub(crate) use robot_pair::RobotPair;
 
 use super::distance::set_chain;

@@ -1,6 +1,6 @@
-//! Whether two robots keep a margin between them while both move.
+//! Whether two robots keep a margin between them while both move, or one keeps it to itself.
 
-use super::{RobotPair, Session};
+use super::{Pairs, RobotPair, Session};
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{answer, array, array_or_number, decision_value, flat, members};
 use crate::threads::{Asked, ask_each};
@@ -64,26 +64,127 @@ impl RobotPair {
             Ok(())
         };
         ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| all.extend(found.iter().flatten()))?;
-        let numbers = |of: fn(&RobotsInContact) -> f64| {
-            let numbers = all.iter().map(|it| it.contact.as_ref().map_or(f64::NAN, of));
-            array_or_number(py, motions.shape(&[]), numbers.collect())
-        };
-        let points = |of: fn(&RobotsInContact) -> Vector| {
-            let points = all.iter().map(|it| it.contact.as_ref().map_or(Vector::NAN, of));
-            array(py, motions.shape(&[3]), flat(points))
-        };
-        let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
-        let intervals = all.iter().flat_map(|it| it.interval).collect();
-        let lengths = all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.arc_lengths));
-        let values = (
-            members(py, "Decision", motions.shape(&[]), decisions)?,
-            array(py, motions.shape(&[2]), intervals)?,
-            numbers(|shapes| shapes.t)?,
-            numbers(|shapes| shapes.upper)?,
-            points(|shapes| shapes.on_first)?,
-            points(|shapes| shapes.on_second)?,
-            array(py, motions.shape(&[2]), lengths.collect())?,
-        );
-        answer!(py, "RobotMotionAnswer", values)
+        answers(py, &all, |further| motions.shape(further))
     }
+
+    /// Whether a robot that moves keeps more than a margin to itself: as `parry_continuum.motion_self_clears`.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion, margin, resolution
+    ///     As for `parry_continuum.motion_self_clears`.
+    ///
+    /// Returns
+    /// -------
+    /// RobotMotionAnswer
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `parry_continuum.motion_self_clears`.
+    #[pyo3(signature = (motion, margin, resolution))]
+    fn motion_self_clears<'py>(
+        &self,
+        py: Python<'py>,
+        motion: &Bound<'py, Motion>,
+        margin: f64,
+        resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.0.motion_self_clears(py, motion.get(), margin, resolution)
+    }
+}
+
+/// Whether a robot that moves keeps more than a margin to itself.
+///
+/// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motion. Asked for are the parts that
+/// `tube_self_clears` asks for.
+///
+/// Parameters
+/// ----------
+/// motion : Motion
+///     A motion, or a batch.
+/// margin : float
+///     A length, at least 0.
+/// resolution : float
+///     A length. The answer is undecided only where the robot comes within this of the margin, where the margin is as wide as the
+///     tightest bend, where an end turns from flat to round, or where a million pairs of pieces do not decide it.
+///
+/// Returns
+/// -------
+/// RobotMotionAnswer
+///     Of one motion, or arrays with one entry for each. Both points of a contact are on the same robot, the first one nearer to its
+///     base.
+///
+/// Raises
+/// ------
+/// ContinuumError
+///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of the shapes is no robot, or it bends
+///     within its radius.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from parry_continuum import Decision, LinearMotion, motion_self_clears
+/// >>> def hairpin(y): return np.array([[0, 0, 0], [0, 0, 40], [8, 0, 40], [4, y, 2]])
+/// >>> swing = LinearMotion(hairpin(-6), hairpin(6), 1.0)  # the tip passes the base
+/// >>> motion_self_clears(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
+/// True
+/// >>> motion_self_clears(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
+/// True
+#[pyfunction]
+#[pyo3(signature = (motion, margin, resolution))]
+pub(crate) fn motion_self_clears<'py>(
+    py: Python<'py>,
+    motion: &Bound<'py, Motion>,
+    margin: f64,
+    resolution: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    Pairs::default().motion_self_clears(py, motion.get(), margin, resolution)
+}
+
+impl Pairs {
+    fn motion_self_clears<'py>(
+        &self,
+        py: Python<'py>,
+        motions: &Motion,
+        margin: f64,
+        resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
+        let ask = |session: &mut Session, motion: &&Moving, row: &mut [Option<RobotMotionAnswer>]| {
+            row[0] = Some(session.pair.motion_self_clears(*motion, margin, resolution)?);
+            Ok(())
+        };
+        ask_each(py, self, motions, (None, 1), ask, |_, found| all.extend(found.iter().flatten()))?;
+        answers(py, &all, |further| motions.shape(further))
+    }
+}
+
+/// What is found of each motion, in the shape of the batch.
+fn answers<'py>(
+    py: Python<'py>,
+    all: &[RobotMotionAnswer],
+    shape: impl Fn(&[usize]) -> Vec<usize>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let numbers = |of: fn(&RobotsInContact) -> f64| {
+        let numbers = all.iter().map(|it| it.contact.as_ref().map_or(f64::NAN, of));
+        array_or_number(py, shape(&[]), numbers.collect())
+    };
+    let points = |of: fn(&RobotsInContact) -> Vector| {
+        let points = all.iter().map(|it| it.contact.as_ref().map_or(Vector::NAN, of));
+        array(py, shape(&[3]), flat(points))
+    };
+    let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
+    let intervals = all.iter().flat_map(|it| it.interval).collect();
+    let lengths = all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.arc_lengths));
+    let values = (
+        members(py, "Decision", shape(&[]), decisions)?,
+        array(py, shape(&[2]), intervals)?,
+        numbers(|shapes| shapes.t)?,
+        numbers(|shapes| shapes.upper)?,
+        points(|shapes| shapes.on_first)?,
+        points(|shapes| shapes.on_second)?,
+        array(py, shape(&[2]), lengths.collect())?,
+    );
+    answer!(py, "RobotMotionAnswer", values)
 }
