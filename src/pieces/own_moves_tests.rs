@@ -15,7 +15,7 @@ fn pairs(tube: &Tube, moves: Option<&OwnMoves>) -> BTreeSet<Pair> {
     let (mut turns, mut beginning, mut pairs) = (TubeTurns::default(), OwnBeginning::default(), Vec::new());
     tube.measure_turns(&mut turns).unwrap();
     let own = moves.map_or_else(|| OwnTube::new(tube, &turns), |moves| OwnTube::moving(tube, &turns, moves));
-    own.unwrap().begin(1.0, Real::INFINITY, &mut beginning, &mut pairs).unwrap();
+    own.unwrap().begin(1.0, Real::INFINITY, usize::MAX, &mut beginning, &mut pairs).unwrap();
     pairs.iter().map(|pair| (pair.pieces.map(|piece| piece.section), pair.faces)).collect()
 }
 

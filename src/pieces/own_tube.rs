@@ -179,7 +179,8 @@ impl<'a> OwnTube<'a> {
         &self.both.tubes[0]
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`.
+    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. False, and
+    /// none of them, where these are more than `most`.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -187,9 +188,10 @@ impl<'a> OwnTube<'a> {
         &self,
         scale: Real,
         upper: Real,
+        most: usize,
         beginning: &mut OwnBeginning,
         pairs: &mut Vec<OwnPair>,
-    ) -> Result<(), ProximityError> {
+    ) -> Result<bool, ProximityError> {
         let OwnBeginning { pieces, bodies, order } = beginning;
         let tube = self.tube();
         tube.begin(scale.max(0.25 * tube.widest()), pieces);
@@ -215,9 +217,12 @@ impl<'a> OwnTube<'a> {
                 }
             }
         }
+        if order.len() > most {
+            return Ok(false);
+        }
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
         pairs.extend(order.iter().map(|&(_, [i, j])| pair(&bodies[i as usize], &bodies[j as usize])));
-        Ok(())
+        Ok(true)
     }
 
     /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of its steps.

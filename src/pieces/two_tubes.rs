@@ -132,7 +132,8 @@ impl<'a> TwoTubes<'a> {
         self.found_from(sections, arcs, half_way(places, radii))
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`.
+    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`. False, and none
+    /// of them, where these are more than `most`.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -140,9 +141,10 @@ impl<'a> TwoTubes<'a> {
         &self,
         scale: Real,
         upper: Real,
+        most: usize,
         beginning: &mut Beginning,
         pairs: &mut Vec<PiecePair>,
-    ) -> Result<(), ProximityError> {
+    ) -> Result<bool, ProximityError> {
         let Beginning { pieces, bodies, order } = beginning;
         for (tube, bodies) in self.tubes.iter().zip(&mut *bodies) {
             tube.begin(scale.max(0.25 * tube.widest()), pieces);
@@ -154,6 +156,7 @@ impl<'a> TwoTubes<'a> {
             }
         }
         order.clear();
+        pairs.clear();
         let [first, second] = &*bodies;
         for (i, (_, one)) in first.iter().enumerate() {
             for (j, (_, two)) in second.iter().enumerate() {
@@ -163,13 +166,15 @@ impl<'a> TwoTubes<'a> {
                 }
             }
         }
+        if order.len() > most {
+            return Ok(false);
+        }
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        pairs.clear();
         pairs.extend(order.iter().map(|&(_, [i, j])| {
             let ((one, outer), (two, beside)) = (first[i as usize], second[j as usize]);
             PiecePair { pieces: [one, two], outers: [outer, beside] }
         }));
-        Ok(())
+        Ok(true)
     }
 
     /// How far two bodies are apart at least: as far as the capsules around them, less what rounding does to that.

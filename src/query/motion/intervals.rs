@@ -1,6 +1,6 @@
 //! The loop over intervals of time, for robots beside robots.
 
-use super::moment::Seen;
+use super::moment::{Seen, Wanted};
 use super::pace::{middle, rests};
 use super::progress::Progress;
 use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
@@ -33,6 +33,12 @@ pub(super) fn clear(
         intervals.extend(rests(times, still).into_iter().flatten());
     }
     Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
+}
+
+/// So many pairs of pieces are listed in an interval, unless it is not for the motion that there are more: 2^16, or some 20 MB. A shorter
+/// interval has fewer.
+pub(super) fn most_pairs(reach: Real, Wanted { margin, resolution }: Wanted) -> usize {
+    if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
 /// Begins with each part of the time of all motions, which have so many.

@@ -77,7 +77,10 @@ fn judge<M: Motion>(
     // Below that, rounding decides.
     own.check_resolved(32.0 * own.slack(), resolution)?;
     let reach = 2.0 * moves.farthest() * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
-    own.begin(margin.max(resolution).max(0.25 * reach), margin + reach + own.slack(), beginning, pairs)?;
+    let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + own.slack());
+    if !own.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)? {
+        return Ok((Seen::nothing(), 0.0));
+    }
     let moving = MovingOwn { motion, times, speeds: [0.0; 2], left };
     let mut moment = Moment { moving, pace: Pace::new(times, opening), wanted, seen: Seen::nothing() };
     refine(&mut own, pairs, &mut moment)?;

@@ -65,12 +65,10 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
         let reach = half(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let Wanted { margin, resolution } = wanted;
-        tubes.begin(
-            margin.max(resolution).max(0.25 * reach),
-            margin + reach + tubes.slack(),
-            beginning,
-            pairs,
-        )?;
+        let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
+        if !tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)? {
+            return Ok((Seen::nothing(), 0.0));
+        }
         let pace = Pace::new(times, first.opening.max(second.opening));
         let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
         let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };

@@ -27,7 +27,7 @@ pub(crate) fn own_tube_clears(
     let OwnTubeMemory { turns, beginning, pairs } = memory;
     tube.measure_turns(turns)?;
     let mut own = OwnTube::new(tube, turns)?;
-    own.begin(margin.max(resolution), margin, beginning, pairs)?;
+    own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
     let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;
     Ok(decision)
 }

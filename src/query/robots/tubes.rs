@@ -54,7 +54,7 @@ pub(crate) fn clearance_between(
 ) -> Result<RobotClearance, ProximityError> {
     let best = memory.first_bound(tubes);
     let TubesMemory { beginning, pairs, last } = memory;
-    tubes.begin(best.upper.max(tolerance), best.upper, beginning, pairs)?;
+    tubes.begin(best.upper.max(tolerance), best.upper, usize::MAX, beginning, pairs)?;
     let found = between_bounds(tubes, pairs, best, tolerance, |_, _, _| ())?;
     let BetweenBounds { lower, resolved, uncertainty, best } = found;
     let FoundBetween { upper, sections, arcs, points: [on_first, on_second] } = best;
@@ -88,7 +88,7 @@ pub(crate) fn tubes_clear(
     }
     let TubesMemory { beginning, pairs, last } = memory;
     // Tubes that are far apart are seen to be so in few pieces.
-    tubes.begin(best.upper.max(resolution), margin, beginning, pairs)?;
+    tubes.begin(best.upper.max(resolution), margin, usize::MAX, beginning, pairs)?;
     let (decision, found) = keeps(tubes, pairs, margin, resolution, None)?;
     if let Some(FoundBetween { sections, arcs, .. }) = found {
         *last = Some((sections, arcs));

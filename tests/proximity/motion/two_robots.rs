@@ -239,6 +239,22 @@ fn a_pass_between_two_steps_is_seen() {
 }
 
 #[test]
+fn robots_of_many_links_may_be_fast() {
+    // All links of one may meet all of the other in the first interval: 160,000 pairs, more than are listed.
+    let count = 400;
+    let at = |y: Real, x: Real| -> Vec<_> {
+        (0..=count).map(|k| Vector::new(x, y, Real::from(k) - 0.5 * Real::from(count))).collect()
+    };
+    let radii = vec![0.25; count as usize];
+    let slow = LinearMotion::chain(&at(0.0, 0.0), &at(0.0, 0.0), &radii).unwrap();
+    let fast = LinearMotion::chain(&at(1.0, -700.0), &at(1.0, 300.0), &radii).unwrap();
+    let mut pair = RobotPair::new();
+    assert!(pair.clears_motion(&slow, &fast, 0.4, 1e-3).unwrap().is_clear());
+    let contact = pair.clears_motion(&slow, &fast, 0.6, 1e-3).unwrap().contact.unwrap();
+    assert!((contact.t - 0.7).abs() < 1e-2, "{contact:?}");
+}
+
+#[test]
 fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
     // A thin disc of radius 10 turns by 2 rad: its centre stays, and its rim passes the needle after a quarter of a turn alone, which
     // no middle of a large interval shows.
@@ -275,6 +291,30 @@ fn a_link_that_loses_its_length_is_no_fault() {
     for fading in fading.map(Result::unwrap) {
         assert!(pair.clears_motion(&fading, &at_rest, 0.99, 1e-3).unwrap().is_clear());
         assert!(pair.clears_motion(&at_rest, &fading, 1.01, 1e-3).unwrap().contact.is_some());
+    }
+}
+
+#[test]
+fn an_end_of_which_no_speed_is_stated_is_undecided() {
+    // The first link's end is flat because the tip is near. How fast that is nobody says, so that the end may become round, and
+    // come as near to the needle as the tip does not.
+    let shape = |_: Real, tube: &mut Tube| {
+        tube.set_chain(&Chain::from_centreline(&[0.0, 5.0, 5.5].map(|z| Vector::Z * z), &[1.0, 1.0])?);
+        Ok(Pose::IDENTITY)
+    };
+    let needle = [-2.0, 2.0].map(|x| Vector::new(x, 0.0, 6.0));
+    let at_rest = LinearMotion::chain(&needle, &needle, &[0.1]).unwrap();
+    for speed in [Real::INFINITY, Real::NAN, -1.0] {
+        let stated = move |section, shares: [Real; 2], _| {
+            let point = if section == 1 && shares == [1.0, 1.0] { speed } else { 0.0 };
+            Speed { point, turn: 0.0 }
+        };
+        let motion =
+            Any { shape: Box::new(shape), speed: Box::new(stated), legs: 1, sections: 2, radius: 1.0 };
+        let mut decide =
+            |margin| RobotPair::new().clears_motion(&motion, &at_rest, margin, 1e-3).unwrap().decision;
+        assert_eq!(decide(0.2), Decision::Undecided);
+        assert_eq!(decide(0.41), Decision::Contact);
     }
 }
 
