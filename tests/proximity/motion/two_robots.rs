@@ -311,7 +311,7 @@ fn an_end_of_which_no_speed_is_stated_is_undecided() {
         };
         let motion =
             Any { shape: Box::new(shape), speed: Box::new(stated), legs: 1, sections: 2, radius: 1.0 };
-        let mut decide =
+        let decide =
             |margin| RobotPair::new().clears_motion(&motion, &at_rest, margin, 1e-3).unwrap().decision;
         assert_eq!(decide(0.2), Decision::Undecided);
         assert_eq!(decide(0.41), Decision::Contact);
