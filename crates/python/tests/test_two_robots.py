@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -203,6 +205,35 @@ def test_both_move() -> None:
     still = RigidMotion(ends[1][0, 0], 0.3, np.eye(4), np.eye(4))
     answers = {pair.clears_motion(moving, still, 0.2, 1e-3).decision for moving in (one, there_and_back)}
     assert len(answers) == 1
+
+
+@pytest.mark.parametrize("caps", ["fitted", "capsules", "cylinders"])
+def test_answers_have_proofs(caps: Literal["fitted", "capsules", "cylinders"]) -> None:
+    random = np.random.default_rng(10)
+    points = random.uniform(-3, 3, (2, 50, 4, 3))
+    points[1] += [2.0, 0, 0]
+    points[0, :, 2] = points[0, :, 1]  # a segment without length
+    pose, pair = poses(random, 50), RobotPair()
+    given = points[0], 0.3, points[1], 0.2
+    for ask in (pair.minimum, pair.per_link):
+        found = ask(*given, pose_b=pose, caps=caps)
+        proof = pair.certify(*given, found, pose_b=pose, caps=caps)
+        assert np.shape(proof.lower) == np.shape(found.distance)
+        assert_array_equal(np.isnan(proof.lower), np.isnan(found.distance))
+        known = ~np.isnan(found.distance)
+        lower, distance, upper = (np.asarray(of)[known] for of in (proof.lower, found.distance, proof.upper))
+        assert (upper - lower < 1e-13).all() and (abs(distance - lower) < 1e-13).all() and (lower > 0).sum() > 20
+        alone = pair.certify(*(robot[0] if np.ndim(robot) else robot for robot in given), ask(
+            *(robot[0] if np.ndim(robot) else robot for robot in given), pose_b=pose[0], caps=caps
+        ), pose_b=pose[0], caps=caps)
+        assert_array_equal(alone.lower, np.asarray(proof.lower)[0])
+    for wrong, text in [
+        (found._replace(segments=found.segments[:3]), "shape"),
+        (found._replace(segments=found.segments + 7), "link"),
+        (None, "segments"),
+    ]:
+        with pytest.raises(ContinuumError, match=text):
+            pair.certify(*given, wrong, pose_b=pose, caps=caps)  # type: ignore[arg-type]
 
 
 def test_a_robot_moves_beside_itself() -> None:

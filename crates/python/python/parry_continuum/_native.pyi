@@ -381,6 +381,18 @@ class RobotPair:
         pose_a: ArrayLike | None = None,
         pose_b: ArrayLike | None = None,
     ) -> DecisionOrDecisions: ...
+    def certify(
+        self,
+        points_a: ArrayLike,
+        radii_a: ArrayLike,
+        points_b: ArrayLike,
+        radii_b: ArrayLike,
+        answer: RobotProximity,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        caps: _Caps = "fitted",
+    ) -> Certificate: ...
     def clears_motion(self, a: Motion, b: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
     def motion_self_clears(self, motion: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
     def self_minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...

@@ -1,6 +1,7 @@
 //! A robot against another, and against itself.
 
 mod answers;
+mod certify;
 mod curves;
 mod functions;
 mod motions;

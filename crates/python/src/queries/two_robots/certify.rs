@@ -1,0 +1,118 @@
+//! Proofs of answers about two robots.
+
+use super::answers::segment_of;
+use super::{Placed, RobotPair, Session, pairs};
+use crate::error::Refused;
+use crate::input::{Caps, Given, Numbers, shape_text};
+use crate::output::{answer, array_or_number};
+use crate::threads::{Asked, ask_each};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{Certificate, ProximityError};
+use parry_continuum::{Chain, ModifiedCylinder};
+use pyo3::prelude::*;
+
+#[pymethods]
+impl RobotPair {
+    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
+    ///
+    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
+    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance.
+    ///
+    /// Parameters
+    /// ----------
+    /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
+    ///     As they were given to the function that answered.
+    /// answer : RobotProximity
+    ///     Of `between`, `RobotPair.minimum` or `RobotPair.per_link`.
+    ///
+    /// Returns
+    /// -------
+    /// Certificate
+    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without length.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The answer does not fit the robots, or as for `between`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import RobotPair
+    /// >>> pair, robots = RobotPair(), ([[0, 0, 0], [0, 0, 9]], 0.5, [[3, -5, 4], [3, 5, 4]], 0.5)
+    /// >>> proof = pair.certify(*robots, pair.minimum(*robots))
+    /// >>> proof.upper - proof.lower < 1e-14 and proof.lower <= 2.0 <= proof.upper
+    /// True
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, answer, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, answer, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn certify<'py>(
+        &self,
+        py: Python<'py>,
+        points_a: &Bound<'py, PyAny>,
+        radii_a: &Bound<'py, PyAny>,
+        points_b: &Bound<'py, PyAny>,
+        radii_b: &Bound<'py, PyAny>,
+        answer: &Bound<'py, PyAny>,
+        pose_a: Option<&Bound<'py, PyAny>>,
+        pose_b: Option<&Bound<'py, PyAny>>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let refuse = |text: String| Refused::other("answer_does_not_fit", text).raise(py, None);
+        let segments = answer
+            .getattr("segments")
+            .map_err(|_| refuse("`answer` has no segments; give what `minimum` returned".into()))?;
+        let segments = Numbers::new(&segments, "answer.segments")?;
+        // One row a pair of robots, or one for each segment of the first.
+        let each = robots.segments_each();
+        let shapes = [robots.shape(&[2]), robots.shape(&[each, 2])];
+        let Some(kind) = shapes.iter().position(|shape| shape == segments.shape()) else {
+            return Err(refuse(format!(
+                "`answer.segments` has the shape {}, but of these robots it has {} or {}; give the robots that were asked about",
+                shape_text(segments.shape()),
+                shape_text(&shapes[0]),
+                shape_text(&shapes[1])
+            )));
+        };
+        let (shape, rows) = [(robots.shape(&[]), 1), (robots.shape(&[each]), each)][kind].clone();
+        let named = segments.values().to_vec();
+        let mut bounds: Vec<[f64; 2]> = Vec::with_capacity(robots.len() * rows);
+        let ask = |session: &mut Session, robot: &Given<'_>, found: &mut [[f64; 2]]| {
+            let Placed { chains: [a, b], poses, points, .. } = session.place(robot, caps)?;
+            let links = [in_order(a, points[0]), in_order(b, points[1])];
+            for (row, bounds) in found.iter_mut().enumerate().take(rows) {
+                let at = 2 * (robot.number * rows + row);
+                // Of a segment without length there is nothing to prove.
+                if named[at..at + 2].iter().all(|&segment| segment < 0.0) {
+                    continue;
+                }
+                let one = link_of(a, &links[0], named[at])?;
+                let other = link_of(b, &links[1], named[at + 1])?;
+                let Certificate { lower, upper, .. } =
+                    Certificate::between_links(one, &poses[0], other, &poses[1])?;
+                *bounds = [lower, upper];
+            }
+            Ok(())
+        };
+        ask_each(py, &self.0, &robots, ([f64::NAN; 2], rows.max(1)), ask, |_, found| bounds.extend(found))?;
+        let side = |k: usize| array_or_number(py, shape.clone(), bounds.iter().map(|it| it[k]).collect());
+        answer!(py, "Certificate", (side(0)?, side(1)?))
+    }
+}
+
+/// The segments that a robot's links are.
+fn in_order(chain: &Chain, points: &[Vector]) -> Vec<i64> {
+    (0..chain.links().len()).map(|link| segment_of(chain, points, link)).collect()
+}
+
+/// The link that a segment is.
+fn link_of<'a>(
+    chain: &'a Chain,
+    segments: &[i64],
+    segment: f64,
+) -> Result<&'a ModifiedCylinder, ProximityError> {
+    // Positions of segments are whole numbers far below 2^53.
+    let link = segments.iter().position(|&other| other as f64 == segment);
+    let links = chain.links();
+    link.and_then(|link| links.get(link))
+        .ok_or(ProximityError::NoSuchLink { link: segment.max(0.0) as usize, links: links.len() })
+}
