@@ -424,8 +424,10 @@ pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<D
 /// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or few
 ///   samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or a million pairs of pieces do not decide it.
 ///
-/// The work is one query about a tube beside itself for each time that the proof needs: four for each rad that a part of the robot
-/// turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion).
+/// The work is one query about a tube beside itself for each time that the proof needs: four to eight for each rad that a part of the
+/// robot turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion). So is that at all
+/// times the robot is one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes that are looked
+/// at are checked for that.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};
@@ -440,8 +442,8 @@ pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<D
 ///
 /// # Errors
 /// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one that [`tube_self_clears`] refuses;
-/// its sections change; a stated speed or turn is not finite; or the resolution is finer than rounding, than the samples of a shape
-/// allow, or than so fast a motion can be divided.
+/// its sections change; a stated speed or turn is not finite; a turn is more than 2^18 rad; or the resolution is finer than rounding,
+/// than the samples of a shape allow, or than so fast a motion can be divided.
 pub fn motion_self_clears(
     motion: &impl Motion,
     margin: Real,

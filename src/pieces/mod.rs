@@ -1,6 +1,7 @@
 //! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
 
 mod divided;
+mod nearest_pairs;
 mod on_loose_tube;
 mod on_tube;
 mod outer;

@@ -9,7 +9,7 @@
 //! the two. Curve and chord are a closed curve: the T's and -c have a mean of 0 with positive weights, so that no vector m has T . m > 0
 //! for all T and -c . m > 0. The angles from T at y to -c and from there to T at x are pi together at most, or 3/2 pi where one place is a
 //! face (`query::robots::one_robot`). On the sphere of directions lead a closed curve through the directions at the middle from x to y (U long), to
-//! T at y (tau w), to -c, to T at x, and to the direction of x at the middle (tau w). It is L <= U + 2 tau w + pi long (or 3/2 pi). All of
+//! T at y (tau w), to -c (where the two places are one, and there is no c, straight on), to T at x, and to the direction of x at the middle (tau w). It is L <= U + 2 tau w + pi long (or 3/2 pi). All of
 //! a closed curve shorter than 2 pi lies within L / 4 of one point m: of the middle of the arc between two points that halve it. (Turned by
 //! pi around m, a point z comes to z', and these are 2 angle(z, m) apart as long as the angle is at most pi / 2. By way of one of the two points they
 //! are at most L / 2 apart. So the angle is at most L / 4 < pi / 2, and, as it changes evenly along the curve, never more than pi / 2.) All T are
@@ -23,7 +23,7 @@
 //! **Ways between two convex parts** are as wrong as those of bodies that are farther off by how far both move, with a normal that
 //! is off by tau w more (`own_tube`).
 //!
-//! The largest w between two places is taken from the base on. With it, no section's speed is asked for more than once.
+//! The largest w between two places is taken from the base on: that of a whole section, so that it holds for every pair.
 //!
 //! **What is promised.** At all times the tube bends by less than 1 / radius, and the joints of a chain are blunt enough. It is
 //! refused where a shape that is looked at does not.
@@ -79,8 +79,9 @@ impl OwnMoves {
         self.sections.last().map_or(0.0, |last| last.growth)
     }
 
-    /// How far any point moves at most.
-    pub(crate) fn farthest(&self) -> Real {
-        self.sections.iter().fold(0.0, |most, section| section.moved.points.max(most))
+    /// The section that moves farthest, and how far any point does at most.
+    pub(crate) fn farthest(&self) -> (usize, Real) {
+        let points = self.sections.iter().map(|section| section.moved.points).enumerate();
+        points.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most })
     }
 }

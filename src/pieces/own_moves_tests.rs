@@ -6,6 +6,7 @@ use crate::robot::{Chain, Tube, TubeTurns};
 use continuum_testing::Random;
 use parry3d_f64::math::{Real, Rotation, Vector};
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 
 /// Two sections and which of their ends are faces.
 type Pair = ([u32; 2], [Option<usize>; 2]);
@@ -58,6 +59,26 @@ impl Links {
                 .map(|length| length * random.between(1.0 - share, 1.0 + share))
                 .collect(),
         }
+    }
+
+    /// An arc of links of which the first and the last are so long that they decide where the chord leads.
+    fn arc(random: &mut Random, count: usize) -> Self {
+        let (turn, last) = (random.between(2.0, PI), (count - 1) as Real);
+        let direction = |k: usize| {
+            let angle = turn * (k as Real / last - 0.5);
+            Vector::new(angle.sin(), 0.0, angle.cos())
+        };
+        let length = |k: usize| if k == 0 || k + 1 == count { 10.0 } else { random.between(0.01, 0.1) };
+        Self { directions: (0..count).map(direction).collect(), lengths: (0..count).map(length).collect() }
+    }
+
+    /// The first and the last link turned away from one another.
+    fn opened(&self, turn: Real) -> Self {
+        let (mut directions, last) = (self.directions.clone(), self.directions.len() - 1);
+        for (place, turn) in [(0, -turn), (last, turn)] {
+            directions[place] = Rotation::from_axis_angle(Vector::Y, turn) * directions[place];
+        }
+        Self { directions, lengths: self.lengths.clone() }
     }
 
     fn points(&self, from: Vector) -> Vec<Vector> {
@@ -126,9 +147,15 @@ fn what_is_not_kept_is_no_local_minimum_later() {
     let (mut left_out, mut close) = (0, 0);
     for _ in 0..20_000 {
         let count = 3 + random.below(5) as usize;
-        let links = Links::random(&mut random, count, 6.0 / count as Real);
+        let is_arc = random.below(2) == 0;
+        let links = if is_arc {
+            Links::arc(&mut random, count)
+        } else {
+            Links::random(&mut random, count, 6.0 / count as Real)
+        };
         let size = [0.02, 0.1, 0.3][random.below(3) as usize];
-        let later = links.moved(&mut random, size, 0.9);
+        let later =
+            if is_arc { links.opened(size * random.unit()) } else { links.moved(&mut random, size, 0.9) };
         let (points, places) = (links.points(Vector::ZERO), later.points(Vector::ZERO));
         let radii = vec![0.0; count];
         let now = Tube::from(&Chain::capsules(&points, &radii).unwrap());

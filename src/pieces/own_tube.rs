@@ -58,6 +58,7 @@
 //! between them shows how near both are (`on_tube`).
 
 use super::divided::{Body, Divided};
+use super::nearest_pairs::NearestPairs;
 use super::on_tube::OnTube;
 use super::outer::Outer;
 use super::own_moves::{Moved, OwnMoves};
@@ -134,7 +135,7 @@ type OwnBody = (Piece, Outer, Option<usize>);
 pub(crate) struct OwnBeginning {
     pieces: Vec<Piece>,
     bodies: Vec<OwnBody>,
-    order: Vec<(Real, [u32; 2])>,
+    nearest: NearestPairs,
 }
 
 impl<'a> OwnTube<'a> {
@@ -179,8 +180,8 @@ impl<'a> OwnTube<'a> {
         &self.both.tubes[0]
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. False, and
-    /// none of them, where these are more than `most`.
+    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. Where these
+    /// are more than `most` the nearest ones, and false.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -192,7 +193,7 @@ impl<'a> OwnTube<'a> {
         beginning: &mut OwnBeginning,
         pairs: &mut Vec<OwnPair>,
     ) -> Result<bool, ProximityError> {
-        let OwnBeginning { pieces, bodies, order } = beginning;
+        let OwnBeginning { pieces, bodies, nearest } = beginning;
         let tube = self.tube();
         tube.begin(scale.max(0.25 * tube.widest()), pieces);
         pieces.sort_unstable_by_key(|piece| (piece.section, piece.from));
@@ -203,8 +204,7 @@ impl<'a> OwnTube<'a> {
             bodies.push((*piece, outer, None));
         }
         self.push_faces(bodies);
-        order.clear();
-        pairs.clear();
+        nearest.begin(most);
         for i in 0..bodies.len() {
             for j in i..bodies.len() {
                 let pair = pair(&bodies[i], &bodies[j]);
@@ -213,16 +213,14 @@ impl<'a> OwnTube<'a> {
                 }
                 let at_least = self.both.at_least(&pair.outers);
                 if at_least <= upper {
-                    order.push((at_least, [i as u32, j as u32]));
+                    nearest.push(at_least, [i, j]);
                 }
             }
         }
-        if order.len() > most {
-            return Ok(false);
-        }
-        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        pairs.extend(order.iter().map(|&(_, [i, j])| pair(&bodies[i as usize], &bodies[j as usize])));
-        Ok(true)
+        let (order, is_all) = nearest.farthest_first();
+        pairs.clear();
+        pairs.extend(order.map(|[i, j]| pair(&bodies[i], &bodies[j])));
+        Ok(is_all)
     }
 
     /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of its steps.

@@ -10,6 +10,7 @@
 //! margin that is asked about, is none to begin with, since it cannot change the answer.
 
 use super::divided::{Body, Bound, Divided};
+use super::nearest_pairs::NearestPairs;
 use super::on_tube::OnTube;
 use super::outer::Outer;
 use super::piece::Piece;
@@ -93,7 +94,7 @@ pub(crate) struct Stretch<'a> {
 pub(crate) struct Beginning {
     pieces: Vec<Piece>,
     bodies: [Vec<(Piece, Outer)>; 2],
-    order: Vec<(Real, [u32; 2])>,
+    nearest: NearestPairs,
 }
 
 impl<'a> TwoTubes<'a> {
@@ -132,8 +133,8 @@ impl<'a> TwoTubes<'a> {
         self.found_from(sections, arcs, half_way(places, radii))
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`. False, and none
-    /// of them, where these are more than `most`.
+    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`. Where these are more
+    /// than `most` the nearest ones, and false.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -145,7 +146,7 @@ impl<'a> TwoTubes<'a> {
         beginning: &mut Beginning,
         pairs: &mut Vec<PiecePair>,
     ) -> Result<bool, ProximityError> {
-        let Beginning { pieces, bodies, order } = beginning;
+        let Beginning { pieces, bodies, nearest } = beginning;
         for (tube, bodies) in self.tubes.iter().zip(&mut *bodies) {
             tube.begin(scale.max(0.25 * tube.widest()), pieces);
             bodies.clear();
@@ -155,26 +156,23 @@ impl<'a> TwoTubes<'a> {
                 bodies.push((*piece, outer));
             }
         }
-        order.clear();
-        pairs.clear();
+        nearest.begin(most);
         let [first, second] = &*bodies;
         for (i, (_, one)) in first.iter().enumerate() {
             for (j, (_, two)) in second.iter().enumerate() {
                 let at_least = self.at_least(&[*one, *two]);
                 if at_least <= upper {
-                    order.push((at_least, [i as u32, j as u32]));
+                    nearest.push(at_least, [i, j]);
                 }
             }
         }
-        if order.len() > most {
-            return Ok(false);
-        }
-        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        pairs.extend(order.iter().map(|&(_, [i, j])| {
-            let ((one, outer), (two, beside)) = (first[i as usize], second[j as usize]);
+        let (order, is_all) = nearest.farthest_first();
+        pairs.clear();
+        pairs.extend(order.map(|[i, j]| {
+            let ((one, outer), (two, beside)) = (first[i], second[j]);
             PiecePair { pieces: [one, two], outers: [outer, beside] }
         }));
-        Ok(true)
+        Ok(is_all)
     }
 
     /// How far two bodies are apart at least: as far as the capsules around them, less what rounding does to that.

@@ -35,8 +35,8 @@ pub(super) fn clear(
     Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
 }
 
-/// So many pairs of pieces are listed in an interval, unless it is not for the motion that there are more: 2^16, or some 20 MB. A shorter
-/// interval has fewer.
+/// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the motion that there are more: 2^16. A
+/// shorter interval has fewer.
 pub(super) fn most_pairs(reach: Real, Wanted { margin, resolution }: Wanted) -> usize {
     if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }

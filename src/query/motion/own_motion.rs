@@ -8,7 +8,7 @@ use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
 use super::moves::Moves;
 use super::moving_own::MovingOwn;
-use super::pace::{Pace, half, middle};
+use super::pace::{Pace, check_speed, half, middle};
 use super::present::Present;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
@@ -68,18 +68,20 @@ fn judge<M: Motion>(
     let OwnMotionMemory { present, turns, moves, beginning, pairs, .. } = memory;
     let pose = present.turn_to(motion, middle(times))?;
     let opening = present.hold_faces(motion, times);
-    present.tube.measure_turns(turns)?;
     measure_moves(motion, present.tube.sections(), times, moves)?;
     if moves.most_growth() > MOST_GROWTH {
         return Ok((Seen::nothing(), 0.0));
     }
+    present.tube.measure_turns(turns)?;
     let mut own = OwnTube::moving(&present.tube, turns, moves)?;
     // Below that, rounding decides.
     own.check_resolved(32.0 * own.slack(), resolution)?;
-    let reach = 2.0 * moves.farthest() * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+    let reach = 2.0 * moves.farthest().1 * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
     let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + own.slack());
-    if !own.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)? {
-        return Ok((Seen::nothing(), 0.0));
+    let is_all = own.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
+    if !is_all {
+        let (section, points) = moves.farthest();
+        check_speed(section, points / half(times), resolution)?;
     }
     let moving = MovingOwn { motion, times, speeds: [0.0; 2], left };
     let mut moment = Moment { moving, pace: Pace::new(times, opening), wanted, seen: Seen::nothing() };
@@ -91,7 +93,7 @@ fn judge<M: Motion>(
     if let Some(found) = &mut seen.contact {
         found.points = found.points.map(|point| pose * point);
     }
-    Ok((seen, pace.still))
+    Ok((seen, if is_all { pace.still } else { 0.0 }))
 }
 
 /// How far all sections move from the middle of an interval on.

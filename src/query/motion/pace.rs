@@ -1,5 +1,6 @@
 //! How fast pieces approach in an interval of time, and for how long its middle shape decides.
 
+use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use parry3d_f64::math::Real;
 
@@ -20,6 +21,15 @@ pub(crate) struct Pace {
     pub growth: Real,
     /// For how long before and after the middle shape what failed is decided.
     pub still: Real,
+}
+
+/// # Errors
+/// It is so fast that time cannot be divided into intervals in which it moves by the resolution.
+pub(super) fn check_speed(section: usize, speed: Real, resolution: Real) -> Result<(), ProximityError> {
+    if speed > MOST_INTERVALS * resolution {
+        return Err(ProximityError::TooFast { section, speed, resolution });
+    }
+    Ok(())
 }
 
 /// The middle of an interval.
@@ -49,7 +59,7 @@ impl Pace {
         self.half * self.speed
     }
 
-    /// Whether flat ends that may become round are so fast that this takes no interval of the least length to be told.
+    /// Whether flat ends that may become round are so fast that no interval is short enough to tell whether they do.
     pub(super) fn opens_too_fast(&self, resolution: Real) -> bool {
         self.opening > MOST_INTERVALS * resolution * self.half
     }

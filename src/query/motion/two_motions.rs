@@ -9,7 +9,7 @@
 use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
 use super::moving_pair::MovingPair;
-use super::pace::{Pace, half, middle};
+use super::pace::{Pace, check_speed, half, middle};
 use super::present::Present;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
@@ -66,14 +66,17 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         let reach = half(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let Wanted { margin, resolution } = wanted;
         let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
-        if !tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)? {
-            return Ok((Seen::nothing(), 0.0));
+        let is_all = tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
+        if !is_all {
+            let faster = if second.speed > first.speed { &second } else { &first };
+            check_speed(faster.fastest, faster.speed, resolution)?;
         }
         let pace = Pace::new(times, first.opening.max(second.opening));
         let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
         let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
         refine(&mut tubes, pairs, &mut moment)?;
-        Ok((moment.seen, moment.pace.still))
+        let still = if is_all { moment.pace.still } else { 0.0 };
+        Ok((moment.seen, still))
     }
 }
 
@@ -81,8 +84,9 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
 struct Middle<'a> {
     tube: PlacedTube<'a>,
     opening: Real,
-    /// How fast any of its points moves at most.
+    /// How fast any of its points moves at most, and the section of that one.
     speed: Real,
+    fastest: usize,
 }
 
 fn shape<'p, M: Motion>(
@@ -93,19 +97,23 @@ fn shape<'p, M: Motion>(
     let pose = present.turn_to(motion, middle(times))?;
     let opening = present.hold_faces(motion, times);
     let tube = PlacedTube::new(&present.tube, &pose, 0.0)?.moving();
-    let mut most: Real = 0.0;
+    let (mut most, mut fastest) = (0.0, 0);
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
         // Written so that NaN is an error.
         if !(0.0..Real::INFINITY).contains(&stated.point) {
             return Err(RobotError::BadSpeed { section: number, value: stated.point }.into());
         }
-        // Where no body has a flat end, nobody needs a turn: that of a link without a length is infinite. Where one has, a turn that
-        // is none keeps all pairs, and is refused by the one that needs it.
+        // Where no body has a flat end, nobody needs a turn: that of a link without a length is infinite.
         let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
         let turn = if has_rim { stated.turn } else { 0.0 };
-        let turn = if turn >= 0.0 { turn } else { Real::INFINITY };
-        most = most.max(stated.point + section.radius * turn);
+        if !(0.0..Real::INFINITY).contains(&turn) {
+            return Err(RobotError::BadSpeed { section: number, value: turn }.into());
+        }
+        let speed = stated.point + section.radius * turn;
+        if speed > most {
+            (most, fastest) = (speed, number);
+        }
     }
-    Ok(Middle { tube, opening, speed: most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) })
+    Ok(Middle { tube, opening, speed: most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF), fastest })
 }

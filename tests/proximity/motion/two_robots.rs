@@ -252,6 +252,33 @@ fn robots_of_many_links_may_be_fast() {
     assert!(pair.clears_motion(&slow, &fast, 0.4, 1e-3).unwrap().is_clear());
     let contact = pair.clears_motion(&slow, &fast, 0.6, 1e-3).unwrap().contact.unwrap();
     assert!((contact.t - 0.7).abs() < 1e-2, "{contact:?}");
+    // What is wrong with a speed is told, however many pairs there are.
+    let wrong = |point: Real, turn: Real| Any {
+        shape: Box::new({
+            let fast = fast.clone();
+            move |t, tube| fast.shape(t, tube)
+        }),
+        speed: Box::new(move |_, _, _| Speed { point, turn }),
+        legs: 1,
+        sections: 400,
+        radius: 0.25,
+    };
+    for (motion, kind) in [
+        (wrong(0.0, Real::NAN), "bad_speed"),
+        (wrong(0.0, Real::INFINITY), "bad_speed"),
+        (wrong(0.0, -1.0), "bad_speed"),
+        (wrong(1e12, 0.0), "too_fast"),
+    ] {
+        assert_eq!(pair.clears_motion(&slow, &motion, 0.4, 1e-3).unwrap_err().kind(), kind);
+    }
+    // Robots that overlap all the time are found to do so at once.
+    let short =
+        |y: Real| -> Vec<_> { (0..=count).map(|k| Vector::new(0.0, y, 0.1 * Real::from(k))).collect() };
+    let thick = vec![2.0; count as usize];
+    let one = LinearMotion::capsules(&short(0.0), &short(0.5), &thick).unwrap();
+    let other = LinearMotion::capsules(&short(2.0), &short(30.0), &thick).unwrap();
+    assert_eq!(pair.clears_motion(&one, &one, 0.0, 1e-3).unwrap().contact.unwrap().t, 0.5);
+    assert!(pair.clears_motion(&one, &other, 0.0, 1e-3).unwrap().contact.is_some());
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity};
+use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity, RobotPair, self_minimum};
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
 
 /// At so many times a motion is compared with its shapes.
@@ -55,6 +55,41 @@ fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool 
 /// The shape at a time, as a chain.
 type Shape<'a> = &'a dyn Fn(f64) -> Option<(Chain, Pose)>;
 
+/// Whether the robot keeps the margin to itself: so far as any shape shows it does where that is said, and not where a shape is named.
+fn beside_itself<M: Motion>(
+    motion: &M,
+    shape: Shape<'_>,
+    margin: f64,
+    resolution: f64,
+    slack: impl Fn(f64) -> f64,
+) {
+    let mut pair = RobotPair::new();
+    let answer = pair.motion_self_clears(motion, margin, resolution);
+    let again = pair.motion_self_clears(motion, margin, resolution);
+    assert_eq!(format!("{again:?}"), format!("{answer:?}"));
+    let Ok(answer) = answer else { return };
+    let problem = || format!("{answer:?} {margin:e}\n{:?}", [shape(0.0), shape(1.0)]);
+    let nearest = |t: f64| {
+        let (chain, _) = shape(t)?;
+        let found = self_minimum(&chain).ok()??;
+        let turned = chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
+        Some((found, slack(turned.fold(0.0, f64::max))))
+    };
+    if let Some(contact) = answer.contact {
+        assert!(contact.upper <= margin && (0.0..=1.0).contains(&contact.t), "{}", problem());
+        if let Some((found, slack)) = nearest(contact.t) {
+            assert!(found.distance <= contact.upper + slack, "{found:?} {}", problem());
+        }
+    }
+    let clear_until = if answer.is_clear() { 2.0 } else { answer.interval[0] };
+    for t in (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES)).filter(|&t| t < clear_until) {
+        let Some((found, slack)) = nearest(t) else { continue };
+        // Of links with more joints between them it is the local minima that keep the margin.
+        let is_few = found.links[1] - found.links[0] <= 3;
+        assert!(!is_few || found.distance > margin - slack, "{found:?} at {t} {}", problem());
+    }
+}
+
 fn check<M: Motion>(
     source: &mut Source,
     mut search: BvhSearch,
@@ -89,6 +124,7 @@ fn check<M: Motion>(
         _ => source.number().abs(),
     };
     let resolution = length * [1e-1, 1e-2, 1e-3][source.below(3)];
+    beside_itself(motion, shape, margin, resolution, slack);
     let answer = search.clears_motion(motion, margin, resolution);
     let first = search.time_of_contact(motion, margin, resolution);
     // As text, in which NaN is NaN.

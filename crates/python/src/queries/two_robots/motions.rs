@@ -118,8 +118,8 @@ impl RobotPair {
 /// Raises
 /// ------
 /// ContinuumError
-///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of the shapes is no robot, or it bends
-///     within its radius.
+///     Margin or resolution are negative or NaN, the resolution is finer than rounding or than so fast a motion can be divided, one of the
+///     shapes is no robot, or it bends within its radius or too sharply at a joint.
 ///
 /// Examples
 /// --------
