@@ -80,4 +80,27 @@ mod tests {
             assert!(all.are_beyond(0.99 * distance, &placed), "seed {seed}");
         }
     }
+
+    /// However structures and robots are turned, and with flat caps.
+    #[test]
+    fn what_is_beyond_is_beyond_in_any_pose() {
+        let mut beyond = 0;
+        for seed in 0..4000 {
+            let random = &mut Random::new(seed);
+            let corners = [0; 3].map(|_| random.point() * 3.0);
+            let Ok(search) = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]) else { continue };
+            let mut structure = Structure::new(String::new(), search, Some(0.0));
+            let far = [1.0, 1e6][random.below(2) as usize];
+            structure.set_pose(&random.pose(far)).unwrap();
+            let points = [0; 4].map(|_| random.point() * 3.0);
+            let make = [Chain::capsules, Chain::cylinders, Chain::from_centreline][random.below(3) as usize];
+            let Ok(robot) = make(&points, &[0.9, 0.1, 0.4]) else { continue };
+            let at = Pose::from_translation(random.point() * 20.0) * random.pose(far);
+            let distance = structure.search.minimum(&robot, &structure.in_mesh(&at)).unwrap().distance;
+            let (all, placed) = (Surroundings::of(&[structure]), PlacedRobot::new(&robot, &at).unwrap());
+            assert!(!all.are_beyond(distance, &placed), "seed {seed}");
+            beyond += u32::from(all.are_beyond(0.5 * distance, &placed));
+        }
+        assert!(beyond > 1000, "{beyond}");
+    }
 }

@@ -25,7 +25,7 @@ use std::cmp::Ordering;
 /// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
 ///
 /// The scene remembers what its engines do, whom the last answer was about, who is asked first, and what each robot kept from
-/// each structure: one that a robot cannot have reached since is not looked at. Robots are told apart by their place in a
+/// each structure: one that a robot cannot have reached since is passed over by all questions but `per_structure`. Robots are told apart by their place in a
 /// question; any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
 ///
 /// ```
