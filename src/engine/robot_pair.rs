@@ -421,13 +421,14 @@ pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<D
 ///   most the margin apart, unless they are neighbours.
 /// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`] asks for it, and two points of that
 ///   shape in the mesh's frame.
-/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or few
-///   samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or a million pairs of pieces do not decide it.
+/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or
+///   few samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or a million pairs of pieces
+///   do not decide it.
 ///
-/// The work is one query about a tube beside itself for each time that the proof needs: four to eight for each rad that a part of the
-/// robot turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion). So is that at all
-/// times the robot is one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes that are looked
-/// at are checked for that.
+/// The work is one query about a tube beside itself for each time that the proof needs: four to eight for each rad that a part of
+/// the robot turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion). So is
+/// that at all times the robot is one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes
+/// that are looked at are checked for that.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};

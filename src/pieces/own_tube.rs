@@ -50,8 +50,8 @@
 //! **Errors that are stated** say where the curve may be, not how it turns. So what is asked about is decided by the curve as
 //! it is given, and errors count in every distance.
 //!
-//! **While it moves** places may be asked about that are not in the shape that is looked at: `own_moves` has by how much more turn, and
-//! how much farther ahead. Of what is found in that shape counts what counts at rest.
+//! **While it moves** places may be asked about that are not in the shape that is looked at: `own_moves` has by how much more
+//! turn, and how much farther ahead. Of what is found in that shape counts what counts at rest.
 //!
 //! **What counts on either side.** If two places turn by more than is asked for, what is left is shared out: all places up to
 //! the first arc length and from the second on have enough between them (`TubeTurns::room`). Within these two parts each point
@@ -180,8 +180,8 @@ impl<'a> OwnTube<'a> {
         &self.both.tubes[0]
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. Where these
-    /// are more than `most` the nearest ones, and false.
+    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. Where
+    /// these are more than `most` the nearest ones, and false.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -324,6 +324,11 @@ impl<'a> OwnTube<'a> {
         self.turns.may_reach(most + self.growth(pair), Self::angle(pair))
     }
 
+    /// Whether a pair turns by what is asked for in this shape, anywhere on its pieces.
+    fn surely_turns(&self, pair: &OwnPair) -> bool {
+        self.turns.may_reach(self.turns(pair)[0], Self::angle(pair))
+    }
+
     /// Whether the one body of a pair may be in front of the other, a face, somewhere.
     fn may_be_before(&self, pair: &OwnPair, k: usize) -> bool {
         let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
@@ -424,9 +429,8 @@ impl<'a> OwnTube<'a> {
             pair.faces[k].is_none_or(|end| !has_face(end) || self.face(piece, end).is_some())
         });
         // What may be asked about at another time does not count in this shape.
-        let is_asked = self.turns.may_reach(self.turns(pair)[0], Self::angle(pair));
-        let counts =
-            is_asked && (pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest));
+        let counts = self.surely_turns(pair)
+            && (pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest));
         let upper = if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
         FoundBetween { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
     }
@@ -678,9 +682,7 @@ impl Divided for OwnTube<'_> {
     fn is_surely_asked(&self, pair: &OwnPair, found: &FoundBetween) -> bool {
         // Of a body that is partly behind a face, that part may be nearer.
         let is_before = self.is_whole(pair) || self.is_before(pair);
-        is_before
-            && self.turns.may_reach(self.turns(pair)[0], Self::angle(pair))
-            && found.upper < Real::INFINITY
+        is_before && self.surely_turns(pair) && found.upper < Real::INFINITY
     }
 
     fn uncertainty(&self) -> Real {

@@ -58,6 +58,14 @@ pub(crate) struct FoundBetween {
     pub points: [Vector; 2],
 }
 
+impl FoundBetween {
+    /// Which of the two sections is faster, and how fast, of these speeds.
+    pub(crate) fn faster(&self, speeds: [Real; 2]) -> (usize, Real) {
+        let k = usize::from(speeds[1] > speeds[0]);
+        (self.sections[k] as usize, speeds[k])
+    }
+}
+
 impl Bound for FoundBetween {
     fn upper(&self) -> Real {
         self.upper

@@ -35,7 +35,7 @@ pub use motion::{
     BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
     bending_course, bending_speed, verify_motion,
 };
-pub(crate) use motion::{Sections, ShapePath};
+pub(crate) use motion::{Sections, ShapePath, check_speed};
 pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};

@@ -24,9 +24,9 @@ use std::cmp::Ordering;
 /// Robots are given to each question, with their poses in the scene's frame. If a
 /// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
 ///
-/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and what each robot kept from
-/// each structure: one that a robot cannot have reached since is passed over by all questions but `per_structure`. Robots are told apart by their place in a
-/// question; any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
+/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and what each robot kept from each
+/// structure: one that a robot cannot have reached since is passed over by all questions but `per_structure`. Robots are told
+/// apart by their place in a question; any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
 ///
 /// ```
 /// use parry_continuum::Chain;

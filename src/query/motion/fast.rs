@@ -8,7 +8,7 @@
 
 use crate::distance::Scalar;
 use crate::pieces::Stretch;
-use crate::robot::{Motion, RobotError};
+use crate::robot::{Motion, RobotError, check_speed};
 use parry3d_f64::math::Real;
 
 /// How fast the points of a stretch move at most.
@@ -34,11 +34,8 @@ impl Fast {
         let stated = motion.speed(section, shares, times);
         // A wire has no rim.
         let turn = if outer.is_flat() && radius > 0.0 { stated.turn } else { 0.0 };
-        for value in [stated.point, turn] {
-            if !(0.0..Real::INFINITY).contains(&value) {
-                return Err(RobotError::BadSpeed { section, value });
-            }
-        }
-        Ok(Self { centreline: stated.point, rim: radius * turn * (1.0 + 2.0 * Real::UNIT_ROUNDOFF) })
+        let centreline = check_speed(section, stated.point)?;
+        let turn = check_speed(section, turn)?;
+        Ok(Self { centreline, rim: radius * turn * (1.0 + 2.0 * Real::UNIT_ROUNDOFF) })
     }
 }

@@ -8,8 +8,8 @@ use crate::pieces::FoundBetween;
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// Whether a margin is kept in all intervals. `judge` looks at the middle of one, and says for how long before and after it what failed
-/// there is decided: for ever where nothing did. Breadth first: contacts that last show early.
+/// Whether a margin is kept in all intervals. `judge` looks at the middle of one, and says for how long before and after it what
+/// failed there is decided: for ever where nothing did. Breadth first: contacts that last show early.
 ///
 /// # Errors
 /// As `judge`.
@@ -35,8 +35,8 @@ pub(super) fn clear(
     Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
 }
 
-/// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the motion that there are more: 2^16. A
-/// shorter interval has fewer.
+/// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the motion that there are more:
+/// 2^16. A shorter interval has fewer.
 pub(super) fn most_pairs(reach: Real, Wanted { margin, resolution }: Wanted) -> usize {
     if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }

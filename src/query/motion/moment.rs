@@ -1,7 +1,7 @@
 //! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at its middle.
 
 use super::moves::Moves;
-use super::pace::{MOST_INTERVALS, Pace};
+use super::pace::{Pace, check_pace};
 use crate::answer::ProximityError;
 use crate::pieces::{Body, Bound, Divided, Look, Near, Question, Verdict};
 use parry3d_f64::math::Real;
@@ -128,10 +128,7 @@ impl<V, F> Moment<V, F> {
         V: Moves<D, P>,
     {
         let (speed, Wanted { margin, resolution }) = (self.pace.speed, self.wanted);
-        if speed > MOST_INTERVALS * resolution {
-            let (section, speed) = self.moving.fastest(near, speed);
-            return Err(ProximityError::TooFast { section, speed, resolution });
-        }
+        check_pace(speed, resolution, || self.moving.fastest(near, speed))?;
         self.seen.is_near |= near.found.upper() <= margin + resolution + tube.stated(near.piece);
         self.pace.lasts(D::distance(near.nearest) - margin - tube.slack());
         self.moving.fail(near, &self.pace);

@@ -30,13 +30,16 @@ pub(crate) trait Moves<D: Divided, P> {
     }
 
     /// A triangle that is likely to be near, where there are triangles.
-    fn start(&self) -> Option<u32>;
+    fn start(&self) -> Option<u32> {
+        None
+    }
 
     /// Takes note of what was found.
-    fn note(&mut self, near: &Near<D, P>);
+    fn note(&mut self, _: &Near<D, P>) {}
 
-    /// Takes note of a part about which the middle shape decides nothing for the whole interval.
-    fn fail(&mut self, near: &Near<D, P>, pace: &Pace);
+    /// Takes note of a part about which the middle shape decides nothing for the whole interval; if the pace, which knows for how
+    /// long all the others keep the margin, is not enough.
+    fn fail(&mut self, _: &Near<D, P>, _: &Pace) {}
 
     /// The section that is the fastest of a part which approaches so fast, and how fast it is.
     fn fastest(&self, near: &Near<D, P>, speed: Real) -> (usize, Real);

@@ -2,7 +2,6 @@
 
 use super::fast::Fast;
 use super::moves::Moves;
-use super::pace::Pace;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pieces::{Near, OwnPair, OwnTube};
@@ -44,17 +43,7 @@ impl<'t, M: Motion> Moves<OwnTube<'t>, OwnPair> for MovingOwn<'_, M> {
         *self.left == 0
     }
 
-    fn start(&self) -> Option<u32> {
-        None
-    }
-
-    fn note(&mut self, _: &Near<OwnTube<'t>, OwnPair>) {}
-
-    /// The pace knows for how long the others keep the margin, and all are looked at again.
-    fn fail(&mut self, _: &Near<OwnTube<'t>, OwnPair>, _: &Pace) {}
-
     fn fastest(&self, near: &Near<OwnTube<'t>, OwnPair>, _: Real) -> (usize, Real) {
-        let k = usize::from(self.speeds[1] > self.speeds[0]);
-        (near.found.sections[k] as usize, self.speeds[k])
+        near.found.faster(self.speeds)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::fast::Fast;
 use super::moves::Moves;
-use super::pace::Pace;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pieces::{Near, Outer, PiecePair, TwoTubes};
@@ -39,17 +38,7 @@ impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_,
         Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
     }
 
-    fn start(&self) -> Option<u32> {
-        None
-    }
-
-    fn note(&mut self, _: &Near<TwoTubes<'t>, PiecePair>) {}
-
-    /// The pace knows for how long the others keep the margin, and all are looked at again.
-    fn fail(&mut self, _: &Near<TwoTubes<'t>, PiecePair>, _: &Pace) {}
-
     fn fastest(&self, near: &Near<TwoTubes<'t>, PiecePair>, _: Real) -> (usize, Real) {
-        let k = usize::from(self.speeds[1] > self.speeds[0]);
-        (near.found.sections[k] as usize, self.speeds[k])
+        near.found.faster(self.speeds)
     }
 }

@@ -8,14 +8,14 @@ use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
 use super::moves::Moves;
 use super::moving_own::MovingOwn;
-use super::pace::{Pace, check_speed, half, middle};
+use super::pace::{Pace, check_pace, half, middle};
 use super::present::Present;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
 use crate::pieces::{
     Divided, FoundBetween, MOST_GROWTH, Moved, OwnBeginning, OwnMoves, OwnPair, OwnTube, refine,
 };
-use crate::robot::{Motion, RobotError, Section, TubeTurns};
+use crate::robot::{Motion, Section, TubeTurns, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
@@ -40,8 +40,8 @@ pub(crate) struct OwnMotionMemory {
 /// Whether a robot that moves keeps the margin to itself at all times.
 ///
 /// # Errors
-/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a stated speed is not finite or too large;
-/// or samples do not allow a decision at that resolution.
+/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a stated speed is not finite or
+/// too large; or samples do not allow a decision at that resolution.
 pub(crate) fn own_motion_clears<M: Motion>(
     motion: &M,
     memory: &mut OwnMotionMemory,
@@ -76,12 +76,13 @@ fn judge<M: Motion>(
     let mut own = OwnTube::moving(&present.tube, turns, moves)?;
     // Below that, rounding decides.
     own.check_resolved(32.0 * own.slack(), resolution)?;
-    let reach = 2.0 * moves.farthest().1 * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+    let (fastest, points) = moves.farthest();
+    let reach = 2.0 * points * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
     let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + own.slack());
     let is_all = own.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
     if !is_all {
-        let (section, points) = moves.farthest();
-        check_speed(section, points / half(times), resolution)?;
+        let speed = points / half(times);
+        check_pace(speed, resolution, || (fastest, speed))?;
     }
     let moving = MovingOwn { motion, times, speeds: [0.0; 2], left };
     let mut moment = Moment { moving, pace: Pace::new(times, opening), wanted, seen: Seen::nothing() };
@@ -107,12 +108,8 @@ fn measure_moves<M: Motion>(
     let half = half(times);
     for (number, section) in sections.iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
-        for value in [stated.point, stated.turn] {
-            // Written so that NaN is an error.
-            if !(0.0..Real::INFINITY).contains(&value) {
-                return Err(RobotError::BadSpeed { section: number, value }.into());
-            }
-        }
+        check_speed(number, stated.point)?;
+        check_speed(number, stated.turn)?;
         if stated.turn > FASTEST_TURN {
             return Err(ProximityError::TurnsTooFast {
                 section: number,

@@ -6,7 +6,7 @@ use parry3d_f64::math::Real;
 
 /// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
 /// far less; and more shapes than this nobody waits for.
-pub(super) const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
+const MOST_INTERVALS: Real = (1_u64 << 24) as Real;
 
 /// What moves in an interval of time, seen from its middle.
 #[derive(Clone, Copy, Debug)]
@@ -23,10 +23,18 @@ pub(crate) struct Pace {
     pub still: Real,
 }
 
+/// Whether time can be divided into intervals in which something so fast moves by the resolution. `fastest` names the fastest
+/// section of it, and its speed.
+///
 /// # Errors
-/// It is so fast that time cannot be divided into intervals in which it moves by the resolution.
-pub(super) fn check_speed(section: usize, speed: Real, resolution: Real) -> Result<(), ProximityError> {
+/// It cannot.
+pub(super) fn check_pace(
+    speed: Real,
+    resolution: Real,
+    fastest: impl FnOnce() -> (usize, Real),
+) -> Result<(), ProximityError> {
     if speed > MOST_INTERVALS * resolution {
+        let (section, speed) = fastest();
         return Err(ProximityError::TooFast { section, speed, resolution });
     }
     Ok(())

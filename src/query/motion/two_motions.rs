@@ -9,12 +9,12 @@
 use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
 use super::moving_pair::MovingPair;
-use super::pace::{Pace, check_speed, half, middle};
+use super::pace::{Pace, check_pace, half, middle};
 use super::present::Present;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
 use crate::pieces::{Beginning, Divided, FoundBetween, PiecePair, PlacedTube, TwoTubes, refine};
-use crate::robot::{Motion, RobotError};
+use crate::robot::{Motion, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
@@ -69,7 +69,7 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         let is_all = tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
         if !is_all {
             let faster = if second.speed > first.speed { &second } else { &first };
-            check_speed(faster.fastest, faster.speed, resolution)?;
+            check_pace(faster.speed, resolution, || (faster.fastest, faster.speed))?;
         }
         let pace = Pace::new(times, first.opening.max(second.opening));
         let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
@@ -100,16 +100,11 @@ fn shape<'p, M: Motion>(
     let (mut most, mut fastest) = (0.0, 0);
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
-        // Written so that NaN is an error.
-        if !(0.0..Real::INFINITY).contains(&stated.point) {
-            return Err(RobotError::BadSpeed { section: number, value: stated.point }.into());
-        }
+        check_speed(number, stated.point)?;
         // Where no body has a flat end, nobody needs a turn: that of a link without a length is infinite.
         let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
         let turn = if has_rim { stated.turn } else { 0.0 };
-        if !(0.0..Real::INFINITY).contains(&turn) {
-            return Err(RobotError::BadSpeed { section: number, value: turn }.into());
-        }
+        check_speed(number, turn)?;
         let speed = stated.point + section.radius * turn;
         if speed > most {
             (most, fastest) = (speed, number);

@@ -7,7 +7,7 @@ use super::tube_shape::tube_shape;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pieces::PlacedTube;
-use crate::robot::{Motion, RobotError, Sections, Tube};
+use crate::robot::{Motion, Sections, Tube, check_speed};
 use parry3d_f64::math::Real;
 
 /// More shapes are in no proof.
@@ -60,14 +60,4 @@ pub(crate) fn motion_proof(
         waiting.extend([[t, to], [from, t]]);
     }
     Ok(Some(proven))
-}
-
-/// # Errors
-/// It is negative, infinite or NaN.
-fn check_speed(section: usize, speed: Real) -> Result<Real, RobotError> {
-    if speed >= 0.0 && speed.is_finite() {
-        Ok(speed)
-    } else {
-        Err(RobotError::BadSpeed { section, value: speed })
-    }
 }

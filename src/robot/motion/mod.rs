@@ -119,6 +119,19 @@ pub struct Speed {
     pub turn: Real,
 }
 
+/// A speed or a turn that a motion states of a section.
+///
+/// # Errors
+/// It is negative, infinite or NaN.
+pub(crate) fn check_speed(section: usize, value: Real) -> Result<Real, RobotError> {
+    // Written so that NaN is an error.
+    if (0.0..Real::INFINITY).contains(&value) {
+        Ok(value)
+    } else {
+        Err(RobotError::BadSpeed { section, value })
+    }
+}
+
 /// The pose of a motion with a rotation of unit length, if it is finite, within range and rigid.
 fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
     // A rotation that is finite may still be too long: that is another error.
