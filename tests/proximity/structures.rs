@@ -300,7 +300,8 @@ fn a_margin_counts_from_when_it_is_set() {
     scene.add("wall", ball(Vector::ZERO, 1.0), Some(0.1)).unwrap();
     scene.add("target", ball(Vector::X * 40.0, 1.0), None).unwrap();
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
-    let robots = [(&robot, Pose::translation(20.0, 0.0, 0.0))];
+    // Beside the box around both, and 27 from either.
+    let robots = [(&robot, Pose::translation(20.0, 20.0, 0.0))];
     for (margin, clears) in [(Some(0.1), true), (Some(30.0), false), (Some(0.1), true), (None, true)] {
         for structure in [0, 1] {
             scene.set_margin(structure, margin).unwrap();

@@ -316,6 +316,26 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
     assert_eq!(pair.motion_self_clears(&motion, 0.5, 1e-3).unwrap().decision, Decision::Undecided);
 }
 
+#[test]
+fn what_may_come_to_be_asked_about_is_no_contact() {
+    // Links with 170 degrees between them, 4 apart, that are carried about and turned: at no time are they asked about.
+    let directions = [0.0, 85.0_f64, 170.0].map(|angle| {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        Vector::new(sin, 0.0, cos)
+    });
+    let mut points = vec![Vector::ZERO];
+    for (direction, length) in directions.into_iter().zip([30.0, 5.0, 30.0]) {
+        points.push(points[points.len() - 1] + direction * length);
+    }
+    let tube = Tube::from(&Chain::from_centreline(&points, &[0.5; 3]).unwrap());
+    let mut pair = RobotPair::new();
+    for turn in [0.0, 0.2, 1.0] {
+        let turned = Pose::from_parts(Vector::Y * 9.0, Rotation::from_axis_angle(Vector::X, turn));
+        let motion = RigidMotion::new(tube.clone(), [Pose::IDENTITY, turned]).unwrap();
+        assert!(pair.motion_self_clears(&motion, 4.5, 1e-3).unwrap().is_clear(), "{turn}");
+    }
+}
+
 /// A hairpin at rest, that states any speed, and has any joints.
 struct Any {
     speed: Speed,

@@ -282,6 +282,29 @@ fn robots_of_many_links_may_be_fast() {
 }
 
 #[test]
+fn a_fast_link_far_from_many_slow_ones_is_seen() {
+    // Two robots at rest beside one another, 160,000 pairs of links. One has a last link far away, that swings to the other.
+    let (count, radii) = (400, vec![0.1; 402]);
+    let beside = |x: Real| (0..=count).map(move |k| Vector::new(x, 0.0, 0.5 * Real::from(k)));
+    let resting: Vec<_> = beside(0.0).collect();
+    let slow = LinearMotion::chain(&resting, &resting, &radii[2..]).unwrap();
+    let swinging = |y: Real| -> Vec<_> {
+        beside(5.0).chain([Vector::new(105.0, 0.0, 200.0), Vector::new(0.0, y, 150.0)]).collect()
+    };
+    let fast = LinearMotion::chain(&swinging(700.0), &swinging(-300.0), &radii).unwrap();
+    let mut pair = RobotPair::new();
+    for swap in [false, true] {
+        let found = if swap {
+            pair.clears_motion(&fast, &slow, 0.1, 1e-3).unwrap()
+        } else {
+            pair.clears_motion(&slow, &fast, 0.1, 1e-3).unwrap()
+        };
+        let contact = found.contact.unwrap();
+        assert!((contact.t - 0.7).abs() < 1e-2 && contact.sections.contains(&401), "{contact:?}");
+    }
+}
+
+#[test]
 fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
     // A thin disc of radius 10 turns by 2 rad: its centre stays, and its rim passes the needle after a quarter of a turn alone, which
     // no middle of a large interval shows.
