@@ -2,8 +2,9 @@
 
     pip install './crates/python[bench]' && python crates/python/bench/peers.py
 
-Peers that are not installed, or do not load, are left out, and the page says so. PAGE names another file. Times are processor time, of all threads together, so that
-what else the machine does counts little.
+Peers that are not installed, or do not load, are left out, and the page says so. PAGE names another file. `beside.py` alone
+prints the chapter about robots beside robots. Times are processor time, of all threads together, so that what else the machine does
+counts little.
 """
 
 import collections
@@ -18,6 +19,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import beside
 import numpy as np
 from shapes import RADIUS, cavity, robots
 from ways import WAYS
@@ -143,6 +145,7 @@ def main(count=500):
     # Before the peers are loaded, which bring threads and memory of their own.
     added, shared = overhead(mesh, vertices, faces, shapes), threads(mesh, shapes)
     rows, missing, touches = peers(mesh, vertices, faces, shapes)
+    robots_beside = beside.chapter(number)
     versions = [DISTRIBUTIONS.get(package, package) for package in sorted({way[1] for way in WAYS} - set(missing))]
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in versions)
     without = f" Not there, or not to be loaded: {', '.join(missing)}." if missing else ""
@@ -165,6 +168,8 @@ def main(count=500):
         "|---|---|---|---|---|---|",
         *(f"| {name} | {count} | {number(taken)} | {over} | {under} | {called_free} |"
           for name, count, taken, over, under, called_free in rows),
+        "",
+        *robots_beside,
         "",
         "## What Python adds",
         "",
