@@ -142,6 +142,7 @@ def main(count=500):
     shapes = robots(count)
     mesh = Mesh(vertices, faces)
     mesh.prepare()
+    busy = os.getloadavg()[0]
     # Before the peers are loaded, which bring threads and memory of their own.
     added, shared = overhead(mesh, vertices, faces, shapes), threads(mesh, shapes)
     rows, missing, touches = peers(mesh, vertices, faces, shapes)
@@ -184,7 +185,8 @@ def main(count=500):
         "## Two threads",
         "",
         "How many times as many robots two of Python's threads that share the mesh answer, one robot after the other, as one thread",
-        "does: by the clock, the least of several rounds in turns.",
+        f"does: by the clock, the least of several rounds in turns. The load was {busy:.1f} on {os.cpu_count()} cores in the minute before; what other",
+        "programs take is not there for the second thread.",
         "",
         "| question | times as many |",
         "|---|---|",
