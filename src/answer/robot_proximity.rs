@@ -23,11 +23,6 @@ pub struct RobotProximity {
 }
 
 impl RobotProximity {
-    /// Whether it is the answer for these links, which need no second look then.
-    pub(crate) fn is_of(&self, links: [usize; 2]) -> bool {
-        self.links.map(|link| link as usize) == links
-    }
-
     /// What is nearer than another answer, or as near at lower links.
     pub(crate) fn comes_before(&self, other: &Self) -> bool {
         self.distance < other.distance || (self.distance == other.distance && self.links < other.links)

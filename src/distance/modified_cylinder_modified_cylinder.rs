@@ -74,6 +74,39 @@ impl<T: Scalar> TwoLinks<T> {
     /// decides nothing, so `true` is a right answer always.
     #[inline(always)]
     pub(crate) fn closest(&self, axes: &Parameters<T>, may: impl Fn(T::Mask) -> bool) -> Closest<T> {
+        let capsules = self.closest_of_capsules(axes);
+        let [start1, end1] = self.first.flat;
+        let [start2, end2] = self.second.flat;
+        let are_flat = start1 | end1 | start2 | end2;
+        if !may(are_flat) {
+            return capsules;
+        }
+        let flat = self.closest_of_flat(
+            axes,
+            #[inline(always)]
+            |mask| may(mask & are_flat),
+        );
+        Closest::select(are_flat, flat, capsules)
+    }
+
+    /// Case 1 of two capsules: both points are on the way between the axes.
+    #[inline(always)]
+    fn closest_of_capsules(&self, axes: &Parameters<T>) -> Closest<T> {
+        let Self { first, second, second_start } = self;
+        let apart = axes.gap.norm();
+        let distance = (apart - first.radius - second.radius).max(apart.zero());
+        let share = apart.one().over(apart);
+        // Where they meet the second point is the first, which is in the second link: its axis is no farther than what is
+        // left of the way.
+        let point1 = (first.end * axes.s).along(axes.gap, -(first.radius.min(apart) * share));
+        let outside = second_start.along(second.end, axes.t).along(axes.gap, second.radius * share);
+        let point2 = Vec3::select(apart.zero().lt(distance), outside, point1);
+        Closest { distance, point1, point2 }
+    }
+
+    /// All cases.
+    #[inline(always)]
+    fn closest_of_flat(&self, axes: &Parameters<T>, may: impl Fn(T::Mask) -> bool) -> Closest<T> {
         let Self { first, second, second_start } = self;
         // Case 1.
         let on_second = second_start.along(second.end, axes.t);

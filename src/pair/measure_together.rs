@@ -66,7 +66,7 @@ fn measure_pack(
 }
 
 /// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
-fn narrowed(
+pub(super) fn narrowed(
     level: Level,
     #[cfg_attr(not(any(target_arch = "x86", target_arch = "x86_64")), expect(unused))] count: usize,
 ) -> Level {

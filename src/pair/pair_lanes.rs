@@ -28,12 +28,43 @@ pub(crate) fn put_pair(
     flat: [bool; 2],
 ) {
     put_corners(rows, lane, corners);
-    put(rows, 9, lane, ends[0]);
-    put(rows, 12, lane, ends[1]);
-    rows[15][lane] = radius;
+    put_link(rows, 9, lane, ends, radius, flat);
+}
+
+/// Writes a link to the rows `row` to `row + 8`: the ends of its axis, its radius, and 1 for each flat cap.
+#[inline(always)]
+pub(super) fn put_link<const N: usize>(
+    rows: &mut Rows<N>,
+    row: usize,
+    lane: usize,
+    ends: [Vector; 2],
+    radius: Real,
+    flat: [bool; 2],
+) {
+    put(rows, row, lane, ends[0]);
+    put(rows, row + 3, lane, ends[1]);
+    rows[row + 6][lane] = radius;
     let [start, end] = flat.map(Real::from);
-    rows[16][lane] = start;
-    rows[17][lane] = end;
+    rows[row + 7][lane] = start;
+    rows[row + 8][lane] = end;
+}
+
+/// The links in the rows `row` to `row + 8`, with the bits of [`PlacedLink::between`], but for the axis, which is left out.
+#[inline(always)]
+pub(super) fn link<L: Pack<Element = f64>>(
+    token: L::Token,
+    rows: &[[Real; TOGETHER]],
+    row: usize,
+    lane: usize,
+) -> Placed<L> {
+    let start = point::<L>(token, rows, row, lane);
+    let along = point::<L>(token, rows, row + 3, lane) - start;
+    let radius = L::load(token, &rows[row + 6][lane..]);
+    let [start_cap, end_cap] = [&rows[row + 7], &rows[row + 8]];
+    let zero = radius.zero();
+    let flat = [zero.lt(L::load(token, &start_cap[lane..])), zero.lt(L::load(token, &end_cap[lane..]))];
+    let extent = along.largest().max(radius);
+    Placed { start, along, axis: Vec3::zero(zero), radius, flat, extent }
 }
 
 /// Three coordinates from the rows `row` to `row + 2`.
@@ -88,6 +119,11 @@ pub(crate) fn store<L: Pack<Element = f64>, const N: usize>(
 }
 
 impl<L: Pack<Element = f64>> Placed<L> {
+    #[inline(always)]
+    pub(super) fn with_axis(self) -> Self {
+        Self { axis: self.along.normalised(), ..self }
+    }
+
     /// One link in all lanes.
     #[inline(always)]
     pub(super) fn splat(token: L::Token, link: &PlacedLink) -> Self {
@@ -119,14 +155,8 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
     /// Those from the lane `lane` on.
     #[inline(always)]
     pub(super) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
-        let start = point::<L>(token, rows, 9, lane);
-        let along = point::<L>(token, rows, 12, lane) - start;
-        let radius = L::load(token, &rows[15][lane..]);
-        let zero = radius.zero();
-        let flat = [zero.lt(L::load(token, &rows[16][lane..])), zero.lt(L::load(token, &rows[17][lane..]))];
-        let extent = along.largest().max(radius);
-        let placed = Placed { start, along, axis: along.normalised(), radius, flat, extent };
-        Self::between(&placed, corners::<L, 18>(token, rows, lane))
+        let link = link(token, rows, 9, lane).with_axis();
+        Self::between(&link, corners::<L, 18>(token, rows, lane))
     }
 
     /// Those of links and triangles in the mesh's frame.

@@ -163,9 +163,14 @@ impl PlacedLink {
     /// The pair with a triangle, in coordinates of its own.
     #[inline(always)]
     pub(super) fn pair(&self, corners: [Vector; 3]) -> Pair<Real> {
+        self.in_lanes().with(corners.map(Vec3::from))
+    }
+
+    /// The same for what computes with packs as well.
+    #[inline(always)]
+    pub(super) fn in_lanes(&self) -> Placed<Real> {
         let Self { along, axis, radius, flat, extent, .. } = *self;
-        let placed = Placed { start: self.start.into(), along: along.into(), axis, radius, flat, extent };
-        placed.with(corners.map(Vec3::from))
+        Placed { start: self.start.into(), along: along.into(), axis, radius, flat, extent }
     }
 
     /// A lower bound on the distance between the link and anything in the box.

@@ -3,7 +3,7 @@
 //! As a link and a triangle they are measured in coordinates of their own: from the first link's start, multiplied by the
 //! power of two that brings the largest of them near one.
 
-use super::coordinates::SLACK;
+use super::coordinates::{Placed, SLACK};
 use super::placed_link::PlacedLink;
 use crate::answer::RobotProximity;
 use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction};
@@ -99,23 +99,36 @@ impl PlacedLink {
 
     /// Both in coordinates of their own, and what 1 is there.
     fn with_link(&self, other: &Self) -> (TwoLinks<Real>, Real) {
-        let [start, end] = [other.start(), other.end()].map(|point| point - self.start());
-        let extent = start.abs().max(end.abs()).max_element().max(self.extent()).max(other.radius());
+        self.in_lanes().with_link(&other.in_lanes())
+    }
+}
+
+impl<T: Scalar> Placed<T> {
+    /// Both in coordinates of their own, and what 1 is there.
+    #[inline(always)]
+    pub(super) fn with_link(&self, other: &Self) -> (TwoLinks<T>, T) {
+        let start = other.start - self.start;
+        let end = start + other.along;
+        let extent = start.largest().max(end.largest()).max(self.extent).max(other.radius);
         let scale = extent.power_of_two_to_unity();
-        let link = |placed: &Self| {
-            let end = Vec3::from(placed.along() * scale);
-            // A length whose square vanishes beside the other link gives no direction.
-            let axis = if gives_direction(end.norm_squared()) { placed.axis() } else { Vec3::zero(0.0) };
-            Link { end, axis, radius: placed.radius() * scale, flat: placed.flat() }
-        };
-        let second_start = Vec3::from(start * scale);
-        (TwoLinks { first: link(self), second: link(other), second_start }, 1.0 / scale)
+        let (first, second) = (self.scaled(scale), other.scaled(scale));
+        (TwoLinks { first, second, second_start: start * scale }, scale.one() / scale)
+    }
+
+    /// The link seen from its start. A length whose square vanishes beside the pair's extent gives no direction.
+    #[inline(always)]
+    fn scaled(&self, scale: T) -> Link<T> {
+        let end = self.along * scale;
+        let has_direction = gives_direction(end.norm_squared());
+        let axis = Vec3::select(has_direction, self.axis, Vec3::zero(scale));
+        Link { end, axis, radius: self.radius * scale, flat: self.flat }
     }
 }
 
 /// How far the capsules around two links are apart at least, whose axes are so far apart.
-fn capsules_apart(pair: &TwoLinks<Real>, axes: Real) -> Real {
-    axes - pair.first.radius - pair.second.radius - SLACK
+#[inline(always)]
+pub(super) fn capsules_apart<T: Scalar>(pair: &TwoLinks<T>, axes: T) -> T {
+    axes - pair.first.radius - pair.second.radius - axes.lit(SLACK)
 }
 
 /// An end of a link, seen from its start.

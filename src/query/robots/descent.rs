@@ -1,29 +1,33 @@
 //! Two trees of links at once, the nearer pair of nodes first.
 //!
 //! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
-//! divided, until both have so few links that all are compared at once, in packs: the nodes of a coil are as near as its links,
-//! and a pack costs no more than a pair of nodes. The nearest of these pairs is looked at first. Where the limit is a distance that
-//! has been found, a pair that is as far may still hold lower links, so it is looked at, unless that distance is 0 and its
-//! lowest links come after those that were found.
+//! divided, until both have so few links that the balls around them are compared at once ([`Sweep`]): a robot of some dozen links
+//! has no use for its tree. What is left is measured a pack at a time. Where much is left, the pair whose centres are nearest
+//! is measured first, which lowers the limit for the others. Where the limit is a distance that has been found, a pair that is
+//! as far may still hold lower links, so it is looked at, unless that distance is 0 and its lowest links come after those
+//! that were found.
 
-use super::outline_rows::Block;
-use super::outlines::{Outlines, SearchFrame};
+use super::balls::{Balls, SWEPT, Sweep};
+use super::outline::{Outline, SearchFrame};
 use crate::answer::RobotProximity;
-use crate::pair::{PlacedRobot, TOGETHER};
-use crate::robot::LinkNode;
+use crate::pair::{LinksTogether, NearestOfLinks, PlacedRobot, TOGETHER, set_bits};
+use crate::robot::{LinkNode, place_of_leaf};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// A node of a tree, and the first of its links.
+/// More pairs than these are worth a look for the nearest of them: it costs about as much as they do.
+const MANY: u32 = 16 * TOGETHER as u32;
+
+/// So many pairs are measured before the limit is lowered.
+const AT_ONCE: usize = 4 * TOGETHER;
+
+/// A node of a tree, the first of its links, and the capsule around them.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     node: usize,
     first: usize,
-}
-
-impl Place {
-    const ROOT: Self = Self { node: 0, first: 0 };
+    outline: Outline,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -53,9 +57,20 @@ impl Limit {
         Self { distance: found.distance, links: Some(found.links.map(|link| link as usize)) }
     }
 
+    /// That of what has been found, if anything has.
+    pub fn at_best(found: &Option<RobotProximity>) -> Self {
+        found.as_ref().map_or(Self::of(Real::INFINITY), Self::at)
+    }
+
     /// Whether what is at least so far apart needs no look, if these are its lowest links.
     fn leaves_out(&self, at_least: Real, firsts: [usize; 2]) -> bool {
         at_least > self.distance || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
+    }
+
+    /// Whether links that are so far apart come before what has been found.
+    fn admits(&self, distance: Real, links: [usize; 2]) -> bool {
+        distance < self.distance
+            || (distance == self.distance && self.links.is_none_or(|found| links < found))
     }
 }
 
@@ -64,9 +79,11 @@ impl Limit {
 pub(super) struct Descent {
     level: Level,
     stack: Vec<Entry>,
-    outlines: [Outlines; 2],
     frame: SearchFrame,
-    block: Block,
+    /// Those of both robots; of a robot and itself the first.
+    balls: [Balls; 2],
+    asked_from: Vec<usize>,
+    together: LinksTogether,
 }
 
 impl Default for Descent {
@@ -74,140 +91,180 @@ impl Default for Descent {
         Self {
             level: Level::new(),
             stack: Vec::new(),
-            outlines: Default::default(),
             frame: SearchFrame::default(),
-            block: Block::default(),
+            balls: Default::default(),
+            asked_from: Vec::new(),
+            together: LinksTogether::default(),
         }
     }
 }
 
 impl Descent {
-    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `asks` is given two ranges
-    /// of links, and tells whether a pair of them is asked for.
+    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `asked_from` tells from which
+    /// of the second robot's links on one of the first robot's is asked for; it never falls from one link to the next.
     pub fn run(
         &mut self,
         robots: [&PlacedRobot; 2],
         limit: Limit,
-        asks: impl Fn([Range<usize>; 2]) -> bool,
-        visit: impl FnMut([usize; 2]) -> Limit,
+        asked_from: impl Fn(usize) -> usize,
+        visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
     ) {
         self.begin(robots);
-        if asks(robots.map(|robot| 0..robot.links().len())) {
-            self.run_from([Place::ROOT; 2], robots, limit, asks, visit);
-        }
+        self.run_from(0, robots, 0, limit, asked_from, visit);
     }
 
-    /// Shows `visit` each link of the first robot, alone for a first limit, and then with all links of the second that are
-    /// within the limit.
-    pub fn run_per_link(
-        &mut self,
-        robots: [&PlacedRobot; 2],
-        mut visit: impl FnMut(usize, Option<usize>) -> Limit,
-    ) {
-        self.begin(robots);
-        let nodes = robots[0].link_tree().iter().enumerate();
-        let leaves = nodes.filter(|(_, node)| node.links() == 1).map(|(node, _)| node);
-        for (first, node) in leaves.enumerate() {
-            let (limit, places) = (visit(first, None), [Place { node, first }, Place::ROOT]);
-            self.run_from(places, robots, limit, |_| true, |[first, other]| visit(first, Some(other)));
-        }
-    }
-
-    /// Forgets the last robots' outlines.
-    fn begin(&mut self, robots: [&PlacedRobot; 2]) {
-        for (outlines, robot) in self.outlines.iter_mut().zip(robots) {
-            outlines.start(robot);
+    /// Makes ready for [`run_of_link`](Self::run_of_link).
+    pub fn begin(&mut self, robots: [&PlacedRobot; 2]) {
+        for (balls, robot) in self.balls.iter_mut().zip(robots) {
+            balls.start(robot.links().len());
         }
         self.frame = SearchFrame::around(robots);
     }
 
+    /// Shows `visit` the pairs of a link of the first robot, as [`run`](Self::run) does with all.
+    pub fn run_of_link(
+        &mut self,
+        robots: [&PlacedRobot; 2],
+        link: usize,
+        visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+    ) {
+        let node = place_of_leaf(link, robots[0].links().len());
+        self.run_from(node, robots, link, Limit::of(Real::INFINITY), |_| 0, visit);
+    }
+
+    /// Whether two links of a robot beside itself may be at most `bound` apart, after [`begin`](Self::begin): told from the balls around
+    /// them.
+    pub fn may_be_within(&mut self, robot: &PlacedRobot, links: [usize; 2], bound: Real) -> bool {
+        let Self { frame, balls: [balls, _], .. } = self;
+        links.into_iter().for_each(|link| balls.place(robot, frame, link..link + 1));
+        balls.may_be_within(links, frame.length(bound))
+    }
+
+    /// From a node of the first robot's tree, with its first link, and all of the second's.
     fn run_from(
         &mut self,
-        places: [Place; 2],
+        node: usize,
         robots: [&PlacedRobot; 2],
+        first: usize,
         mut limit: Limit,
-        asks: impl Fn([Range<usize>; 2]) -> bool,
-        mut visit: impl FnMut([usize; 2]) -> Limit,
+        asked_from: impl Fn(usize) -> usize,
+        mut visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
     ) {
-        let Self { level, stack, outlines, frame, block } = self;
-        stack.clear();
-        stack.push(Entry { places, at_least: 0.0 });
-        while let Some(entry) = stack.pop() {
+        let frame = self.frame;
+        let place = |robot: usize, node: usize, first: usize| Place {
+            node,
+            first,
+            outline: frame.outline(robots[robot], node),
+        };
+        self.stack.clear();
+        self.stack.push(Entry { places: [place(0, node, first), place(1, 0, 0)], at_least: 0.0 });
+        while let Some(entry) = self.stack.pop() {
             let firsts = entry.places.map(|place| place.first);
-            if limit.leaves_out(entry.at_least, firsts) {
+            let links = [0, 1].map(|robot: usize| {
+                let Place { node, first, .. } = entry.places[robot];
+                first..first + robots[robot].link_tree()[node].links()
+            });
+            if limit.leaves_out(entry.at_least, firsts) || asked_from(firsts[0]) >= links[1].end {
                 continue;
             }
-            let nodes = [0, 1].map(|robot: usize| robots[robot].link_tree()[entry.places[robot].node]);
-            let counts = nodes.map(|node| node.links());
-            if counts.iter().all(|&count| count <= TOGETHER) {
-                let [first, second] = &mut *outlines;
-                let rows = [
-                    first.of_links(frame, robots[0], entry.places[0].node),
-                    second.of_links(frame, robots[1], entry.places[1].node),
-                ];
-                block.compare(*level, rows, firsts, counts, [frame.unit(), limit.distance]);
-                limit = visit_block(block, firsts, limit, &asks, &mut visit);
+            if links.iter().all(|links| links.len() <= SWEPT) {
+                self.asked_from.clear();
+                self.asked_from.extend(links[0].clone().map(&asked_from));
+                limit = self.sweep(robots, links, limit, &mut visit);
                 continue;
             }
-            let divided = usize::from(counts[1] > counts[0]);
-            let kept = 1 - divided;
-            let other = outlines[kept].get(frame, robots[kept], entry.places[kept].node);
-            let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|half| {
+            let divided = usize::from(links[1].len() > links[0].len());
+            let kept = entry.places[1 - divided];
+            let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|(node, first)| {
+                let half = place(divided, node, first);
                 let mut places = entry.places;
                 places[divided] = half;
-                let links = [0, 1].map(|robot: usize| {
-                    let Place { node, first } = places[robot];
-                    first..first + robots[robot].link_tree()[node].links()
-                });
-                asks(links).then(|| {
-                    let outline = outlines[divided].get(frame, robots[divided], half.node);
-                    Entry { places, at_least: outline.at_least(&other) * frame.unit() }
-                })
+                Entry { places, at_least: frame.outside(half.outline.at_least(&kept.outline)) }
             });
             // The nearer one is taken first, and of equals that with the lower links.
             let [low, high] = halves;
-            let is_high_nearer =
-                matches!((low, high), (Some(low), Some(high)) if high.at_least < low.at_least);
-            let nearer_last = if is_high_nearer { [low, high] } else { [high, low] };
-            let is_left =
-                |entry: &Entry| !limit.leaves_out(entry.at_least, entry.places.map(|place| place.first));
-            stack.extend(nearer_last.into_iter().flatten().filter(is_left));
+            let nearer_last = if high.at_least < low.at_least { [low, high] } else { [high, low] };
+            self.stack.extend(nearer_last);
         }
+    }
+
+    /// Shows `visit` the pairs of so few links that are asked for and within the limit. Returns the last limit.
+    fn sweep(
+        &mut self,
+        robots: [&PlacedRobot; 2],
+        links: [Range<usize>; 2],
+        mut limit: Limit,
+        visit: &mut impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+    ) -> Limit {
+        let Self { level, frame, balls: [first, second], asked_from, together, .. } = self;
+        first.place(robots[0], frame, links[0].clone());
+        let second = if std::ptr::eq(robots[0], robots[1]) {
+            first.place(robots[1], frame, links[1].clone());
+            &*first
+        } else {
+            second.place(robots[1], frame, links[1].clone());
+            &*second
+        };
+        let sweep = Sweep { balls: [first, second], links, asked_from };
+        let mut near = [0; SWEPT];
+        let is_bounded = limit.distance < Real::INFINITY;
+        let mut looked_at = None;
+        if !is_bounded || sweep.near(*level, frame.length(limit.distance), &mut near) > MANY {
+            looked_at = sweep.nearest(*level);
+            limit = measure(*level, &sweep, together, looked_at.into_iter(), limit, visit);
+            sweep.near(*level, frame.length(limit.distance), &mut near);
+        }
+        let [first, second] = &sweep.links;
+        let pairs = near[..first.len()].iter().zip(first.clone()).flat_map(|(&row, link)| {
+            set_bits(row).map(move |lane| [link, second.start + lane]).filter(|&pair| Some(pair) != looked_at)
+        });
+        measure(*level, &sweep, together, pairs, limit, visit)
     }
 }
 
-/// Shows `visit` the pairs of a block that are asked for and within the limit, the nearest first. Returns the last limit.
-fn visit_block(
-    block: &Block,
-    firsts: [usize; 2],
+/// Measures pairs, some packs at a time, and shows `visit` what is within the limit. Returns the last limit.
+fn measure(
+    level: Level,
+    sweep: &Sweep,
+    together: &mut LinksTogether,
+    mut pairs: impl Iterator<Item = [usize; 2]>,
     mut limit: Limit,
-    asks: &impl Fn([Range<usize>; 2]) -> bool,
-    visit: &mut impl FnMut([usize; 2]) -> Limit,
+    visit: &mut impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
 ) -> Limit {
-    let asked = |limit: Limit, [i, j]: [usize; 2]| {
-        let links = [firsts[0] + i, firsts[1] + j];
-        let is_left_out = limit.leaves_out(block.at_least[i][j], links);
-        (!is_left_out && asks(links.map(|link| link..link + 1))).then_some(links)
-    };
-    let near = block.near().filter_map(|pair| Some((pair, asked(limit, pair)?)));
-    let at_least = |[i, j]: [usize; 2]| block.at_least[i][j];
-    let nearest = near.min_by(|(one, _), (other, _)| at_least(*one).total_cmp(&at_least(*other)));
-    let Some((nearest, links)) = nearest else { return limit };
-    limit = visit(links);
-    for pair in block.near().filter(|pair| *pair != nearest) {
-        if let Some(links) = asked(limit, pair) {
-            limit = visit(links);
+    let mut links = [[0; 2]; AT_ONCE];
+    loop {
+        together.clear();
+        let mut count = 0;
+        while count < AT_ONCE {
+            let Some(pair) = pairs.next() else { break };
+            if let Some(first) = sweep.balls[0].link(pair[0])
+                && let Some(second) = sweep.balls[1].link(pair[1])
+                && !limit.leaves_out(0.0, pair)
+                && limit.links != Some(pair)
+            {
+                together.push(first, second);
+                links[count] = pair;
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return limit;
+        }
+        together.measure(level, limit.distance);
+        for (pair, distance) in together.near() {
+            if limit.admits(distance, links[pair]) {
+                limit = visit(links[pair], &together.nearest(pair));
+            }
         }
     }
-    limit
 }
 
-/// The two children of a node.
-fn halves(tree: &[LinkNode], Place { node, first }: Place) -> [Place; 2] {
-    let low = Place { node: node + 1, first };
-    let below = match tree[low.node] {
+/// The two children of a node, and the first link of each.
+fn halves(tree: &[LinkNode], Place { node, first, .. }: Place) -> [(usize, usize); 2] {
+    let low = node + 1;
+    let below = match tree[low] {
         LinkNode::Inner { below, .. } => below,
         LinkNode::Leaf(_) => 0,
     };
-    [low, Place { node: low.node + 1 + below, first: first + tree[low.node].links() }]
+    [(low, first), (low + 1 + below, first + tree[low].links())]
 }

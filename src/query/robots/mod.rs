@@ -1,10 +1,10 @@
 //! Robots beside robots: how near the links of one are to those of another.
 
+mod balls;
 mod descent;
 mod local_minima;
 mod one_robot;
-mod outline_rows;
-mod outlines;
+mod outline;
 mod own_tube;
 mod tubes;
 mod two_robots;

@@ -44,9 +44,12 @@
 //! And what is measured to be within a bound is in truth within e of it, which is what the ball around a face is asked for first: it
 //! is smaller than the face's link, and so known better than what is measured.
 //!
-//! **Rounding of turns.** An angle between two axes errs by less than 16 u, since the axes are unit vectors to 4 u and a sine and a
-//! cosine of them to 8 u, and so the sum over n joints by less than 16 n u and n^2 u for its own additions. [`Turns`] takes
-//! as much off what is asked for.
+//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is compared
+//! instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2 and the sine
+//! |a - b| / 2; half of the turn up to a link is the product of as many complex numbers, and half of that between two links the quotient
+//! of two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their products over n joints by less than 20 n u
+//! of length, with the roundings of the products; a cosine of a quotient errs by twice that and 3 u. [`Turns`] asks for cosines up to 128 n u
+//! above the one that counts.
 
 use super::descent::{Descent, Limit};
 use crate::answer::{ProximityError, RobotProximity};
@@ -54,8 +57,7 @@ use crate::distance::Scalar;
 use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
-use std::f64::consts::PI;
-use std::ops::Range;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
@@ -76,9 +78,11 @@ impl OwnMemory {
 /// How far a chain's centreline turns.
 #[derive(Clone, Debug, Default)]
 struct Turns {
-    /// By how much the joints up to a link turn, together.
-    before: Vec<Real>,
+    /// Half of what the joints up to each link turn by, together: its cosine and its sine.
+    before: Vec<[Real; 2]>,
     slack: Real,
+    /// Of each link the first one behind a turn of at least pi.
+    asked_from: Vec<usize>,
 }
 
 impl Turns {
@@ -86,33 +90,60 @@ impl Turns {
     /// A joint is too sharp.
     fn measure(&mut self, links: &[ModifiedCylinder]) -> Result<(), ProximityError> {
         self.before.clear();
-        let mut sum = 0.0;
-        let mut last = links[0].axis();
-        self.before.push(sum);
-        for (joint, pair) in links.windows(2).enumerate() {
-            let axis = pair[1].axis();
-            let (sine, cosine) = (last.cross(axis).length(), last.dot(axis));
-            let radius = pair[0].radius().max(pair[1].radius());
-            let length = pair[0].length().min(pair[1].length());
-            // tan(angle / 2) = sin / (1 + cos), without a division. Of a link that comes back along the one before, rounding
-            // leaves neither.
-            let is_folded = 1.0 + cosine <= 16.0 * Real::UNIT_ROUNDOFF;
-            if 2.0 * radius * sine > length * (1.0 + cosine) || is_folded {
-                let angle = libm::atan2(sine, cosine);
+        let of_link = |link: &ModifiedCylinder| (link.axis(), link.length(), link.radius());
+        let (mut last, mut turned) = (of_link(&links[0]), [1.0, 0.0]);
+        self.before.push(turned);
+        for (joint, link) in links[1..].iter().enumerate() {
+            let next = of_link(link);
+            // Of half of the joint's angle.
+            let (cosine, sine) = (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
+            let (length, radius) = (next.1.min(last.1), next.2.max(last.2));
+            // Of a link that comes back along the one before, rounding leaves no cosine.
+            let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
+            if 2.0 * radius * sine > length * cosine || is_folded {
+                let angle = 2.0 * libm::atan2(sine, cosine);
                 return Err(ProximityError::JointTooSharp { joint: joint + 1, angle, radius, length });
             }
-            sum += libm::atan2(sine, cosine);
-            self.before.push(sum);
-            last = axis;
+            let [real, imaginary] = turned;
+            turned = [real * cosine - imaginary * sine, real * sine + imaginary * cosine];
+            self.before.push(turned);
+            last = next;
         }
-        let count = links.len() as Real;
-        self.slack = (16.0 + count) * count * Real::UNIT_ROUNDOFF;
+        self.slack = 128.0 * links.len() as Real * Real::UNIT_ROUNDOFF;
+        self.find_asked();
         Ok(())
     }
 
-    /// Whether two links, the second after the first, have a turn of at least `angle` between them, as far as rounding tells.
-    fn reach(&self, angle: Real, first: usize, second: usize) -> bool {
-        self.before[second] - self.before[first] >= angle - self.slack
+    /// What turns by less than pi to a link turns by less than pi to it from the next one, and a joint turns by less than pi:
+    /// no turn that is looked at is as large as 2 pi.
+    fn find_asked(&mut self) {
+        self.asked_from.clear();
+        let mut from = 0;
+        for link in 0..self.before.len() {
+            from = from.max(link + 2);
+            while from < self.before.len() && !self.reach(0.0, link, from) {
+                from += 1;
+            }
+            self.asked_from.push(from);
+        }
+    }
+
+    /// Whether two links, the second after the first, have a turn of at least an angle between them, as far as rounding tells:
+    /// one whose half has this cosine. They have no more than 2 pi between them.
+    fn reach(&self, half_cosine: Real, first: usize, second: usize) -> bool {
+        let ([c1, s1], [c2, s2]) = (self.before[first], self.before[second]);
+        c1 * c2 + s1 * s2 <= half_cosine + self.slack
+    }
+
+    /// The links with a turn of at least pi / 2 to or from a link, and less than pi.
+    fn quarter_turned(&self, link: usize) -> impl Iterator<Item = usize> {
+        let is_quarter = |first, second| self.reach(FRAC_1_SQRT_2, first, second);
+        let before =
+            (0..link.saturating_sub(1)).rev().take_while(move |&first| self.asked_from[first] > link);
+        let after = link + 2..self.asked_from[link].max(link + 2);
+        before
+            .filter(move |&first| is_quarter(first, link))
+            .chain(after.filter(move |&second| is_quarter(link, second)))
     }
 }
 
@@ -197,21 +228,15 @@ impl<'a> OneRobot<'a> {
     pub fn minimum(&self, memory: &mut OwnMemory) -> Option<RobotProximity> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
-        let remembered = remembered.filter(|links| turns.reach(PI, links[0], links[1]));
-        let mut best = remembered.and_then(|links| self.measure_within(Real::INFINITY, links));
-        descent.run([&self.robot; 2], limit(&best), asks(turns), |links| {
-            let bound = best.map_or(Real::INFINITY, |best| best.distance);
-            if !best.is_some_and(|best| best.is_of(links))
-                && let Some(found) = self.measure_within(bound, links)
-            {
-                best = Some(nearer(best, found));
-            }
-            limit(&best)
+        let remembered = remembered.filter(|links| turns.asked_from[links[0]] <= links[1]);
+        let mut best = remembered.map(|links| self.measure(links));
+        descent.run([&self.robot; 2], Limit::at_best(&best), asked_from(turns), |links, nearest| {
+            Limit::at(best.insert(self.answer(links, nearest)))
         });
         // Last, since faces cost most: what is near already spares most of them.
         let bound = best.map_or(Real::INFINITY, |best| best.distance);
-        self.between_faces(turns, faces, bound, |found| {
-            let least = nearer(best, found);
+        self.between_faces(descent, turns, faces, bound, |found| {
+            let least = best.filter(|best| !found.comes_before(best)).unwrap_or(found);
             best = Some(least);
             Some(least.distance)
         });
@@ -222,47 +247,47 @@ impl<'a> OneRobot<'a> {
     /// Whether all pairs that are asked for are farther apart than `margin`.
     pub fn clears(&self, margin: Real, memory: &mut OwnMemory) -> bool {
         let OwnMemory { descent, turns, faces, .. } = memory;
-        let is_near = |found: RobotProximity| (found.distance > margin).then_some(margin);
-        if !self.between_faces(turns, faces, margin, is_near) {
-            return false;
-        }
         let mut is_clear = true;
-        descent.run([&self.robot; 2], Limit::of(margin), asks(turns), |links| {
-            is_clear &= self.measure_within(margin, links).is_none();
-            if is_clear { Limit::of(margin) } else { Limit::NOTHING }
+        descent.run([&self.robot; 2], Limit::of(margin), asked_from(turns), |_, _| {
+            is_clear = false;
+            Limit::NOTHING
         });
-        is_clear
+        let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
+        is_clear && self.between_faces(descent, turns, faces, margin, keep)
     }
 
-    fn measure_within(&self, bound: Real, links: [usize; 2]) -> Option<RobotProximity> {
+    fn measure(&self, links: [usize; 2]) -> RobotProximity {
         let [first, second] = links.map(|link| self.robot.link(link));
-        let nearest = first.measure_link_within(bound, &second)?;
-        Some(nearest.answer(links, [&first, &second]))
+        first.measure_link(&second).answer(links, [&first, &second])
+    }
+
+    fn answer(&self, links: [usize; 2], nearest: &NearestOfLinks) -> RobotProximity {
+        let [first, second] = links.map(|link| self.robot.link(link));
+        nearest.answer(links, [&first, &second])
     }
 
     /// Shows `keep` what every face is near, at most `bound` away, as long as it returns what is the bound from then on.
     /// Returns whether it always did.
     fn between_faces(
         &self,
+        descent: &mut Descent,
         turns: &Turns,
         faces: &[Face],
         mut bound: Real,
         mut keep: impl FnMut(RobotProximity) -> Option<Real>,
     ) -> bool {
         for (number, face) in faces.iter().enumerate() {
-            let (on_face, ball) = (self.robot.link(face.link), face.ball(&self.robot));
             // Those of the links that are asked for at a turn of pi anyway are left to that.
-            let before = (0..face.link.saturating_sub(1))
-                .filter(|&link| turns.reach(0.5 * PI, link, face.link) && !turns.reach(PI, link, face.link));
-            let after = (face.link + 2..self.robot.links().len())
-                .filter(|&link| turns.reach(0.5 * PI, face.link, link) && !turns.reach(PI, face.link, link));
-            let of_links = before.chain(after).map(|link| (link, None));
+            let of_links = turns.quarter_turned(face.link).map(|link| (link, None));
             let of_faces = faces[number + 1..].iter().map(|facing| (facing.link, Some(facing)));
             for (link, facing) in of_links.chain(of_faces.filter(|(link, _)| link.abs_diff(face.link) >= 2)) {
-                let other = self.robot.link(link);
+                if !descent.may_be_within(&self.robot, [face.link, link], bound) {
+                    continue;
+                }
+                let (on_face, other) = (self.robot.link(face.link), self.robot.link(link));
                 let error = error([&on_face, &other]);
                 // The ball around a face holds it, and spares most others.
-                if !ball.may_be_within(bound + error, &other) {
+                if !face.ball(&self.robot).may_be_within(bound + error, &other) {
                     continue;
                 }
                 let nearest = match facing {
@@ -296,16 +321,8 @@ fn way(nearest: &NearestOfLinks, error: Real) -> (Vector, Real) {
 }
 
 /// Pairs of links that share no joint, the second after the first, with a turn of at least pi between them.
-fn asks(turns: &Turns) -> impl Fn([Range<usize>; 2]) -> bool {
-    |[first, second]| second.end > first.start + 2 && turns.reach(PI, first.start, second.end - 1)
-}
-
-fn limit(best: &Option<RobotProximity>) -> Limit {
-    best.as_ref().map_or(Limit::of(Real::INFINITY), Limit::at)
-}
-
-fn nearer(best: Option<RobotProximity>, found: RobotProximity) -> RobotProximity {
-    best.filter(|best| !found.comes_before(best)).unwrap_or(found)
+fn asked_from(turns: &Turns) -> impl Fn(usize) -> usize {
+    |link| turns.asked_from[link]
 }
 
 /// The answer with the lower link first.

@@ -3,10 +3,9 @@
 use super::descent::{Descent, Limit};
 use super::local_minima::LocalMinima;
 use crate::answer::{ProximityError, RobotProximity};
-use crate::pair::{PlacedLink, PlacedRobot};
+use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
-use std::ops::Range;
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
@@ -26,8 +25,8 @@ impl PairMemory {
 }
 
 /// Of two robots all pairs of links are asked for.
-fn all(_: [Range<usize>; 2]) -> bool {
-    true
+fn all(_: usize) -> usize {
+    0
 }
 
 /// Two robots in one frame.
@@ -58,68 +57,56 @@ impl<'a> TwoRobots<'a> {
         [self.robots[0].link(links[0]), self.robots[1].link(links[1])]
     }
 
-    /// The two links if they are at most `bound` apart.
-    fn measure_within(&self, bound: Real, links: [usize; 2]) -> Option<RobotProximity> {
+    fn measure(&self, links: [usize; 2]) -> RobotProximity {
         let [first, second] = self.links(links);
-        let nearest = first.measure_link_within(bound, &second)?;
-        Some(nearest.answer(links, [&first, &second]))
+        first.measure_link(&second).answer(links, [&first, &second])
+    }
+
+    fn answer(&self, links: [usize; 2], nearest: &NearestOfLinks) -> RobotProximity {
+        let [first, second] = self.links(links);
+        nearest.answer(links, [&first, &second])
     }
 
     /// The two links that are nearest.
     pub fn minimum(&self, memory: &mut PairMemory) -> RobotProximity {
-        let last = memory.nearest.filter(|links| self.have(*links)).unwrap_or([0, 0]);
-        let [first, second] = self.links(last);
-        let mut best = first.measure_link(&second).answer(last, [&first, &second]);
-        memory.descent.run(self.both(), Limit::at(&best), all, |links| {
-            if !best.is_of(links)
-                && let Some(found) = self.measure_within(best.distance, links)
-                && found.comes_before(&best)
-            {
-                best = found;
-            }
-            Limit::at(&best)
+        let last = memory.nearest.filter(|links| self.have(*links));
+        let mut best = last.map(|links| self.measure(links));
+        memory.descent.run(self.both(), Limit::at_best(&best), all, |links, nearest| {
+            Limit::at(best.insert(self.answer(links, nearest)))
         });
+        // Without a limit the first pair that is looked at is within it.
+        let best = best.unwrap_or_else(|| self.measure([0, 0]));
         memory.nearest = Some(best.links.map(|link| link as usize));
         best
     }
 
     /// Of each link of the first robot, the nearest link of the second.
     pub fn per_link(&self, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
-        let last = self.robots[1].links().len() - 1;
-        memory.descent.run_per_link(self.both(), |link, other| {
-            let Some(other) = other else {
-                // Neighbours have near neighbours: what was nearest to the last link bounds this one.
-                let guess = out.last().map_or(0, |best| best.links[1] as usize).min(last);
-                let [first, second] = self.links([link, guess]);
-                let best = first.measure_link(&second).answer([link, guess], [&first, &second]);
-                out.push(best);
-                return Limit::at(&best);
-            };
-            let Some(best) = out.last_mut() else { return Limit::NOTHING };
-            if !best.is_of([link, other])
-                && let Some(found) = self.measure_within(best.distance, [link, other])
-                && found.comes_before(best)
-            {
-                *best = found;
-            }
-            Limit::at(best)
-        });
+        let descent = &mut memory.descent;
+        descent.begin(self.both());
+        for link in 0..self.robots[0].links().len() {
+            let mut best = None;
+            descent.run_of_link(self.both(), link, |links, nearest| {
+                Limit::at(best.insert(self.answer(links, nearest)))
+            });
+            out.push(best.unwrap_or_else(|| self.measure([link, 0])));
+        }
     }
 
     /// Whether all links are farther apart than `margin`.
     pub fn clears(&self, margin: Real, memory: &mut PairMemory) -> bool {
-        let meets = |links| self.measure_within(margin, links).is_some();
+        let meets = |links| {
+            let [first, second] = self.links(links);
+            first.measure_link_within(margin, &second).is_some()
+        };
         if memory.met.is_some_and(|links| self.have(links) && meets(links)) {
             return false;
         }
         memory.met = None;
         let met = &mut memory.met;
-        memory.descent.run(self.both(), Limit::of(margin), all, |links| {
-            if meets(links) {
-                *met = Some(links);
-                return Limit::NOTHING;
-            }
-            Limit::of(margin)
+        memory.descent.run(self.both(), Limit::of(margin), all, |links, _| {
+            *met = Some(links);
+            Limit::NOTHING
         });
         memory.met.is_none()
     }
@@ -128,10 +115,8 @@ impl<'a> TwoRobots<'a> {
     pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
-        descent.run(self.both(), Limit::of(margin), all, |links| {
-            if let Some(found) = self.measure_within(margin, links) {
-                minima.push(found);
-            }
+        descent.run(self.both(), Limit::of(margin), all, |links, nearest| {
+            minima.push(self.answer(links, nearest));
             Limit::of(margin)
         });
         minima.finish(out);

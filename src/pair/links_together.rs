@@ -1,0 +1,164 @@
+//! Several pairs of links in double precision, a pack at a time: the bits are those of [`PlacedLink::measure_link`](
+//! super::PlacedLink::measure_link), on every instruction set.
+
+use super::measure_together::narrowed;
+use super::pair_lanes::{Rows, TOGETHER, link, put_link, store};
+use super::placed_link::PlacedLink;
+use super::two_links::{NearestOfLinks, capsules_apart};
+use crate::distance::lanes::Pack;
+use crate::distance::{Unfused, dispatch};
+use fearless_simd::Level;
+use parry3d_f64::math::{Real, Vector};
+
+/// A link in the frame of both robots: the ends of its axis, its radius, and which caps are flat.
+pub(crate) type PlacedEnds = ([Vector; 2], Real, [bool; 2]);
+
+/// Pairs of links in one frame, and their nearest points.
+///
+/// A pack is written number by number, and read as a whole: what is written last is best read last. So all pairs are put
+/// down before the first is measured.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LinksTogether {
+    packs: Vec<PackOfPairs>,
+    count: usize,
+}
+
+/// Up to [`TOGETHER`] pairs.
+#[derive(Clone, Copy, Debug)]
+struct PackOfPairs {
+    /// The first and the second link of each pair.
+    pairs: Rows<18>,
+    /// The distances, and the points on the first and on the second link.
+    found: Rows<7>,
+    /// Which pairs are within the bound, a bit for each.
+    near: u64,
+}
+
+impl PackOfPairs {
+    const EMPTY: Self = Self { pairs: [[0.0; TOGETHER]; 18], found: [[0.0; TOGETHER]; 7], near: 0 };
+}
+
+impl LinksTogether {
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    #[inline(always)]
+    pub(crate) fn push(&mut self, first: &PlacedEnds, second: &PlacedEnds) {
+        let (pack, lane) = (self.count / TOGETHER, self.count % TOGETHER);
+        if pack == self.packs.len() {
+            self.packs.push(PackOfPairs::EMPTY);
+        }
+        put_link(&mut self.packs[pack].pairs, 0, lane, first.0, first.1, first.2);
+        put_link(&mut self.packs[pack].pairs, 9, lane, second.0, second.1, second.2);
+        self.count += 1;
+    }
+
+    /// Measures all pairs. What is farther apart than `bound` has no answer.
+    #[inline(never)] // compiled for each instruction set, not for each use as well
+    pub(crate) fn measure(&mut self, level: Level, bound: Real) {
+        if self.count == 1 {
+            // Half a pack takes as long as a whole one, and one pair less.
+            self.packs[0].measure_first(bound);
+            return;
+        }
+        let level = narrowed(level, self.count);
+        dispatch!(level, simd => self.measure_packs::<Unfused<_>>(simd, bound));
+    }
+
+    #[inline(always)]
+    fn measure_packs<L: Pack<Element = f64>>(&mut self, token: L::Token, bound: Real) {
+        let bound = L::splat(token, bound);
+        let mut left = self.count;
+        for pack in self.packs.iter_mut().take(self.count.div_ceil(TOGETHER)) {
+            pack.near = 0;
+            for lane in (0..left.min(TOGETHER)).step_by(L::LANES) {
+                // Of those that are not there what is left from pairs before costs nothing.
+                let are_there = u64::MAX >> (64 - (left - lane).min(L::LANES));
+                pack.near |= pack.measure(token, lane, are_there, bound) << lane;
+            }
+            left = left.saturating_sub(TOGETHER);
+        }
+    }
+
+    /// The pairs that are within the bound, in order, and their distances.
+    pub(crate) fn near(&self) -> impl Iterator<Item = (usize, Real)> {
+        let packs = self.packs[..self.count.div_ceil(TOGETHER)].iter().enumerate();
+        packs.flat_map(|(number, pack)| {
+            set_bits(pack.near).map(move |lane| (number * TOGETHER + lane, pack.found[0][lane]))
+        })
+    }
+
+    /// The nearest points of a pair, one and the same where its links meet.
+    pub(crate) fn nearest(&self, pair: usize) -> NearestOfLinks {
+        let (found, lane) = (&self.packs[pair / TOGETHER].found, pair % TOGETHER);
+        let distance = found[0][lane];
+        let on_first = Vector::new(found[1][lane], found[2][lane], found[3][lane]);
+        let on_second = Vector::new(found[4][lane], found[5][lane], found[6][lane]);
+        NearestOfLinks { distance, on_first, on_second: if distance > 0.0 { on_second } else { on_first } }
+    }
+}
+
+impl PackOfPairs {
+    /// Measures the first pair alone.
+    fn measure_first(&mut self, bound: Real) {
+        let [first, second] = [0, 9].map(|row| {
+            let number = |place: usize| self.pairs[row + place][0];
+            let [start, end] = [0, 3].map(|end| Vector::new(number(end), number(end + 1), number(end + 2)));
+            PlacedLink::between(start, end, number(6), [number(7) > 0.0, number(8) > 0.0])
+        });
+        self.near = 0;
+        if let Some(NearestOfLinks { distance, on_first, on_second }) =
+            first.measure_link_within(bound, &second)
+        {
+            let numbers =
+                [distance, on_first.x, on_first.y, on_first.z, on_second.x, on_second.y, on_second.z];
+            for (row, number) in self.found.iter_mut().zip(numbers) {
+                row[0] = number;
+            }
+            self.near = 1;
+        }
+    }
+
+    /// Measures the pairs from a lane on. Returns which of those that are there are within the bound.
+    #[inline(always)]
+    fn measure<L: Pack<Element = f64>>(
+        &mut self,
+        token: L::Token,
+        lane: usize,
+        are_there: u64,
+        bound: L,
+    ) -> u64 {
+        let mut first = link::<L>(token, &self.pairs, 0, lane);
+        let mut second = link::<L>(token, &self.pairs, 9, lane);
+        // Round caps have no use for the directions of the axes.
+        if L::bits(first.flat[0] | first.flat[1] | second.flat[0] | second.flat[1]) != 0 {
+            (first, second) = (first.with_axis(), second.with_axis());
+        }
+        let (pair, unit) = first.with_link(&second);
+        let axes = pair.axes();
+        let near = !bound.lt(capsules_apart(&pair, axes.gap.norm()) * unit);
+        if L::bits(near) & are_there == 0 {
+            return 0;
+        }
+        let closest = pair.closest(
+            &axes,
+            #[inline(always)]
+            |mask| L::bits(mask & near) & are_there != 0,
+        );
+        let distance = closest.distance * unit;
+        distance.store(&mut self.found[0][lane..]);
+        store(&mut self.found, 1, lane, first.start + closest.point1 * unit);
+        store(&mut self.found, 4, lane, first.start + closest.point2 * unit);
+        L::bits(near & distance.le(bound)) & are_there
+    }
+}
+
+/// The bits that are set, lowest first.
+pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
+        left &= left - 1;
+        Some(bit)
+    })
+}

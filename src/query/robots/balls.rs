@@ -1,0 +1,231 @@
+//! The balls around a robot's links, and the halves of their axes, each number in a row of its own: a pack of them is compared
+//! at once, in single precision.
+//!
+//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to [`SWEPT`]
+//! of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the axes, and n = d / |d|,
+//! the axes lie behind planes with the normal n on either side, so that the links are at least |d| - |<h1, n>| - |<h2, n>| - r1 - r2
+//! apart: what the balls leave is asked for that too. What is left then is measured.
+//!
+//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors, d by 21 u,
+//! its length (below 7) by 14 u more, the products with h by 10 u each, the sums and squares that are compared by as much as 60 u of
+//! a length. The limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. Together
+//! that is less than 128 u, and [`SLACK`] is twice that. What doubles add to it, and by how much the measured limit may err, is
+//! next to nothing.
+
+use super::outline::SearchFrame;
+use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Vec3, dispatch};
+use crate::pair::{PlacedEnds, PlacedRobot};
+use crate::robot::LinkNode;
+use fearless_simd::Level;
+use parry3d_f64::math::Real;
+use std::ops::Range;
+
+/// How many links of either robot are compared at once: a bit for each.
+pub(super) const SWEPT: usize = 64;
+
+/// The widest pack.
+const WIDEST: usize = 16;
+
+/// How many numbers there are for each link.
+const ROWS: usize = 8;
+
+/// What rounding can hide of a distance.
+const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
+
+/// The links of a robot where they are placed, and the balls around them in the frame of the search.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Balls {
+    links: Vec<Option<PlacedEnds>>,
+    /// Centres, halves of axes, half lengths and radii, one row behind the other.
+    rows: Vec<f32>,
+    /// How long each is.
+    length: usize,
+}
+
+/// The centre of a link, from it to the end, and the length of that; and its radius.
+#[derive(Clone, Copy)]
+struct Ball<L> {
+    centre: Vec3<L>,
+    half: Vec3<L>,
+    half_length: L,
+    radius: L,
+}
+
+impl Balls {
+    /// Forgets the last robot's.
+    pub fn start(&mut self, links: usize) {
+        self.links.clear();
+        self.links.resize(links, None);
+        self.length = links + WIDEST;
+        if self.rows.len() < ROWS * self.length {
+            self.rows.resize(ROWS * self.length, 0.0);
+        }
+    }
+
+    /// Places what has not been placed of some links.
+    pub fn place(&mut self, robot: &PlacedRobot, frame: &SearchFrame, links: Range<usize>) {
+        for link in links {
+            if self.links[link].is_some() {
+                continue;
+            }
+            let placed = robot.outline(&LinkNode::Leaf(link));
+            let ([start, end], radius, _) = placed;
+            let (start, end) = (frame.point(start), frame.point(end));
+            let (centre, half) = ((start + end) * 0.5, (end - start) * 0.5);
+            let sizes = [half.length(), frame.length(radius)];
+            let numbers = [centre.x, centre.y, centre.z, half.x, half.y, half.z, sizes[0], sizes[1]];
+            for (row, number) in numbers.into_iter().enumerate() {
+                self.rows[row * self.length + link] = number as f32;
+            }
+            self.links[link] = Some(placed);
+        }
+    }
+
+    /// Whether two links that have been placed may be no farther apart than a limit in the frame.
+    pub fn may_be_within(&self, links: [usize; 2], limit: Real) -> bool {
+        let [one, other] = links.map(|link| self.from(link).map(|row| row[0]));
+        let way = Vec3::new(other[0] - one[0], other[1] - one[1], other[2] - one[2]);
+        let reach = (limit as f32 + SLACK) + (one[6] + one[7]) + (other[6] + other[7]);
+        way.norm_squared() <= reach * reach
+    }
+
+    /// A link that has been placed.
+    pub fn link(&self, link: usize) -> Option<&PlacedEnds> {
+        self.links.get(link)?.as_ref()
+    }
+
+    /// The rows, each from a link on.
+    #[inline(always)]
+    fn from(&self, link: usize) -> [&[f32]; ROWS] {
+        let mut rows = [&self.rows[..]; ROWS];
+        for (row, numbers) in rows.iter_mut().enumerate() {
+            *numbers = &self.rows[row * self.length + link..][..self.length - link];
+        }
+        rows
+    }
+}
+
+impl<L: Pack<Element = f32>> Ball<L> {
+    #[inline(always)]
+    fn splat(token: L::Token, rows: &[&[f32]; ROWS]) -> Self {
+        let [x, y, z, u, v, w, half_length, radius] = rows;
+        Self {
+            centre: Vec3::new(L::splat(token, x[0]), L::splat(token, y[0]), L::splat(token, z[0])),
+            half: Vec3::new(L::splat(token, u[0]), L::splat(token, v[0]), L::splat(token, w[0])),
+            half_length: L::splat(token, half_length[0]),
+            radius: L::splat(token, radius[0]),
+        }
+    }
+
+    #[inline(always)]
+    fn load(token: L::Token, rows: &[&[f32]; ROWS], lane: usize) -> Self {
+        let [x, y, z, u, v, w, half_length, radius] = rows;
+        Self {
+            centre: Vec3::new(
+                L::load(token, &x[lane..]),
+                L::load(token, &y[lane..]),
+                L::load(token, &z[lane..]),
+            ),
+            half: Vec3::new(
+                L::load(token, &u[lane..]),
+                L::load(token, &v[lane..]),
+                L::load(token, &w[lane..]),
+            ),
+            half_length: L::load(token, &half_length[lane..]),
+            radius: L::load(token, &radius[lane..]),
+        }
+    }
+}
+
+/// Up to [`SWEPT`] links of one robot and as many of another.
+pub(super) struct Sweep<'a> {
+    pub balls: [&'a Balls; 2],
+    pub links: [Range<usize>; 2],
+    /// With which of the second robot's links each of the first's is asked for: those from this one on.
+    pub asked_from: &'a [usize],
+}
+
+impl Sweep<'_> {
+    /// Which pairs may be no farther apart than a limit in the frame: of each link of the first robot a bit for each of the
+    /// second's. Returns how many there are.
+    #[inline(never)] // compiled for each instruction set, not for each use as well
+    pub fn near(&self, level: Level, limit: Real, near: &mut [u64; SWEPT]) -> u32 {
+        dispatch!(level, simd => self.fill::<<f32 as Lane>::Pack<_>>(simd, limit as f32, near))
+    }
+
+    #[inline(always)]
+    fn fill<L: Pack<Element = f32>>(&self, token: L::Token, limit: f32, near: &mut [u64; SWEPT]) -> u32 {
+        let limit = L::splat(token, limit + SLACK);
+        let rows = self.balls[1].from(self.links[1].start);
+        let mut count = 0;
+        for (row, link) in self.links[0].clone().enumerate() {
+            let one = Ball::<L>::splat(token, &self.balls[0].from(link));
+            let mut near_one = 0;
+            for lane in self.lanes(row).step_by(L::LANES) {
+                let other = Ball::load(token, &rows, lane);
+                let way = other.centre - one.centre;
+                let squared = way.norm_squared();
+                let apart = limit + one.radius + other.radius;
+                let reach = apart + one.half_length + other.half_length;
+                let mut bits = L::bits(!(reach * reach).lt(squared)) & self.are_there(lane, L::LANES);
+                if bits != 0 {
+                    let ahead = squared - way.dot(one.half).abs() - way.dot(other.half).abs();
+                    let is_beyond = (apart * apart * squared).lt(ahead * ahead);
+                    bits &= !L::bits(is_beyond & ahead.zero().lt(ahead));
+                }
+                near_one |= bits << lane;
+            }
+            near[row] = near_one;
+            count += near_one.count_ones();
+        }
+        count
+    }
+
+    /// The two links that are asked for whose centres are nearest.
+    #[inline(never)] // compiled for each instruction set, not for each use as well
+    pub fn nearest(&self, level: Level) -> Option<[usize; 2]> {
+        dispatch!(level, simd => self.find::<<f32 as Lane>::Pack<_>>(simd))
+    }
+
+    #[inline(always)]
+    fn find<L: Pack<Element = f32>>(&self, token: L::Token) -> Option<[usize; 2]> {
+        let (mut least, mut found) = (f32::INFINITY, None);
+        let mut distances = [0.0; WIDEST];
+        let rows = self.balls[1].from(self.links[1].start);
+        for (row, link) in self.links[0].clone().enumerate() {
+            let one = Ball::<L>::splat(token, &self.balls[0].from(link));
+            for first in self.lanes(row).step_by(L::LANES) {
+                let squared = (Ball::load(token, &rows, first).centre - one.centre).norm_squared();
+                let are_nearer = squared.lt(L::splat(token, least));
+                let mut nearer = L::bits(are_nearer) & self.are_there(first, L::LANES);
+                if nearer == 0 {
+                    continue;
+                }
+                squared.store(&mut distances);
+                while nearer != 0 {
+                    let lane = nearer.trailing_zeros() as usize;
+                    nearer &= nearer - 1;
+                    if distances[lane] < least {
+                        least = distances[lane];
+                        found = Some([link, self.links[1].start + first + lane]);
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// Where among the second robot's links those are that are asked for with one of the first's.
+    #[inline(always)]
+    fn lanes(&self, row: usize) -> Range<usize> {
+        let second = &self.links[1];
+        self.asked_from[row].saturating_sub(second.start)..second.len()
+    }
+
+    /// Which lanes of a pack stand for links.
+    #[inline(always)]
+    fn are_there(&self, lane: usize, lanes: usize) -> u64 {
+        u64::MAX >> (64 - (self.links[1].len() - lane).min(lanes))
+    }
+}
