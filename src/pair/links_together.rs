@@ -162,3 +162,68 @@ pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
         Some(bit)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::lanes::tests::levels;
+    use continuum_testing::Random;
+
+    fn bits(nearest: &NearestOfLinks) -> [u64; 7] {
+        let [a, b] = [nearest.on_first, nearest.on_second];
+        [nearest.distance, a.x, a.y, a.z, b.x, b.y, b.z].map(f64::to_bits)
+    }
+
+    /// A link on a coarse lattice every other time, where ties, parallels and touching links are common; sometimes a ball.
+    fn link(random: &mut Random, size: f64) -> PlacedEnds {
+        let step = if random.below(2) == 0 { 0.5 } else { 0.0 };
+        let mut point = |most: f64| {
+            let point = random.point() * most;
+            (if step > 0.0 { (point / step).round() * step } else { point }) * size
+        };
+        let (start, way) = (point(2.0), point(1.0));
+        let radius = size * [0.0, 0.01, 0.3, 2.0][random.below(4) as usize];
+        let flat = [random.below(3) == 0, random.below(3) == 0];
+        ([start, start + way], radius, if way == Vector::ZERO { [false; 2] } else { flat })
+    }
+
+    #[test]
+    fn together_is_alone_bit_for_bit() {
+        let mut random = Random::new(5);
+        let (mut touching, mut flat, mut beyond) = (0, 0, 0);
+        for round in 0..4000 {
+            let size = 2.0_f64.powi(round % 61 - 30);
+            let pairs: Vec<_> = (0..1 + random.below(20))
+                .map(|_| [link(&mut random, size), link(&mut random, size)])
+                .collect();
+            let alone = |[first, second]: &[PlacedEnds; 2]| {
+                let [first, second] = [first, second]
+                    .map(|(ends, radius, flat)| PlacedLink::between(ends[0], ends[1], *radius, *flat));
+                first.measure_link(&second)
+            };
+            let alone: Vec<_> = pairs.iter().map(alone).collect();
+            // Every other time the distance of one of them, which is within it.
+            let bound = if round % 2 == 0 { f64::INFINITY } else { alone[0].distance };
+            for level in levels() {
+                let mut together = LinksTogether::default();
+                // What is left from other pairs does not count.
+                pairs.iter().rev().for_each(|[first, second]| together.push(first, second));
+                together.measure(level, f64::INFINITY);
+                together.clear();
+                pairs.iter().for_each(|[first, second]| together.push(first, second));
+                together.measure(level, bound);
+                let found: Vec<_> = together.near().collect();
+                let expected = alone.iter().map(|nearest| nearest.distance).enumerate();
+                let expected: Vec<_> = expected.filter(|(_, distance)| *distance <= bound).collect();
+                assert_eq!(found, expected, "{level:?}, round {round}");
+                for (pair, _) in found {
+                    assert_eq!(bits(&together.nearest(pair)), bits(&alone[pair]), "{level:?}, round {round}");
+                }
+                beyond += pairs.len() - expected.len();
+            }
+            touching += alone.iter().filter(|nearest| nearest.distance == 0.0).count();
+            flat += pairs.iter().filter(|pair| pair.iter().any(|link| link.2 != [false; 2])).count();
+        }
+        assert!(touching > 5000 && flat > 10_000 && beyond > 10_000, "{touching} {flat} {beyond}");
+    }
+}

@@ -83,9 +83,12 @@ fn slack(first: &[ModifiedCylinder], second: &[ModifiedCylinder]) -> f64 {
 #[test]
 fn the_nearest_of_all_pairs_is_found() {
     let mut random = Random::new(1);
-    let (mut pair, mut touching, mut apart) = (RobotPair::new(), 0, 0);
+    let (mut pair, mut touching, mut apart, mut many) = (RobotPair::new(), 0, 0, 0);
     for round in 0..1500 {
-        let (a, b) = (robot(&mut random, 20), robot(&mut random, 20));
+        // Now and then so many links that trees over them are descended.
+        let most = if round % 30 == 0 { 200 } else { 20 };
+        let (a, b) = (robot(&mut random, most), robot(&mut random, most));
+        many += usize::from(a.links().len().min(b.links().len()) > 64);
         let pose_a = random.pose(1.0);
         let poses = [pose_a, beside(&mut random, &a, &pose_a, &b, [0.0, 1.0, 6.0][round % 3])];
         let (first, second) = (links(&a, &poses[0]), links(&b, &poses[1]));
@@ -125,7 +128,7 @@ fn the_nearest_of_all_pairs_is_found() {
         }
         if d == 0.0 { touching += 1 } else { apart += 1 }
     }
-    assert!(touching > 300 && apart > 300, "{touching} {apart}");
+    assert!(touching > 300 && apart > 300 && many > 10, "{touching} {apart} {many}");
 }
 
 /// The definition, over the whole table: groups of equal neighbours none of which has a nearer neighbour.

@@ -229,3 +229,96 @@ impl Sweep<'_> {
         u64::MAX >> (64 - (self.links[1].len() - lane).min(lanes))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::lanes::tests::levels;
+    use crate::robot::Chain;
+    use continuum_testing::Random;
+    use parry3d_f64::math::Vector;
+
+    /// A robot of up to so many links; on a lattice every other time, where links are parallel, aligned, crossing and equal.
+    fn robot(random: &mut Random, links: u32, size: f64) -> Option<Chain> {
+        let is_lattice = random.below(2) == 0;
+        let mut at = random.point() * 2.0;
+        let mut points = vec![at * size];
+        for _ in 0..1 + random.below(links) {
+            at += random.point();
+            at = if is_lattice { (at * 2.0).round() * 0.5 } else { at };
+            points.push(at * size);
+        }
+        let radius = size * [0.0, 0.02, 0.5][random.below(3) as usize];
+        let radii = vec![radius; points.len() - 1];
+        match random.below(2) {
+            0 => Chain::capsules(&points, &radii).ok(),
+            _ => Chain::cylinders(&points, &radii).ok(),
+        }
+    }
+
+    /// Nothing that is measured to be within a limit is left out, the limit itself included; and much is.
+    #[test]
+    fn what_is_near_is_never_left_out() {
+        let mut random = Random::new(8);
+        let (mut kept, mut left_out) = (0_u64, 0_u64);
+        for round in 0..400 {
+            let size = 2.0_f64.powi(round % 41 - 20);
+            let made = [robot(&mut random, 60, size), robot(&mut random, 60, size)];
+            let [Some(a), Some(b)] = made else { continue };
+            let poses = [random.pose(size), random.pose(size * [0.0, 2.0, 50.0][round as usize % 3])];
+            let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
+                panic!("both poses are rigid")
+            };
+            let frame = SearchFrame::around([&a, &b]);
+            let mut balls = [Balls::default(), Balls::default()];
+            let counts = [a.links().len(), b.links().len()];
+            for (balls, (robot, count)) in balls.iter_mut().zip([(&a, counts[0]), (&b, counts[1])]) {
+                balls.start(count);
+                balls.place(robot, &frame, 0..count);
+            }
+            let distances: Vec<Vec<_>> = a
+                .placed_links()
+                .map(|one| b.placed_links().map(|two| one.measure_link(&two).distance).collect())
+                .collect();
+            // From any link on, as of a robot beside itself.
+            let asked_from: Vec<_> =
+                (0..counts[0]).map(|link| if round % 2 == 0 { 0 } else { link }).collect();
+            let links = [0..counts[0], 0..counts[1]];
+            let sweep = Sweep { balls: [&balls[0], &balls[1]], links, asked_from: &asked_from };
+            for _ in 0..4 {
+                let some = random.below(counts[0] as u32) as usize;
+                let limit = distances[some][random.below(counts[1] as u32) as usize];
+                for level in levels() {
+                    let mut near = [0; SWEPT];
+                    let count = sweep.near(level, frame.length(limit), &mut near);
+                    assert_eq!(count, near[..counts[0]].iter().map(|row| row.count_ones()).sum::<u32>());
+                    for (one, row) in distances.iter().enumerate() {
+                        for (two, &distance) in row.iter().enumerate() {
+                            let is_near = near[one] >> two & 1 == 1;
+                            let is_asked = two >= asked_from[one];
+                            assert!(!is_near || is_asked);
+                            assert!(is_near || !is_asked || distance > limit, "{one} {two} in round {round}");
+                            kept += u64::from(is_near);
+                            left_out += u64::from(is_asked && !is_near);
+                        }
+                    }
+                    let all = (0..counts[0])
+                        .flat_map(|one| (asked_from[one]..counts[1]).map(move |two| [one, two]));
+                    let apart = |[one, two]: [usize; 2]| {
+                        let centre = |balls: &Balls, link| {
+                            balls.link(link).map(|(ends, ..)| (ends[0] + ends[1]) * 0.5)
+                        };
+                        let way =
+                            centre(&balls[0], one).zip(centre(&balls[1], two)).map(|(one, two)| one - two);
+                        way.map_or(0.0, Vector::length)
+                    };
+                    let least = all.map(apart).fold(f64::INFINITY, f64::min);
+                    let found = sweep.nearest(level).map(apart);
+                    let slack = f64::from(SLACK) / frame.length(1.0);
+                    assert!(found.map_or(least == f64::INFINITY, |found| found <= least + slack));
+                }
+            }
+        }
+        assert!(kept > 100_000 && left_out > 100_000, "{kept} {left_out}");
+    }
+}

@@ -332,3 +332,83 @@ fn in_order(links: [usize; 2], placed: [&PlacedLink; 2], nearest: &NearestOfLink
     }
     nearest.swapped().answer([links[1], links[0]], [placed[1], placed[0]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use continuum_testing::Random;
+    use std::f64::consts::PI;
+
+    fn turns(points: &[Vector]) -> Turns {
+        let robot = Chain::with_constant_radius(points, 0.0).expect("points that differ");
+        let mut turns = Turns::default();
+        turns.measure(robot.links()).expect("no joint of a thin robot is too sharp");
+        turns
+    }
+
+    /// What an even polygon reaches at half a turn, rounded to either side, is asked for; and what it does not reach is not.
+    #[test]
+    fn half_a_turn_of_a_polygon_is_asked_for() {
+        for (corners, scale) in [(4, 1.0), (6, 1e-150), (20, 3.0), (360, 1e150), (2000, 0.1)] {
+            let corner = |k: i32| {
+                let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(corners)).sin_cos();
+                Vector::new(cos, sin * 0.6, sin * 0.8) * scale
+            };
+            let points: Vec<_> = (0..3 * corners).map(corner).collect();
+            let turns = turns(&points);
+            let half = corners as usize / 2;
+            for link in 0..points.len() - 1 {
+                assert_eq!(
+                    turns.asked_from[link],
+                    (link + half).max(link + 2).min(points.len() - 1),
+                    "{corners}"
+                );
+                let quarter: Vec<_> = turns.quarter_turned(link).filter(|&other| other > link).collect();
+                let from = link + corners.div_ceil(4).max(2) as usize;
+                assert_eq!(
+                    quarter,
+                    (from..link + half).filter(|&other| other < points.len() - 1).collect::<Vec<_>>()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn turns_are_sums_of_angles() {
+        let mut random = Random::new(6);
+        let (mut asked, mut sharp) = (0, 0);
+        for round in 0..2000 {
+            // From nearly straight to nearly folded.
+            let bend = [0.05, 0.5, 3.0, 50.0][round % 4];
+            let mut way = random.direction();
+            let mut points = vec![random.point()];
+            for _ in 0..3 + random.below(40) {
+                way = (way + random.point() * bend).normalize();
+                way = if random.below(8) == 0 { -way } else { way };
+                points.push(points[points.len() - 1] + way * random.between(0.1, 1.0));
+            }
+            let ways: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).normalize()).collect();
+            let angle = |pair: &[Vector]| libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]));
+            let angles: Vec<_> = ways.windows(2).map(angle).collect();
+            if angles.iter().any(|&angle| angle > PI - 1e-6) {
+                continue;
+            }
+            sharp += usize::from(angles.iter().any(|&angle| angle > 3.0));
+            let turns = turns(&points);
+            for link in 0..ways.len() {
+                let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= PI;
+                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                assert_eq!(turns.asked_from[link], expected, "round {round}");
+                asked += usize::from(expected < ways.len());
+                let mut quarter: Vec<_> = turns.quarter_turned(link).collect();
+                quarter.sort_unstable();
+                let between = |one: usize, two: usize| angles[one.min(two)..one.max(two)].iter().sum::<f64>();
+                let is_quarter = |&other: &usize| {
+                    other.abs_diff(link) > 1 && (0.5 * PI..PI).contains(&between(link, other))
+                };
+                assert_eq!(quarter, (0..ways.len()).filter(is_quarter).collect::<Vec<_>>(), "round {round}");
+            }
+        }
+        assert!(asked > 5000 && sharp > 100, "{asked} {sharp}");
+    }
+}
