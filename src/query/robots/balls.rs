@@ -292,6 +292,10 @@ mod tests {
                     let mut near = [0; SWEPT];
                     let count = sweep.near(level, frame.length(limit), &mut near);
                     assert_eq!(count, near[..counts[0]].iter().map(|row| row.count_ones()).sum::<u32>());
+                    assert!(
+                        near.iter().all(|row| row >> counts[1] == 0),
+                        "a bit for a link that is not there"
+                    );
                     for (one, row) in distances.iter().enumerate() {
                         for (two, &distance) in row.iter().enumerate() {
                             let is_near = near[one] >> two & 1 == 1;

@@ -360,11 +360,11 @@ mod tests {
             for link in 0..points.len() - 1 {
                 assert_eq!(
                     turns.asked_from[link],
-                    (link + half).max(link + 2).min(points.len() - 1),
+                    (link + half).min(points.len() - 1).max(link + 2),
                     "{corners}"
                 );
                 let quarter: Vec<_> = turns.quarter_turned(link).filter(|&other| other > link).collect();
-                let from = link + corners.div_ceil(4).max(2) as usize;
+                let from = link + (corners as usize).div_ceil(4).max(2);
                 assert_eq!(
                     quarter,
                     (from..link + half).filter(|&other| other < points.len() - 1).collect::<Vec<_>>()
