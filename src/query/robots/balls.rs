@@ -2,15 +2,17 @@
 //! at once, in single precision.
 //!
 //! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to [`SWEPT`]
-//! of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the axes, and n = d / |d|,
-//! the axes lie behind planes with the normal n on either side, so that the links are at least |d| - |<h1, n>| - |<h2, n>| - r1 - r2
-//! apart: what the balls leave is asked for that too. What is left then is measured.
+//! of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the axes, and any normal
+//! n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2 apart.
+//! What the balls leave is asked for that with n = d, and with what is perpendicular to h1 of d, which is exact for parallel links
+//! beside one another. What is left then is measured.
 //!
-//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors, d by 21 u,
-//! its length (below 7) by 14 u more, the products with h by 10 u each, the sums and squares that are compared by as much as 60 u of
-//! a length. The limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. Together
-//! that is less than 128 u, and [`SLACK`] is twice that. What doubles add to it, and by how much the measured limit may err, is
-//! next to nothing.
+//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors, and d by 21 u;
+//! the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 14 u each, the sums and squares that are compared by as
+//! much as 50 u of a length. That is less than 128 u, and [`SLACK`] is twice that. The limit errs by u of itself; where that is more than
+//! 8 u, the limit is farther than anything. What doubles add to it, and by how much the measured limit may err, is next to nothing.
+//! A normal whose square falls below the range parts nothing: where a coordinate of it, the difference of two numbers, is below
+//! 2^-63 and not 0, that of d is below 2^-38, so <d, n> is less than |n| times the slack.
 
 use super::outline::SearchFrame;
 use crate::distance::lanes::{Lane, Pack};
@@ -138,6 +140,15 @@ impl<L: Pack<Element = f32>> Ball<L> {
     }
 }
 
+impl<L: Pack<Element = f32>> Ball<L> {
+    /// Whether planes with a normal part the axes of two links by more than a distance, for certain.
+    #[inline(always)]
+    fn is_beyond(&self, other: &Self, way: Vec3<L>, normal: Vec3<L>, distance: L) -> L::Mask {
+        let ahead = normal.dot(way) - normal.dot(self.half).abs() - normal.dot(other.half).abs();
+        ahead.zero().lt(ahead) & (distance * distance * normal.norm_squared()).lt(ahead * ahead)
+    }
+}
+
 /// Up to [`SWEPT`] links of one robot and as many of another.
 pub(super) struct Sweep<'a> {
     pub balls: [&'a Balls; 2],
@@ -170,9 +181,11 @@ impl Sweep<'_> {
                 let reach = apart + one.half_length + other.half_length;
                 let mut bits = L::bits(!(reach * reach).lt(squared)) & self.are_there(lane, L::LANES);
                 if bits != 0 {
-                    let ahead = squared - way.dot(one.half).abs() - way.dot(other.half).abs();
-                    let is_beyond = (apart * apart * squared).lt(ahead * ahead);
-                    bits &= !L::bits(is_beyond & ahead.zero().lt(ahead));
+                    let share = way.dot(one.half).over(one.half.norm_squared());
+                    let across = way.along(one.half, -share);
+                    let is_beyond =
+                        one.is_beyond(&other, way, way, apart) | one.is_beyond(&other, way, across, apart);
+                    bits &= !L::bits(is_beyond);
                 }
                 near_one |= bits << lane;
             }

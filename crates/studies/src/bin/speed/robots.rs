@@ -20,13 +20,16 @@ pub const MARK: &str = "robots";
 /// How many places the second robot takes beside the first.
 const PLACES: u32 = 60;
 
+/// How far the plane of the second robot is from that of the first: they never touch.
+const BESIDE: f64 = 4.0;
+
 /// The chapter of the page, without its marks.
 pub fn chapter(effort: Effort, written: &str) -> Result<String, String> {
     let mut page = format!(
         "## Robots beside robots\n\n\
-         {written}. Two bent robots of 30 links with flat tips, the second of which moves past the first in {PLACES} places; and a \
-         coil of three turns beside itself. Microseconds a query, in bursts. Searches and loops over all pairs find the same \
-         distances, to rounding; parry's are those of capsules.\n\n\
+         {written}. Two bent robots of 30 links with flat tips, the second of which moves past the first in {PLACES} places \
+         and never touches it; and a coil of three turns beside itself. Microseconds a query, in bursts. Searches and loops over \
+         all pairs find the same distances, to rounding; parry's are those of capsules.\n\n\
          - Every link: the distance of each pair, bounded by the least so far or by the margin: the axes' distance less both radii \
          spares what it can.\n\
          - Every segment: the distance of the axes less both radii and no more, for all pairs.\n\
@@ -148,7 +151,7 @@ fn row(
 fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Result<(), String> {
     let (a, b) = (bent(1.0)?, bent(-1.0)?);
     let poses: Vec<_> =
-        (0..PLACES).map(|k| Pose::translation(offset + 0.2 * f64::from(k), 1.0, 0.0)).collect();
+        (0..PLACES).map(|k| Pose::translation(offset + 0.2 * f64::from(k), BESIDE, 0.0)).collect();
     let here = Pose::IDENTITY;
     let (one, two) = (capsules(&a), capsules(&b));
     let compounds = [compound(&one), compound(&two)];
