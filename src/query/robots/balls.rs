@@ -1,18 +1,19 @@
-//! The balls around a robot's links, and the halves of their axes, each number in a row of its own: a pack of them is compared
-//! at once, in single precision.
+//! The balls around a robot's links, and the halves of their axes, each number in a row of its own: a pack of them is
+//! compared at once, in single precision.
 //!
-//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to [`SWEPT`]
-//! of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the axes, and any normal
-//! n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2 apart.
-//! What the balls leave is asked for that with n = d, and with what is perpendicular to h1 of d, which is exact for parallel links
-//! beside one another. What is left then is measured.
+//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to
+//! [`SWEPT`] of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the
+//! axes, and any normal n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| -
+//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with n = d, and with what is perpendicular to
+//! h1 of d, which is exact for parallel links beside one another. What is left then is measured.
 //!
-//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors, and d by 21 u;
-//! the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 14 u each, the sums and squares that are compared by as
-//! much as 50 u of a length. That is less than 128 u, and [`SLACK`] is twice that. The limit errs by u of itself; where that is more than
-//! 8 u, the limit is farther than anything. What doubles add to it, and by how much the measured limit may err, is next to nothing.
-//! A normal whose square falls below the range parts nothing: where a coordinate of it, the difference of two numbers, is below
-//! 2^-63 and not 0, that of d is below 2^-38, so <d, n> is less than |n| times the slack.
+//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors,
+//! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 14 u each, the sums and
+//! squares that are compared by as much as 50 u of a length. That is less than 128 u, and [`SLACK`] is twice that. The
+//! limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. What doubles add to it, and
+//! by how much the measured limit may err, is next to nothing. A normal whose square falls below the range parts nothing:
+//! where a coordinate of it, the difference of two numbers, is below 2^-63 and not 0, that of d is below 2^-38, so <d, n>
+//! is less than |n| times the slack.
 
 use super::outline::SearchFrame;
 use crate::distance::lanes::{Lane, Pack};

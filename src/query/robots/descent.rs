@@ -132,8 +132,8 @@ impl Descent {
         self.run_from(node, robots, link, Limit::of(Real::INFINITY), |_| 0, visit);
     }
 
-    /// Whether two links of a robot beside itself may be at most `bound` apart, after [`begin`](Self::begin): told from the balls around
-    /// them.
+    /// Whether two links of a robot beside itself may be at most `bound` apart, after [`run`](Self::run): told by the
+    /// balls around them.
     pub fn may_be_within(&mut self, robot: &PlacedRobot, links: [usize; 2], bound: Real) -> bool {
         let Self { frame, balls: [balls, _], .. } = self;
         links.into_iter().for_each(|link| balls.place(robot, frame, link..link + 1));

@@ -1,55 +1,56 @@
 //! A robot and itself: which of its parts can come to be near one another, and how near they are.
 //!
-//! Neighbouring links touch, and those around a bend are near for no other reason. So the question is about pairs of
-//! places that are a local minimum of the distance: two places that come no nearer when either moves along the robot.
-//! Three kinds of pairs are asked for, and no margin decides which.
+//! Neighbouring links touch, and those around a bend are near for no other reason. So the question is about pairs of places
+//! that are a local minimum of the distance: two places that come no nearer when either moves along the robot. Three kinds
+//! of pairs are asked for, and no margin decides which.
 //!
 //! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two links, at which the
-//! distance of the axes is a local minimum, and v the unit vector from x to y. The part of the centreline from x to y
-//! and the way back along the chord are a closed polygon. Its exterior angles sum up to at least 2 pi (Fenchel; equality
-//! for plane convex polygons). At x the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
+//! distance of the axes is a local minimum, and v the unit vector from x to y. The part of the centreline from x to y and
+//! the way back along the chord are a closed polygon. Its exterior angles sum up to at least 2 pi (Fenchel; equality for
+//! plane convex polygons). At x the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
 //! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and t is at most pi / 2. The
 //! same holds at y, at a joint, where it holds of the direction on the way to y, and at the robot's ends. So the joints
-//! between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi. Where the axes meet there is one corner, of at most pi, and the
-//! same is left. The distance of two barrels is that of their axes less both radii.
+//! between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi. Where the axes meet there is one corner, of at most pi,
+//! and the same is left. The distance of two barrels is that of their axes less both radii.
 //!
 //! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip, or the wider side of a
 //! step in radius; c is its centre, n its normal, out of the robot. The shortest way leaves it at a point c + a e along v,
 //! where e is perpendicular to n, a >= 0, and v lies between n and e: at the angle alpha from n. It ends, prolonged by the
 //! other link's radius, at a place y of an axis, which it meets at a right angle as above. Close the polygon by the chord
-//! from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with alpha <= beta <= pi / 2. At y it has
-//! turned by beta - alpha, which adds so much to pi / 2. At c the centreline goes on along n, or comes from where n points
-//! away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no more
-//! than 3/2 pi, which leaves pi / 2 for the joints.
+//! from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with alpha <= beta <= pi / 2. At y it
+//! has turned by beta - alpha, which adds so much to pi / 2. At c the centreline goes on along n, or comes from where n
+//! points away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no
+//! more than 3/2 pi, which leaves pi / 2 for the joints.
 //!
-//! **A round cap at the wider side of a step** is a ball around c, and asked for like a face. Of a link alone the place nearest to
-//! y may be its end for no other reason than that the robot is thinner beyond: going on along the centreline is no descent then, so
-//! that the corner at c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for the joints. At a round base or
-//! tip the centreline does not go on, and the first rule has it.
+//! **A round cap at the wider side of a step** is a ball around c, and asked for like a face. Of a link alone the place
+//! nearest to y may be its end for no other reason than that the robot is thinner beyond: going on along the centreline is
+//! no descent then, so that the corner at c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
+//! the joints. At a round base or tip the centreline does not go on, and the first rule has it.
 //!
-//! **Two such ends** at any turn: two steps of a straight robot may face one another. What such a pair has found counts
-//! if the way between the two leaves both on their outer sides, or if they meet.
+//! **Two such ends** at any turn: two steps of a straight robot may face one another. What such a pair has found counts if
+//! the way between the two leaves both on their outer sides, or if they meet.
 //!
-//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two links
-//! overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near whom, and
-//! the robot is refused.
+//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two
+//! links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near
+//! whom, and the robot is refused.
 //!
 //! **Rounding of the way.** The two points that are found belong to the two parts and are at most e farther apart than the
-//! nearest two, at the distance d. So the way w between them lies in the parts' difference, a convex set, whose point nearest to
-//! 0 is the shortest way w*. There w . w* >= |w*|^2, and |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e): of a pair that
-//! touches the way is noise, and of one that is nearly parallel it errs by far more than e. Let S be the largest coordinate of
-//! both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most 2 S; the links' coordinates in
-//! their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: e = 64 u S is
-//! enough. A way that leaves a face by no more than sqrt(e (2 d + e)) on its inner side counts as one that leaves it outside.
-//! And what is measured to be within a bound is in truth within e of it, which is what the ball around a face is asked for first: it
-//! is smaller than the face's link, and so known better than what is measured.
+//! nearest two, at the distance d. So the way w between them lies in the parts' difference, a convex set, whose point
+//! nearest to 0 is the shortest way w*. There w . w* >= |w*|^2, and |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2
+//! d + e): of a pair that touches the way is noise, and of one that is nearly parallel it errs by far more than e. Let S be
+//! the largest coordinate of both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most 2
+//! S; the links' coordinates in their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference
+//! by sqrt(3) 3 u S: e = 64 u S is enough. A way that leaves a face by no more than sqrt(e (2 d + e)) on its inner side
+//! counts as one that leaves it outside. And what is measured to be within a bound is in truth within e of it, which is
+//! what the ball around a face is asked for first: it is smaller than the face's link, and so known better than what is
+//! measured.
 //!
-//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is compared
-//! instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2 and the sine
-//! |a - b| / 2; half of the turn up to a link is the product of as many complex numbers, and half of that between two links the quotient
-//! of two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their products over n joints by less than 20 n u
-//! of length, with the roundings of the products; a cosine of a quotient errs by twice that and 3 u. [`Turns`] asks for cosines up to 128 n u
-//! above the one that counts.
+//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is
+//! compared instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2
+//! and the sine |a - b| / 2; half of the turn up to a link is the product of as many complex numbers, and half of that
+//! between two links the quotient of two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their
+//! products over n joints by less than 20 n u of length, with the roundings of the products; a cosine of a quotient errs by
+//! twice that and 3 u. [`Turns`] asks for cosines up to 128 n u above the one that counts.
 
 use super::descent::{Descent, Limit};
 use crate::answer::{ProximityError, RobotProximity};
