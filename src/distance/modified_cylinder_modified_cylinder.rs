@@ -23,7 +23,8 @@
 //! Each case gives a point of one link, and [`Link::closest_to`] the other link's nearest point to it. So every candidate is
 //! the distance between a point of each link, and the least of them is right wherever one of them is. Rounding may take
 //! a place for a flat end that is none, which adds a candidate and loses none; or the other way round, which is off by what
-//! the place is off by.
+//! the place is off by. Two capsules are case 1 wherever p and q are: their points are those on the way from p to q, at the
+//! radii, or a common one where the radii are as long as the way.
 
 use super::point_modified_cylinder::Link;
 use super::segment_segment::{Parameters, parameters};

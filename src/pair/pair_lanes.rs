@@ -1,4 +1,4 @@
-//! Pairs of links and triangles in double precision, a pack at a time, each in coordinates of its own: those of
+//! Pairs of links with triangles or links in double precision, a pack at a time, each in coordinates of its own: those of
 //! [`coordinates`](super::coordinates), with the same bits on every instruction set.
 
 use super::coordinates::{Pair, Placed};
@@ -119,6 +119,7 @@ pub(crate) fn store<L: Pack<Element = f64>, const N: usize>(
 }
 
 impl<L: Pack<Element = f64>> Placed<L> {
+    /// The same with its axis, which all that has to do with flat caps or triangles needs.
     #[inline(always)]
     pub(super) fn with_axis(self) -> Self {
         Self { axis: self.along.normalised(), ..self }

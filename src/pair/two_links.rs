@@ -67,9 +67,9 @@ impl PlacedLink {
 
     fn nearest_of_links(&self, unit: Real, closest: &Closest<Real>) -> NearestOfLinks {
         let place = |point: Vec3<Real>| self.start() + Vector::from(point) * unit;
-        let on_first = place(closest.point1);
-        let on_second = if closest.distance > 0.0 { place(closest.point2) } else { on_first };
-        NearestOfLinks { distance: closest.distance * unit, on_first, on_second }
+        let (distance, on_first) = (closest.distance * unit, place(closest.point1));
+        let on_second = if distance > 0.0 { place(closest.point2) } else { on_first };
+        NearestOfLinks { distance, on_first, on_second }
     }
 
     /// The same if they are at most `bound` apart. The capsules around the links spare what they can.

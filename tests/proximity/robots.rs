@@ -189,7 +189,7 @@ fn every_place_where_two_robots_are_near_is_found_once() {
         let (Some(ones), Some(twos)) = (ones, twos) else { continue };
         let row = |one| twos.iter().map(|two| between(one, &poses[0], two, &poses[1]).unwrap()).collect();
         let table: Vec<Vec<_>> = ones.iter().map(row).collect();
-        for margin in [0.0, 0.3, 3.0] {
+        for margin in [0.0, 0.3, 3.0, f64::INFINITY] {
             let mut found = Vec::new();
             pair.within(&a, &poses[0], &b, &poses[1], margin, &mut found).unwrap();
             let expected = places(&table, margin);

@@ -8,12 +8,15 @@
 //! h1 of d, which is exact for parallel links beside one another. What is left then is measured.
 //!
 //! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors,
-//! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 14 u each, the sums and
-//! squares that are compared by as much as 50 u of a length. That is less than 128 u, and [`SLACK`] is twice that. The
-//! limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. What doubles add to it, and
-//! by how much the measured limit may err, is next to nothing. A normal whose square falls below the range parts nothing:
-//! where a coordinate of it, the difference of two numbers, is below 2^-63 and not 0, that of d is below 2^-38, so <d, n>
-//! is less than |n| times the slack.
+//! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 15 u each, the sums and
+//! squares that are compared by as much as 50 u of a length. Of two balls the half lengths err by 8 u each, and the rest by
+//! less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. Together
+//! that is less than 136 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured limit may err, is
+//! next to nothing.
+//!
+//! A normal whose square falls below the range parts nothing: what is left of a coordinate of d is below 2^-63 and not 0
+//! only where that of d is below 2^-16, whether it is rounded once or twice. So <d, n> is below 2^-77, and its square
+//! rounds to 0.
 
 use super::outline::SearchFrame;
 use crate::distance::lanes::{Lane, Pack};
@@ -154,7 +157,7 @@ impl<L: Pack<Element = f32>> Ball<L> {
 pub(super) struct Sweep<'a> {
     pub balls: [&'a Balls; 2],
     pub links: [Range<usize>; 2],
-    /// With which of the second robot's links each of the first's is asked for: those from this one on.
+    /// Of each of the first robot's links here, from which of the second's on it is asked for, by their numbers in the robots.
     pub asked_from: &'a [usize],
 }
 

@@ -1,11 +1,11 @@
 //! Two trees of links at once, the nearer pair of nodes first.
 //!
 //! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
-//! divided, until both have so few links that the balls around them are compared at once ([`Sweep`]): a robot of some dozen links
-//! has no use for its tree. What is left is measured a pack at a time. Where much is left, the pair whose centres are nearest
-//! is measured first, which lowers the limit for the others. Where the limit is a distance that has been found, a pair that is
-//! as far may still hold lower links, so it is looked at, unless that distance is 0 and its lowest links come after those
-//! that were found.
+//! divided, until both have so few links that the balls around them are compared at once ([`Sweep`]): a robot of some dozen
+//! links has no use for its tree. What is left is measured a pack at a time. Where much is left, or there is no limit yet,
+//! the pair whose centres are nearest is measured first, which lowers the limit for the others if it is that of the
+//! nearest. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it is
+//! looked at, unless that distance is 0 and its lowest links come after those that were found.
 
 use super::balls::{Balls, SWEPT, Sweep};
 use super::outline::{Outline, SearchFrame};
@@ -16,7 +16,7 @@ use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// More pairs than these are worth a look for the nearest of them: it costs about as much as they do.
+/// Of more pairs than these the nearest is looked for first, which takes about as long as it takes to measure so many.
 const MANY: u32 = 16 * TOGETHER as u32;
 
 /// So many pairs are measured before the limit is lowered.
@@ -210,9 +210,15 @@ impl Descent {
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
         if !is_bounded || sweep.near(*level, frame.length(limit.distance), &mut near) > MANY {
+            let before = limit.distance;
             looked_at = sweep.nearest(*level);
             limit = measure(*level, &sweep, together, looked_at.into_iter(), limit, visit);
-            sweep.near(*level, frame.length(limit.distance), &mut near);
+            if limit.leaves_out(0.0, sweep.links.each_ref().map(|links| links.start)) {
+                return limit;
+            }
+            if !is_bounded || limit.distance < before {
+                sweep.near(*level, frame.length(limit.distance), &mut near);
+            }
         }
         let [first, second] = &sweep.links;
         let pairs = near[..first.len()].iter().zip(first.clone()).flat_map(|(&row, link)| {

@@ -82,7 +82,7 @@ struct Turns {
     /// Half of what the joints up to each link turn by, together: its cosine and its sine.
     before: Vec<[Real; 2]>,
     slack: Real,
-    /// Of each link the first one behind a turn of at least pi.
+    /// Of each link the first one behind a turn of at least pi that shares no joint with it; beyond the last if none is.
     asked_from: Vec<usize>,
 }
 
@@ -115,8 +115,10 @@ impl Turns {
         Ok(())
     }
 
-    /// What turns by less than pi to a link turns by less than pi to it from the next one, and a joint turns by less than pi:
-    /// no turn that is looked at is as large as 2 pi.
+    /// Finds from which link on each is asked for: no earlier than for the link before.
+    ///
+    /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less than pi, from here or from
+    /// the link before, and one joint more; or that of two joints. A joint turns by less than pi.
     fn find_asked(&mut self) {
         self.asked_from.clear();
         let mut from = 0;
@@ -136,7 +138,7 @@ impl Turns {
         c1 * c2 + s1 * s2 <= half_cosine + self.slack
     }
 
-    /// The links with a turn of at least pi / 2 to or from a link, and less than pi.
+    /// The links with a turn of at least pi / 2 to or from a link, and less than pi, that share no joint with it.
     fn quarter_turned(&self, link: usize) -> impl Iterator<Item = usize> {
         let is_quarter = |first, second| self.reach(FRAC_1_SQRT_2, first, second);
         let before =
@@ -321,7 +323,7 @@ fn way(nearest: &NearestOfLinks, error: Real) -> (Vector, Real) {
     (nearest.on_second - nearest.on_first, slack)
 }
 
-/// Pairs of links that share no joint, the second after the first, with a turn of at least pi between them.
+/// From which link on each is asked for.
 fn asked_from(turns: &Turns) -> impl Fn(usize) -> usize {
     |link| turns.asked_from[link]
 }
