@@ -95,9 +95,12 @@ def test_what_moved_is_seen_at_once() -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise")
 def test_ctrl_c_ends_a_batch() -> None:
     program = """
+        import signal
         import numpy as np
         from shapes import robots, sphere
         from parry_continuum import Mesh
+        # A shell has what runs in the background ignore it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         mesh = Mesh(*sphere())
         many = np.tile(robots(np.random.default_rng(0), 200), (2_000, 1, 1))
         print("begin", flush=True)
