@@ -22,13 +22,6 @@ pub struct RobotProximity {
     pub arc_lengths: [Real; 2],
 }
 
-impl RobotProximity {
-    /// What is nearer than another answer, or as near at lower links.
-    pub(crate) fn comes_before(&self, other: &Self) -> bool {
-        self.distance < other.distance || (self.distance == other.distance && self.links < other.links)
-    }
-}
-
 #[cfg(feature = "serde-serialize")]
 mod serialised {
     use super::RobotProximity;

@@ -29,6 +29,15 @@ pub(crate) trait Pack: Scalar {
     fn bits(mask: Self::Mask) -> u64;
 }
 
+/// The bits that are set, such as those of [`Pack::bits`], lowest first.
+pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
+        left &= left - 1;
+        Some(bit)
+    })
+}
+
 /// Whether the instructions for the larger and the smaller of two numbers are those of x86, which are [`Scalar::max`] and
 /// [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
 /// such thing; a test does.

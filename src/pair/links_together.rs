@@ -5,7 +5,7 @@ use super::measure_together::narrowed;
 use super::pair_lanes::{Rows, TOGETHER, link, put_link, store};
 use super::placed_link::PlacedLink;
 use super::two_links::{NearestOfLinks, capsules_apart};
-use crate::distance::lanes::Pack;
+use crate::distance::lanes::{Pack, set_bits};
 use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -152,15 +152,6 @@ impl PackOfPairs {
         store(&mut self.found, 4, lane, first.start + closest.point2 * unit);
         L::bits(near & distance.le(bound)) & are_there
     }
-}
-
-/// The bits that are set, lowest first.
-pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
-        left &= left - 1;
-        Some(bit)
-    })
 }
 
 #[cfg(test)]

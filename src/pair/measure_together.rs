@@ -6,7 +6,7 @@ use super::coordinates::Placed;
 use super::nearest_rows::NearestRows;
 use super::pair_lanes::{PairLanes, Rows, TOGETHER, put_corners};
 use super::placed_link::PlacedLink;
-use crate::distance::lanes::Pack;
+use crate::distance::lanes::{Pack, set_bits};
 use crate::distance::{Unfused, dispatch};
 use crate::mesh::Mesh;
 use crate::pair::pair_lanes;
@@ -35,10 +35,8 @@ impl Best {
         }
         let mut is_best = false;
         let mut answers = NearestRows::new();
-        let mut near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
+        let near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
+        for lane in set_bits(near) {
             // Most that are not farther than the bound are as far, and most of these need no report.
             if self.is_worse_than(answers.distance(lane), triangles[lane]) {
                 is_best |= self.take(answers.nearest(lane, triangles[lane]));

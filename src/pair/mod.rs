@@ -32,7 +32,7 @@ pub(crate) use contact::{contact, contacts};
 pub(crate) use contacts_together::{PlacedPair, add_contacts};
 pub(crate) use derivative::derivative;
 pub(crate) use link_lanes::{LinkLanes, Nearer};
-pub(crate) use links_together::{LinksTogether, PlacedEnds, set_bits};
+pub(crate) use links_together::{LinksTogether, PlacedEnds};
 pub(crate) use nearest::Nearest;
 pub(crate) use pair_lanes::TOGETHER;
 pub(crate) use placed_link::PlacedLink;

@@ -135,3 +135,22 @@ pub(super) fn capsules_apart<T: Scalar>(pair: &TwoLinks<T>, axes: T) -> T {
 fn end_of(link: &Link<Real>, end: usize) -> Vec3<Real> {
     if end == 0 { Vec3::zero(0.0) } else { link.end }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Axes 3 √2 apart and radii of 2, in units of the smallest number there is: less than half of it is left between them, and
+    /// the nearest points round to places on both sides of it.
+    #[test]
+    fn links_whose_distance_rounds_to_0_have_one_point_in_common() {
+        let unit = Real::from_bits(1);
+        let along = Vector::new(0.0, 0.0, 1000.0 * unit);
+        let apart = Vector::new(3.0 * unit, 3.0 * unit, 0.0);
+        let first = PlacedLink::between(Vector::ZERO, along, 2.0 * unit, [false; 2]);
+        let second = PlacedLink::between(apart, apart + along, 2.0 * unit, [false; 2]);
+        let nearest = first.measure_link(&second);
+        assert_eq!(nearest.distance, 0.0);
+        assert_eq!(nearest.on_first, nearest.on_second);
+    }
+}

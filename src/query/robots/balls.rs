@@ -19,7 +19,7 @@
 //! rounds to 0.
 
 use super::outline::SearchFrame;
-use crate::distance::lanes::{Lane, Pack};
+use crate::distance::lanes::{Lane, Pack, set_bits};
 use crate::distance::{Vec3, dispatch};
 use crate::pair::{PlacedEnds, PlacedRobot};
 use crate::robot::LinkNode;
@@ -90,10 +90,10 @@ impl Balls {
 
     /// Whether two links that have been placed may be no farther apart than a limit in the frame.
     pub fn may_be_within(&self, links: [usize; 2], limit: Real) -> bool {
-        let [one, other] = links.map(|link| self.from(link).map(|row| row[0]));
-        let way = Vec3::new(other[0] - one[0], other[1] - one[1], other[2] - one[2]);
-        let reach = (limit as f32 + SLACK) + (one[6] + one[7]) + (other[6] + other[7]);
-        way.norm_squared() <= reach * reach
+        let [one, other] = links.map(|link| Ball::of(&self.from(link), |row| row[0]));
+        let apart = limit as f32 + SLACK + one.radius + other.radius;
+        let reach = apart + one.half_length + other.half_length;
+        (other.centre - one.centre).norm_squared() <= reach * reach
     }
 
     /// A link that has been placed.
@@ -112,39 +112,41 @@ impl Balls {
     }
 }
 
-impl<L: Pack<Element = f32>> Ball<L> {
+impl<L> Ball<L> {
+    /// What `take` makes of the rows.
     #[inline(always)]
-    fn splat(token: L::Token, rows: &[&[f32]; ROWS]) -> Self {
+    fn of(rows: &[&[f32]; ROWS], take: impl Fn(&[f32]) -> L) -> Self {
         let [x, y, z, u, v, w, half_length, radius] = rows;
         Self {
-            centre: Vec3::new(L::splat(token, x[0]), L::splat(token, y[0]), L::splat(token, z[0])),
-            half: Vec3::new(L::splat(token, u[0]), L::splat(token, v[0]), L::splat(token, w[0])),
-            half_length: L::splat(token, half_length[0]),
-            radius: L::splat(token, radius[0]),
-        }
-    }
-
-    #[inline(always)]
-    fn load(token: L::Token, rows: &[&[f32]; ROWS], lane: usize) -> Self {
-        let [x, y, z, u, v, w, half_length, radius] = rows;
-        Self {
-            centre: Vec3::new(
-                L::load(token, &x[lane..]),
-                L::load(token, &y[lane..]),
-                L::load(token, &z[lane..]),
-            ),
-            half: Vec3::new(
-                L::load(token, &u[lane..]),
-                L::load(token, &v[lane..]),
-                L::load(token, &w[lane..]),
-            ),
-            half_length: L::load(token, &half_length[lane..]),
-            radius: L::load(token, &radius[lane..]),
+            centre: Vec3::new(take(x), take(y), take(z)),
+            half: Vec3::new(take(u), take(v), take(w)),
+            half_length: take(half_length),
+            radius: take(radius),
         }
     }
 }
 
 impl<L: Pack<Element = f32>> Ball<L> {
+    /// The ball around one link, in every lane.
+    #[inline(always)]
+    fn splat(token: L::Token, rows: &[&[f32]; ROWS]) -> Self {
+        Self::of(
+            rows,
+            #[inline(always)]
+            |row| L::splat(token, row[0]),
+        )
+    }
+
+    /// Those around a pack of links.
+    #[inline(always)]
+    fn load(token: L::Token, rows: &[&[f32]; ROWS], lane: usize) -> Self {
+        Self::of(
+            rows,
+            #[inline(always)]
+            |row| L::load(token, &row[lane..]),
+        )
+    }
+
     /// Whether planes with a normal part the axes of two links by more than a distance, for certain.
     #[inline(always)]
     fn is_beyond(&self, other: &Self, way: Vec3<L>, normal: Vec3<L>, distance: L) -> L::Mask {
@@ -215,14 +217,12 @@ impl Sweep<'_> {
             for first in self.lanes(row).step_by(L::LANES) {
                 let squared = (Ball::load(token, &rows, first).centre - one.centre).norm_squared();
                 let are_nearer = squared.lt(L::splat(token, least));
-                let mut nearer = L::bits(are_nearer) & self.are_there(first, L::LANES);
+                let nearer = L::bits(are_nearer) & self.are_there(first, L::LANES);
                 if nearer == 0 {
                     continue;
                 }
                 squared.store(&mut distances);
-                while nearer != 0 {
-                    let lane = nearer.trailing_zeros() as usize;
-                    nearer &= nearer - 1;
+                for lane in set_bits(nearer) {
                     if distances[lane] < least {
                         least = distances[lane];
                         found = Some([link, self.links[1].start + first + lane]);

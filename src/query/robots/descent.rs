@@ -8,9 +8,10 @@
 //! looked at, unless that distance is 0 and its lowest links come after those that were found.
 
 use super::balls::{Balls, SWEPT, Sweep};
-use super::outline::{Outline, SearchFrame};
+use super::outline::SearchFrame;
 use crate::answer::RobotProximity;
-use crate::pair::{LinksTogether, NearestOfLinks, PlacedRobot, TOGETHER, set_bits};
+use crate::distance::lanes::set_bits;
+use crate::pair::{LinksTogether, PlacedRobot, TOGETHER};
 use crate::robot::{LinkNode, place_of_leaf};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -22,12 +23,11 @@ const MANY: u32 = 16 * TOGETHER as u32;
 /// So many pairs are measured before the limit is lowered.
 const AT_ONCE: usize = 4 * TOGETHER;
 
-/// A node of a tree, the first of its links, and the capsule around them.
+/// A node of a tree, and the first of its links.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     node: usize,
     first: usize,
-    outline: Outline,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +39,9 @@ struct Entry {
 /// What a pair of links must not exceed to be looked at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limit {
-    pub distance: Real,
+    distance: Real,
     /// The links that are that far, if some are.
-    pub links: Option<[usize; 2]>,
+    links: Option<[usize; 2]>,
 }
 
 impl Limit {
@@ -68,7 +68,7 @@ impl Limit {
     }
 
     /// Whether links that are so far apart come before what has been found.
-    fn admits(&self, distance: Real, links: [usize; 2]) -> bool {
+    pub fn admits(&self, distance: Real, links: [usize; 2]) -> bool {
         distance < self.distance
             || (distance == self.distance && self.links.is_none_or(|found| links < found))
     }
@@ -107,10 +107,10 @@ impl Descent {
         robots: [&PlacedRobot; 2],
         limit: Limit,
         asked_from: impl Fn(usize) -> usize,
-        visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+        visit: impl FnMut(RobotProximity) -> Limit,
     ) {
         self.begin(robots);
-        self.run_from(0, robots, 0, limit, asked_from, visit);
+        self.run_from(Place { node: 0, first: 0 }, robots, limit, asked_from, visit);
     }
 
     /// Makes ready for [`run_of_link`](Self::run_of_link).
@@ -126,10 +126,10 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         link: usize,
-        visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+        visit: impl FnMut(RobotProximity) -> Limit,
     ) {
-        let node = place_of_leaf(link, robots[0].links().len());
-        self.run_from(node, robots, link, Limit::of(Real::INFINITY), |_| 0, visit);
+        let leaf = Place { node: place_of_leaf(link, robots[0].links().len()), first: link };
+        self.run_from(leaf, robots, Limit::of(Real::INFINITY), |_| 0, visit);
     }
 
     /// Whether two links of a robot beside itself may be at most `bound` apart, after [`run`](Self::run): told by the
@@ -140,24 +140,17 @@ impl Descent {
         balls.may_be_within(links, frame.length(bound))
     }
 
-    /// From a node of the first robot's tree, with its first link, and all of the second's.
+    /// From a place in the first robot's tree, and all of the second's.
     fn run_from(
         &mut self,
-        node: usize,
+        place: Place,
         robots: [&PlacedRobot; 2],
-        first: usize,
         mut limit: Limit,
         asked_from: impl Fn(usize) -> usize,
-        mut visit: impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+        mut visit: impl FnMut(RobotProximity) -> Limit,
     ) {
-        let frame = self.frame;
-        let place = |robot: usize, node: usize, first: usize| Place {
-            node,
-            first,
-            outline: frame.outline(robots[robot], node),
-        };
         self.stack.clear();
-        self.stack.push(Entry { places: [place(0, node, first), place(1, 0, 0)], at_least: 0.0 });
+        self.stack.push(Entry { places: [place, Place { node: 0, first: 0 }], at_least: 0.0 });
         while let Some(entry) = self.stack.pop() {
             let firsts = entry.places.map(|place| place.first);
             let links = [0, 1].map(|robot: usize| {
@@ -174,12 +167,13 @@ impl Descent {
                 continue;
             }
             let divided = usize::from(links[1].len() > links[0].len());
-            let kept = entry.places[1 - divided];
-            let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|(node, first)| {
-                let half = place(divided, node, first);
+            let frame = &self.frame;
+            let kept = frame.outline(robots[1 - divided], entry.places[1 - divided].node);
+            let halves = halves(robots[divided].link_tree(), entry.places[divided]).map(|half| {
                 let mut places = entry.places;
                 places[divided] = half;
-                Entry { places, at_least: frame.outside(half.outline.at_least(&kept.outline)) }
+                let outline = frame.outline(robots[divided], half.node);
+                Entry { places, at_least: frame.outside(outline.at_least(&kept)) }
             });
             // The nearer one is taken first, and of equals that with the lower links.
             let [low, high] = halves;
@@ -194,7 +188,7 @@ impl Descent {
         robots: [&PlacedRobot; 2],
         links: [Range<usize>; 2],
         mut limit: Limit,
-        visit: &mut impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+        visit: &mut impl FnMut(RobotProximity) -> Limit,
     ) -> Limit {
         let Self { level, frame, balls: [first, second], asked_from, together, .. } = self;
         first.place(robots[0], frame, links[0].clone());
@@ -212,7 +206,7 @@ impl Descent {
         if !is_bounded || sweep.near(*level, frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
             looked_at = sweep.nearest(*level);
-            limit = measure(*level, &sweep, together, looked_at.into_iter(), limit, visit);
+            limit = measure(*level, robots, &sweep, together, looked_at.into_iter(), limit, visit);
             if limit.leaves_out(0.0, sweep.links.each_ref().map(|links| links.start)) {
                 return limit;
             }
@@ -224,18 +218,19 @@ impl Descent {
         let pairs = near[..first.len()].iter().zip(first.clone()).flat_map(|(&row, link)| {
             set_bits(row).map(move |lane| [link, second.start + lane]).filter(|&pair| Some(pair) != looked_at)
         });
-        measure(*level, &sweep, together, pairs, limit, visit)
+        measure(*level, robots, &sweep, together, pairs, limit, visit)
     }
 }
 
 /// Measures pairs, some packs at a time, and shows `visit` what is within the limit. Returns the last limit.
 fn measure(
     level: Level,
+    robots: [&PlacedRobot; 2],
     sweep: &Sweep,
     together: &mut LinksTogether,
     mut pairs: impl Iterator<Item = [usize; 2]>,
     mut limit: Limit,
-    visit: &mut impl FnMut([usize; 2], &NearestOfLinks) -> Limit,
+    visit: &mut impl FnMut(RobotProximity) -> Limit,
 ) -> Limit {
     let mut links = [[0; 2]; AT_ONCE];
     loop {
@@ -258,19 +253,27 @@ fn measure(
         }
         together.measure(level, limit.distance);
         for (pair, distance) in together.near() {
-            if limit.admits(distance, links[pair]) {
-                limit = visit(links[pair], &together.nearest(pair));
+            let links = links[pair];
+            if limit.admits(distance, links) {
+                let [first, second] = [robots[0].link(links[0]), robots[1].link(links[1])];
+                limit = visit(together.nearest(pair).answer(links, [&first, &second]));
             }
         }
     }
 }
 
-/// The two children of a node, and the first link of each.
-fn halves(tree: &[LinkNode], Place { node, first, .. }: Place) -> [(usize, usize); 2] {
-    let low = node + 1;
-    let below = match tree[low] {
+/// The nearest points of two links, one of each robot.
+pub(super) fn measure_pair(robots: [&PlacedRobot; 2], links: [usize; 2]) -> RobotProximity {
+    let [first, second] = [robots[0].link(links[0]), robots[1].link(links[1])];
+    first.measure_link(&second).answer(links, [&first, &second])
+}
+
+/// The two children of a node.
+fn halves(tree: &[LinkNode], Place { node, first }: Place) -> [Place; 2] {
+    let low = Place { node: node + 1, first };
+    let below = match tree[low.node] {
         LinkNode::Inner { below, .. } => below,
         LinkNode::Leaf(_) => 0,
     };
-    [(low, first), (low + 1 + below, first + tree[low].links())]
+    [low, Place { node: low.node + 1 + below, first: first + tree[low.node].links() }]
 }

@@ -52,7 +52,7 @@
 //! products over n joints by less than 20 n u of length, with the roundings of the products; a cosine of a quotient errs by
 //! twice that and 3 u. [`Turns`] asks for cosines up to 128 n u above the one that counts.
 
-use super::descent::{Descent, Limit};
+use super::descent::{Descent, Limit, measure_pair};
 use crate::answer::{ProximityError, RobotProximity};
 use crate::distance::Scalar;
 use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
@@ -232,16 +232,18 @@ impl<'a> OneRobot<'a> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
         let remembered = remembered.filter(|links| turns.asked_from[links[0]] <= links[1]);
-        let mut best = remembered.map(|links| self.measure(links));
-        descent.run([&self.robot; 2], Limit::at_best(&best), asked_from(turns), |links, nearest| {
-            Limit::at(best.insert(self.answer(links, nearest)))
+        let mut best = remembered.map(|links| measure_pair([&self.robot; 2], links));
+        descent.run([&self.robot; 2], Limit::at_best(&best), asked_from(turns), |found| {
+            Limit::at(best.insert(found))
         });
         // Last, since faces cost most: what is near already spares most of them.
         let bound = best.map_or(Real::INFINITY, |best| best.distance);
         self.between_faces(descent, turns, faces, bound, |found| {
-            let least = best.filter(|best| !found.comes_before(best)).unwrap_or(found);
-            best = Some(least);
-            Some(least.distance)
+            let links = found.links.map(|link| link as usize);
+            if Limit::at_best(&best).admits(found.distance, links) {
+                best = Some(found);
+            }
+            best.map(|best| best.distance)
         });
         *nearest = best.map(|best| best.links.map(|link| link as usize));
         best
@@ -251,22 +253,12 @@ impl<'a> OneRobot<'a> {
     pub fn clears(&self, margin: Real, memory: &mut OwnMemory) -> bool {
         let OwnMemory { descent, turns, faces, .. } = memory;
         let mut is_clear = true;
-        descent.run([&self.robot; 2], Limit::of(margin), asked_from(turns), |_, _| {
+        descent.run([&self.robot; 2], Limit::of(margin), asked_from(turns), |_| {
             is_clear = false;
             Limit::NOTHING
         });
         let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
         is_clear && self.between_faces(descent, turns, faces, margin, keep)
-    }
-
-    fn measure(&self, links: [usize; 2]) -> RobotProximity {
-        let [first, second] = links.map(|link| self.robot.link(link));
-        first.measure_link(&second).answer(links, [&first, &second])
-    }
-
-    fn answer(&self, links: [usize; 2], nearest: &NearestOfLinks) -> RobotProximity {
-        let [first, second] = links.map(|link| self.robot.link(link));
-        nearest.answer(links, [&first, &second])
     }
 
     /// Shows `keep` what every face is near, at most `bound` away, as long as it returns what is the bound from then on.

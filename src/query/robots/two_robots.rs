@@ -1,9 +1,9 @@
 //! The questions about two robots at their poses.
 
-use super::descent::{Descent, Limit};
+use super::descent::{Descent, Limit, measure_pair};
 use super::local_minima::LocalMinima;
 use crate::answer::{ProximityError, RobotProximity};
-use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
+use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
@@ -57,25 +57,13 @@ impl<'a> TwoRobots<'a> {
         [self.robots[0].link(links[0]), self.robots[1].link(links[1])]
     }
 
-    fn measure(&self, links: [usize; 2]) -> RobotProximity {
-        let [first, second] = self.links(links);
-        first.measure_link(&second).answer(links, [&first, &second])
-    }
-
-    fn answer(&self, links: [usize; 2], nearest: &NearestOfLinks) -> RobotProximity {
-        let [first, second] = self.links(links);
-        nearest.answer(links, [&first, &second])
-    }
-
     /// The two links that are nearest.
     pub fn minimum(&self, memory: &mut PairMemory) -> RobotProximity {
         let last = memory.nearest.filter(|links| self.have(*links));
-        let mut best = last.map(|links| self.measure(links));
-        memory.descent.run(self.both(), Limit::at_best(&best), all, |links, nearest| {
-            Limit::at(best.insert(self.answer(links, nearest)))
-        });
+        let mut best = last.map(|links| measure_pair(self.both(), links));
+        memory.descent.run(self.both(), Limit::at_best(&best), all, |found| Limit::at(best.insert(found)));
         // Without a limit the first pair that is looked at is within it.
-        let best = best.unwrap_or_else(|| self.measure([0, 0]));
+        let best = best.unwrap_or_else(|| measure_pair(self.both(), [0, 0]));
         memory.nearest = Some(best.links.map(|link| link as usize));
         best
     }
@@ -86,10 +74,8 @@ impl<'a> TwoRobots<'a> {
         descent.begin(self.both());
         for link in 0..self.robots[0].links().len() {
             let mut best = None;
-            descent.run_of_link(self.both(), link, |links, nearest| {
-                Limit::at(best.insert(self.answer(links, nearest)))
-            });
-            out.push(best.unwrap_or_else(|| self.measure([link, 0])));
+            descent.run_of_link(self.both(), link, |found| Limit::at(best.insert(found)));
+            out.push(best.unwrap_or_else(|| measure_pair(self.both(), [link, 0])));
         }
     }
 
@@ -104,8 +90,8 @@ impl<'a> TwoRobots<'a> {
         }
         memory.met = None;
         let met = &mut memory.met;
-        memory.descent.run(self.both(), Limit::of(margin), all, |links, _| {
-            *met = Some(links);
+        memory.descent.run(self.both(), Limit::of(margin), all, |found| {
+            *met = Some(found.links.map(|link| link as usize));
             Limit::NOTHING
         });
         memory.met.is_none()
@@ -115,8 +101,8 @@ impl<'a> TwoRobots<'a> {
     pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
-        descent.run(self.both(), Limit::of(margin), all, |links, nearest| {
-            minima.push(self.answer(links, nearest));
+        descent.run(self.both(), Limit::of(margin), all, |found| {
+            minima.push(found);
             Limit::of(margin)
         });
         minima.finish(out);
