@@ -11,7 +11,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) struct Structure {
     pub name: String,
     pub margin: Option<Real>,
-    pub search: BvhSearch,
+    /// Kept aside: what tells that a robot is far is read of one structure after the other.
+    pub search: Box<BvhSearch>,
     /// From the mesh's frame to the scene's; none where they are one.
     pose: Option<Pose>,
     /// The box around the triangles, in the mesh's frame.
@@ -22,6 +23,7 @@ pub(super) struct Structure {
 
 impl Structure {
     pub fn new(name: String, search: BvhSearch, margin: Option<Real>) -> Self {
+        let search = Box::new(search);
         let mut new = Self { name, margin, search, pose: None, around: Around::default(), size: 0.0 };
         new.look_around();
         new
