@@ -111,6 +111,11 @@ impl ModifiedCylinder {
         scale::direction(self.end - self.start)
     }
 
+    /// The [`length`](Self::length) and the [`axis`](Self::axis).
+    pub(crate) fn length_and_axis(&self) -> (Real, Vector) {
+        scale::length_and_direction(self.end - self.start)
+    }
+
     /// The same link moved by `pose`.
     ///
     /// If a short link is moved so far out that rounding makes its two ends one, its caps become round: the ball

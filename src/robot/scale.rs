@@ -21,6 +21,18 @@ pub(crate) fn length(v: Vector) -> Real {
 
 /// The direction of `v`, or zero for the zero vector.
 pub(crate) fn direction(v: Vector) -> Vector {
-    let v = v * v.abs().max_element().power_of_two_to_unity();
-    if v == Vector::ZERO { v } else { v / v.length() }
+    length_and_direction(v).1
+}
+
+/// The length and the [`direction`] of `v`.
+pub(crate) fn length_and_direction(v: Vector) -> (Real, Vector) {
+    let squared = v.length_squared();
+    if PLAIN_SQUARES.contains(&squared) {
+        let length = squared.sqrt();
+        return (length, v / length);
+    }
+    let scale = v.abs().max_element().power_of_two_to_unity();
+    let scaled = v * scale;
+    let length = scaled.length();
+    (length / scale, if scaled == Vector::ZERO { scaled } else { scaled / length })
 }

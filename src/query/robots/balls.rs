@@ -4,23 +4,22 @@
 //! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to
 //! [`SWEPT`] of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the
 //! axes, and any normal n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| -
-//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with n = d, and with what is perpendicular to
-//! h1 of d, which is exact for parallel links beside one another. What is left then is measured.
+//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, however
+//! roughly it is known: it leaves next to nothing that is farther. What is left then is measured.
 //!
 //! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors,
 //! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 15 u each, the sums and
 //! squares that are compared by as much as 50 u of a length. Of two balls the half lengths err by 8 u each, and the rest by
 //! less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. Together
 //! that is less than 136 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured limit may err, is
-//! next to nothing.
+//! next to nothing. Of robots that are farther apart than 2^16 times their size this tells no links apart: all are measured.
 //!
-//! A normal whose square falls below the range parts nothing: what is left of a coordinate of d is below 2^-63 and not 0
-//! only where that of d is below 2^-16, whether it is rounded once or twice. So <d, n> is below 2^-77, and its square
-//! rounds to 0.
+//! A normal may vanish, or its square fall below the range. A length of at least 2^-30 is taken for its own, which parts no
+//! more: squares of what it is compared with are above 2^-100 then, as [`SLACK`] is 2^-16.
 
 use super::outline::SearchFrame;
 use crate::distance::lanes::{Lane, Pack, set_bits};
-use crate::distance::{Vec3, dispatch};
+use crate::distance::{Vec3, dispatch, segment_parameters};
 use crate::pair::{PlacedEnds, PlacedRobot};
 use crate::robot::LinkNode;
 use fearless_simd::Level;
@@ -38,6 +37,9 @@ const ROWS: usize = 8;
 
 /// What rounding can hide of a distance.
 const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
+
+/// The square of the shortest normal of planes.
+const LEAST_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// The links of a robot where they are placed, and the balls around them in the frame of the search.
 #[derive(Clone, Debug, Default)]
@@ -147,11 +149,15 @@ impl<L: Pack<Element = f32>> Ball<L> {
         )
     }
 
-    /// Whether planes with a normal part the axes of two links by more than a distance, for certain.
+    /// Whether planes part the axes of two links by more than a distance, for certain; `way` is from its centre to the other's.
     #[inline(always)]
-    fn is_beyond(&self, other: &Self, way: Vec3<L>, normal: Vec3<L>, distance: L) -> L::Mask {
-        let ahead = normal.dot(way) - normal.dot(self.half).abs() - normal.dot(other.half).abs();
-        ahead.zero().lt(ahead) & (distance * distance * normal.norm_squared()).lt(ahead * ahead)
+    fn is_beyond(&self, other: &Self, way: Vec3<L>, distance: L) -> L::Mask {
+        let [along, along_other] = [self.half, other.half].map(|half| half + half);
+        let between_starts = other.half - self.half - way;
+        let normal = segment_parameters(between_starts, along, along_other).gap;
+        let ahead = normal.dot(way).abs() - normal.dot(self.half).abs() - normal.dot(other.half).abs();
+        let squared = normal.norm_squared().max(ahead.lit(LEAST_NORMAL_SQUARED));
+        ahead.zero().lt(ahead) & (distance * distance * squared).lt(ahead * ahead)
     }
 }
 
@@ -187,11 +193,7 @@ impl Sweep<'_> {
                 let reach = apart + one.half_length + other.half_length;
                 let mut bits = L::bits(!(reach * reach).lt(squared)) & self.are_there(lane, L::LANES);
                 if bits != 0 {
-                    let share = way.dot(one.half).over(one.half.norm_squared());
-                    let across = way.along(one.half, -share);
-                    let is_beyond =
-                        one.is_beyond(&other, way, way, apart) | one.is_beyond(&other, way, across, apart);
-                    bits &= !L::bits(is_beyond);
+                    bits &= !L::bits(one.is_beyond(&other, way, apart));
                 }
                 near_one |= bits << lane;
             }
@@ -233,6 +235,17 @@ impl Sweep<'_> {
         found
     }
 
+    /// Two links, and those pairs of one of them and a neighbour of the other that are asked for: no more than a pack.
+    pub fn beside(&self, [one, other]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+        let [first, second] = &self.links;
+        let ones = one.saturating_sub(1).max(first.start)..(one + 2).min(first.end);
+        let others = other.saturating_sub(1).max(second.start)..(other + 2).min(second.end);
+        let with_one = others.map(move |other| [one, other]);
+        let with_other = ones.filter(move |&link| link != one).map(move |one| [one, other]);
+        let is_asked = |&[one, other]: &[usize; 2]| other >= self.asked_from[one - first.start];
+        with_one.chain(with_other).filter(is_asked)
+    }
+
     /// Where among the second robot's links those are that are asked for with one of the first's.
     #[inline(always)]
     fn lanes(&self, row: usize) -> Range<usize> {
@@ -253,16 +266,18 @@ mod tests {
     use crate::distance::lanes::tests::levels;
     use crate::robot::Chain;
     use continuum_testing::Random;
-    use parry3d_f64::math::Vector;
+    use parry3d_f64::math::{Pose, Vector};
 
-    /// A robot of up to so many links; on a lattice every other time, where links are parallel, aligned, crossing and equal.
+    /// A robot of up to so many links: with links of one size, or on a lattice, where they are parallel, aligned, crossing and
+    /// equal, or of all sizes, the smallest near the origin.
     fn robot(random: &mut Random, links: u32, size: f64) -> Option<Chain> {
-        let is_lattice = random.below(2) == 0;
-        let mut at = random.point() * 2.0;
+        let kind = random.below(3);
+        let mut at = if kind == 2 { Vector::ZERO } else { random.point() * 2.0 };
         let mut points = vec![at * size];
         for _ in 0..1 + random.below(links) {
-            at += random.point();
-            at = if is_lattice { (at * 2.0).round() * 0.5 } else { at };
+            let step =
+                random.point() * if kind == 2 { (4.0 * at.length()).max(2.0_f64.powi(-100)) } else { 1.0 };
+            at = if kind == 1 { ((at + step) * 2.0).round() * 0.5 } else { at + step };
             points.push(at * size);
         }
         let radius = size * [0.0, 0.02, 0.5][random.below(3) as usize];
@@ -273,7 +288,7 @@ mod tests {
         }
     }
 
-    /// Nothing that is measured to be within a limit is left out, the limit itself included; and much is.
+    /// Nothing that is measured to be within a limit is left out, the limit itself included; and all is that is much farther.
     #[test]
     fn what_is_near_is_never_left_out() {
         let mut random = Random::new(8);
@@ -282,7 +297,9 @@ mod tests {
             let size = 2.0_f64.powi(round % 41 - 20);
             let made = [robot(&mut random, 60, size), robot(&mut random, 60, size)];
             let [Some(a), Some(b)] = made else { continue };
-            let poses = [random.pose(size), random.pose(size * [0.0, 2.0, 50.0][round as usize % 3])];
+            let first = if random.below(2) == 0 { Pose::IDENTITY } else { random.pose(size) };
+            let second = random.pose(size * [0.0, 2.0, 50.0][round as usize % 3]);
+            let poses = [first, if random.below(4) == 0 { first } else { second }];
             let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
                 panic!("both poses are rigid")
             };
@@ -297,6 +314,10 @@ mod tests {
                 .placed_links()
                 .map(|one| b.placed_links().map(|two| one.measure_link(&two).distance).collect())
                 .collect();
+            let capsules = |one: usize, two: usize| {
+                let (one, two) = (a.link(one), b.link(two));
+                one.nearest_on_axes(&two).1 - one.radius() - two.radius()
+            };
             // From any link on, as of a robot beside itself.
             let asked_from: Vec<_> =
                 (0..counts[0]).map(|link| if round % 2 == 0 { 0 } else { link }).collect();
@@ -319,6 +340,11 @@ mod tests {
                             let is_asked = two >= asked_from[one];
                             assert!(!is_near || is_asked);
                             assert!(is_near || !is_asked || distance > limit, "{one} {two} in round {round}");
+                            let beyond = frame.length(capsules(one, two) - limit);
+                            assert!(
+                                !is_near || beyond <= 2.0 * f64::from(SLACK),
+                                "{one} {two} in round {round}"
+                            );
                             kept += u64::from(is_near);
                             left_out += u64::from(is_asked && !is_near);
                         }

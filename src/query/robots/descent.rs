@@ -115,7 +115,9 @@ impl Descent {
 
     /// Makes ready for [`run_of_link`](Self::run_of_link).
     pub fn begin(&mut self, robots: [&PlacedRobot; 2]) {
-        for (balls, robot) in self.balls.iter_mut().zip(robots) {
+        // A robot beside itself is placed once.
+        let apart = if std::ptr::eq(robots[0], robots[1]) { 1 } else { 2 };
+        for (balls, robot) in self.balls.iter_mut().zip(robots).take(apart) {
             balls.start(robot.links().len());
         }
         self.frame = SearchFrame::around(robots);
@@ -206,7 +208,8 @@ impl Descent {
         if !is_bounded || sweep.near(*level, frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
             looked_at = sweep.nearest(*level);
-            limit = measure(*level, robots, &sweep, together, looked_at.into_iter(), limit, visit);
+            let pairs = looked_at.into_iter().flat_map(|pair| sweep.beside(pair));
+            limit = measure(*level, robots, &sweep, together, pairs, limit, visit);
             if limit.leaves_out(0.0, sweep.links.each_ref().map(|links| links.start)) {
                 return limit;
             }
@@ -215,9 +218,11 @@ impl Descent {
             }
         }
         let [first, second] = &sweep.links;
-        let pairs = near[..first.len()].iter().zip(first.clone()).flat_map(|(&row, link)| {
-            set_bits(row).map(move |lane| [link, second.start + lane]).filter(|&pair| Some(pair) != looked_at)
-        });
+        for [link, other] in looked_at.into_iter().flat_map(|pair| sweep.beside(pair)) {
+            near[link - first.start] &= !(1 << (other - second.start));
+        }
+        let pairs = near[..first.len()].iter().zip(first.clone());
+        let pairs = pairs.flat_map(|(&row, link)| set_bits(row).map(move |lane| [link, second.start + lane]));
         measure(*level, robots, &sweep, together, pairs, limit, visit)
     }
 }

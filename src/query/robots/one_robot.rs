@@ -91,7 +91,10 @@ impl Turns {
     /// A joint is too sharp.
     fn measure(&mut self, links: &[ModifiedCylinder]) -> Result<(), ProximityError> {
         self.before.clear();
-        let of_link = |link: &ModifiedCylinder| (link.axis(), link.length(), link.radius());
+        let of_link = |link: &ModifiedCylinder| {
+            let (length, axis) = link.length_and_axis();
+            (axis, length, link.radius())
+        };
         let (mut last, mut turned) = (of_link(&links[0]), [1.0, 0.0]);
         self.before.push(turned);
         for (joint, link) in links[1..].iter().enumerate() {
