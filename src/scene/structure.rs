@@ -11,7 +11,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) struct Structure {
     pub name: String,
     pub margin: Option<Real>,
-    /// Kept aside: what tells that a robot is far is read of one structure after the other.
+    /// In a place of its own, so that the rest, which tells that a robot is far, is one small piece of memory for all structures.
     pub search: Box<BvhSearch>,
     /// From the mesh's frame to the scene's; none where they are one.
     pose: Option<Pose>,

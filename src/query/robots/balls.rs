@@ -4,18 +4,21 @@
 //! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to
 //! [`SWEPT`] of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the
 //! axes, and any normal n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| -
-//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, however
-//! roughly it is known: it leaves next to nothing that is farther. What is left then is measured.
+//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, as far
+//! as single precision knows it: next to nothing is left that is farther, unless long thin links nearly meet. What is left
+//! then is measured.
 //!
 //! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors,
 //! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 15 u each, the sums and
-//! squares that are compared by as much as 50 u of a length. Of two balls the half lengths err by 8 u each, and the rest by
-//! less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther than anything. Together
-//! that is less than 136 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured limit may err, is
-//! next to nothing. Of robots that are farther apart than 2^16 times their size this tells no links apart: all are measured.
+//! squares that are compared by as much as 50 u of a length, both radii by u. Of two balls the half lengths err by 8 u
+//! each, and the rest by less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther
+//! than anything. Together that is 140 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured
+//! limit may err, is next to nothing. Where robots are much farther apart than 2^16 times their size this tells no links
+//! apart, and all are measured.
 //!
-//! A normal may vanish, or its square fall below the range. A length of at least 2^-30 is taken for its own, which parts no
-//! more: squares of what it is compared with are above 2^-100 then, as [`SLACK`] is 2^-16.
+//! A normal may vanish, or its square leave the range of numbers. So one that is shorter than 2^-30 is counted as if it
+//! were as long as that, which asks for more than is needed. The limit is never negative, so with the slack of 2^-16 no
+//! square that is compared with is below 2^-92.
 
 use super::outline::SearchFrame;
 use crate::distance::lanes::{Lane, Pack, set_bits};
@@ -38,7 +41,7 @@ const ROWS: usize = 8;
 /// What rounding can hide of a distance.
 const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
 
-/// The square of the shortest normal of planes.
+/// What the square of a normal counts for at least.
 const LEAST_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// The links of a robot where they are placed, and the balls around them in the frame of the search.
@@ -149,7 +152,8 @@ impl<L: Pack<Element = f32>> Ball<L> {
         )
     }
 
-    /// Whether planes part the axes of two links by more than a distance, for certain; `way` is from its centre to the other's.
+    /// Whether planes part the axes of two links by more than a distance, which includes [`SLACK`]. The `way` is from this one's
+    /// centre to the other's.
     #[inline(always)]
     fn is_beyond(&self, other: &Self, way: Vec3<L>, distance: L) -> L::Mask {
         let [along, along_other] = [self.half, other.half].map(|half| half + half);
@@ -288,7 +292,8 @@ mod tests {
         }
     }
 
-    /// Nothing that is measured to be within a limit is left out, the limit itself included; and all is that is much farther.
+    /// Nothing that is measured to be within a limit is left out, the limit itself included, and nothing that is farther by
+    /// much more than the slack is kept.
     #[test]
     fn what_is_near_is_never_left_out() {
         let mut random = Random::new(8);
@@ -342,7 +347,7 @@ mod tests {
                             assert!(is_near || !is_asked || distance > limit, "{one} {two} in round {round}");
                             let beyond = frame.length(capsules(one, two) - limit);
                             assert!(
-                                !is_near || beyond <= 2.0 * f64::from(SLACK),
+                                !is_near || beyond <= 128.0 * f64::from(SLACK),
                                 "{one} {two} in round {round}"
                             );
                             kept += u64::from(is_near);

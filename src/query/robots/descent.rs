@@ -3,9 +3,10 @@
 //! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
 //! divided, until both have so few links that the balls around them are compared at once ([`Sweep`]): a robot of some dozen
 //! links has no use for its tree. What is left is measured a pack at a time. Where much is left, or there is no limit yet,
-//! the pair whose centres are nearest is measured first, which lowers the limit for the others if it is that of the
-//! nearest. Where the limit is a distance that has been found, a pair that is as far may still hold lower links, so it is
-//! looked at, unless that distance is 0 and its lowest links come after those that were found.
+//! the pair whose centres are nearest is measured first, in one pack with those [beside](Sweep::beside) it: one of them is
+//! often the nearest of all, which leaves least to be measured. Where the limit is a distance that has been found, a pair
+//! that is as far may still hold lower links, so it is looked at, unless that distance is 0 and its lowest links come after
+//! those that were found.
 
 use super::balls::{Balls, SWEPT, Sweep};
 use super::outline::SearchFrame;
@@ -113,7 +114,7 @@ impl Descent {
         self.run_from(Place { node: 0, first: 0 }, robots, limit, asked_from, visit);
     }
 
-    /// Makes ready for [`run_of_link`](Self::run_of_link).
+    /// Makes ready for two robots: all that is asked of them until the next time.
     pub fn begin(&mut self, robots: [&PlacedRobot; 2]) {
         // A robot beside itself is placed once.
         let apart = if std::ptr::eq(robots[0], robots[1]) { 1 } else { 2 };
