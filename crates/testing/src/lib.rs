@@ -4,6 +4,7 @@
 //! |---|---|
 //! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`Random`], the same anywhere |
 //! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
+//! | effort | [`rounds`], how many rounds a random test runs |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
 //! | the fuzzer | `fuzz`, bodies that take any bytes (feature `fuzz`) |
 //! | around | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
@@ -12,6 +13,7 @@ mod arcs;
 mod cases;
 pub mod certificate;
 pub mod disc_problems;
+mod effort;
 #[cfg(feature = "fuzz")]
 pub mod fuzz;
 #[cfg(feature = "gpu")]
@@ -28,6 +30,7 @@ pub mod rotation;
 
 pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, LinkCase, distance_cases, link_cases, read_lines};
+pub use effort::rounds;
 pub use random::Random;
 
 /// The answers of a batch, each of which there has to be.
