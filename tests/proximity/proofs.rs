@@ -385,7 +385,7 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
-    for seed in 0..400 {
+    for seed in 0..100 {
         let random = &mut Random::new(seed);
         let pose = random.pose(2.0);
         let length = random.between(0.05, 3.0);
@@ -459,7 +459,7 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         assert!(!said.is_yes || margin < &(least * (1.0 + 1e-9)), "{seed}: {margin} of {least}, {said:?}");
         believed += usize::from(said.is_yes);
     }
-    assert!(believed > 300 && flats > 200, "{believed} {flats}");
+    assert!(believed > 75 && flats > 50, "{believed} {flats}");
 }
 
 /// Files that are no proofs, or no meshes of triangles: one line says no, and what it quotes is escaped.
@@ -471,8 +471,9 @@ fn malformed_files_are_refused() {
     let chain = search.prove(&robot, &Pose::IDENTITY, 0.5).unwrap().unwrap().to_string();
     let tube =
         search.prove_tube(&Tube::from(&robot), &Pose::IDENTITY, 0.5, 0.01).unwrap().unwrap().to_string();
-    let away = Pose::from_translation(Vector::Y);
-    let pushed = RigidMotion::new(Tube::from(&robot), [Pose::IDENTITY, away]).unwrap();
+    // Over the triangle from one side to the other.
+    let [from, to] = [-6.0, 6.0].map(|x| Pose::from_translation(Vector::X * x));
+    let pushed = RigidMotion::new(Tube::from(&robot), [from, to]).unwrap();
     let motion = search.prove_motion(&pushed, 0.5, 0.01).unwrap().unwrap();
     assert!(motion.shapes() > 1);
     let motion = motion.to_string();
@@ -636,7 +637,7 @@ fn what_is_believed_of_a_changed_text_is_true() {
     let mesh = obj(&search);
     let random = &mut Random::new(8);
     let (mut checks, mut texts) = (Checks::new("changed"), Vec::new());
-    for _ in 0..600 {
+    for _ in 0..250 {
         let mut text = proof.clone().into_bytes();
         for _ in 0..=random.below(2) {
             let at = random.below(text.len() as u32) as usize;
@@ -677,7 +678,7 @@ fn what_is_believed_of_a_changed_text_is_true() {
             }
         }
     }
-    assert!(believed > 20 && refused > 200, "{believed} {refused}");
+    assert!(believed > 8 && refused > 80, "{believed} {refused}");
 }
 
 /// Tubes and motions, beside and through what the library itself decides.
