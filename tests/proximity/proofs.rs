@@ -58,7 +58,7 @@ impl Checks {
         Self { folder, files: Vec::new() }
     }
 
-    fn add(&mut self, mesh: impl AsRef<[u8]>, proof: impl AsRef<[u8]>) {
+    fn add(&mut self, mesh: &(impl AsRef<[u8]> + ?Sized), proof: &(impl AsRef<[u8]> + ?Sized)) {
         for (text, kind) in [(mesh.as_ref(), "obj"), (proof.as_ref(), "txt")] {
             let path = self.folder.join(format!("{}.{kind}", self.files.len()));
             fs::write(&path, text).unwrap();
@@ -366,11 +366,11 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
         let tube = Tube::from(&robot);
         for share in [0.5, 0.999] {
             let proof = search.prove(&robot, &pose, share * distance).unwrap();
-            checks.add(&mesh, proof.unwrap_or_else(|| panic!("{seed}: no proof")).to_string());
+            checks.add(&mesh, &proof.unwrap_or_else(|| panic!("{seed}: no proof")).to_string());
             let proof = search.prove_tube(&tube, &pose, share * distance, 1e-4 * distance).unwrap();
             let proof = proof.unwrap_or_else(|| panic!("{seed}: no proof of the tube")).to_string();
             assert!(proof.contains(" fr "), "{proof}");
-            checks.add(&mesh, proof);
+            checks.add(&mesh, &proof);
         }
         assert_eq!(search.prove(&robot, &pose, distance).unwrap(), None);
         assert_eq!(search.prove_tube(&tube, &pose, distance, 1e-4 * distance).unwrap(), None);
@@ -443,7 +443,7 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
                 let points = stated.map(|p| format!("{:?} {:?} {:?}", p.x, p.y, p.z)).join("\n");
                 checks.add(
                     &mesh,
-                    format!(
+                    &format!(
                         "proof of clearance 1\n{name}\nmargin {margin:?}\ntube 1\nshape 1\n{points}\n{stated_piece}\nsteps 1\n\
                          {a},{b},{c}\nend\n"
                     ),
@@ -615,8 +615,8 @@ fn malformed_files_are_refused() {
         checks.add(mesh, proof);
     }
     // A file of bytes that are no text.
-    checks.add([0xff, 0xfe, b'v'], &chain);
-    checks.add(&mesh, [b'p', 0xff, 0x9b]);
+    checks.add(&[0xff, 0xfe, b'v'], &chain);
+    checks.add(&mesh, &[b'p', 0xff, 0x9b]);
     let Some(said) = checks.run() else { return };
     let (taken, refused) = said.split_at(right.len());
     for (said, (mesh, proof)) in taken.iter().zip(&right) {
