@@ -5,15 +5,37 @@
 //! - `u`: the unit roundoff of the scalar.
 //!
 //! # Why
-//! The point of one body that lies deepest in the other is often one of a flat cap's plane. Rounding puts it before or behind the
-//! plane. Then every candidate is the distance of two points that lie a few u of the extent apart, although the bodies
-//! overlap deeply: two cylinders side by side whose ends are level, for example.
+//! The point of one body that lies deepest in the other is often one of a flat cap's plane.
+//! Rounding puts it before or behind the plane. Then every candidate is the distance of two points
+//! that lie a few u of the extent apart, although the bodies overlap deeply: two cylinders side by
+//! side whose ends are level, for example.
 //!
 //! # Rule
-//! Where a flat cap decides, a computed distance of at most [`ROUNDING`] u extent is 0. The kernels err by less, so bodies
-//! that overlap are never apart. The answer errs by twice as much at most: it is 0 only for a true distance of at most
-//! 16 u extent.
-//! The witness of both bodies is the middle between the two points, half of [`ROUNDING`] u extent from either.
+//! Where a flat cap decides, a computed distance of at most [`ROUNDING`] u extent is 0. The witness
+//! of both bodies is the middle between the two points, half of [`ROUNDING`] u extent from either.
+//!
+//! # Claim
+//! If the kernel errs by at most 8 u extent, bodies that overlap are never apart, and the answer
+//! errs by at most 16 u extent.
+//!
+//! # Proof
+//! 1. Bodies that overlap are 0 apart, so the computed distance is at most 8 u extent: the rule
+//!    makes it 0.
+//! 2. The rule changes a computed distance by at most 8 u extent, which adds to the error of the
+//!    kernel.
+//!
+//! # Rounding
+//! The candidates at a flat cap are `hypot(l, max(0, rho - r))` of a point `x`, seen from the cap's
+//! centre: `l = <x, a>` is its height and `rho` its distance from the axis. Let all numbers be at
+//! most 1.
+//! - A coordinate of `x` errs by u, and the height of `x` by less than 2 u for that.
+//! - The unit vector `a` errs by 2 u along itself, and by less than u across.
+//! - The sum of three products errs by up to 3 u of the sum of their magnitudes.
+//!
+//! This bounds one candidate for a given `x`, not the place of `x`: the kernels' iterations have no
+//! short bound, so 8 u is measured. 60,000 pairs of links in `f32` and `f64`, level, coaxial,
+//! crossing and in general: 1.1 u if they overlap deeply, 3.9 u if they nearly touch. The worst of
+//! all references is 6.1 u. Triangles deep in a link: 0.
 
 use super::{Closest, Scalar, Vec3};
 

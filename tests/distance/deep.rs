@@ -86,7 +86,8 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
         }
         // On one axis: the end of the one is in the other, or faces lie in one plane.
         4 => {
-            let shift = [0.0, length - other, random.between(-0.8 * other, 0.8 * length)][random.below(3) as usize];
+            let shift =
+                [0.0, length - other, random.between(-0.8 * other, 0.8 * length)][random.below(3) as usize];
             ([shift, shift + other], 0.5 * (shift.max(0.0) + length.min(shift + other)))
         }
         _ => ([0.0; 2], 0.0),
@@ -101,13 +102,20 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
             let from = [0.0, -0.5 * other, -other][random.below(3) as usize];
             let ends = [from, from + other].map(|x| Vector::X * x + along(at));
             let low = (at - radii[1]).max(0.0);
-            let x = if from == 0.0 { 0.5 } else if from == -other { -0.5 } else { 0.0 };
+            let x = if from == 0.0 {
+                0.5
+            } else if from == -other {
+                -0.5
+            } else {
+                0.0
+            };
             let x = x * radii[0].min(other);
             (ends, Vector::X * x + along(0.5 * (low + length.min(at + radii[1]))))
         }
         // In any direction from a point of the first.
         _ => {
-            let inside = along(length * random.between(0.1, 0.9)) + Vector::X * (0.8 * radii[0] * random.unit());
+            let inside =
+                along(length * random.between(0.1, 0.9)) + Vector::X * (0.8 * radii[0] * random.unit());
             let way = random.direction() * other;
             let share = random.between(0.1, 0.9);
             ([inside - way * share, inside + way * (1.0 - share)], inside)
@@ -177,7 +185,10 @@ fn link_and_triangle(random: &mut Random, kind: usize) -> (Link, [Vector; 3], Ve
     let (triangle, inside) = match kind {
         // Through the axis, with one corner, an edge in the plane of the cap.
         0 => ([at(0.0, 0.0, length), at(wide, 0.0, z), at(-wide, 0.0, z)], at(0.0, 0.0, 0.5 * (z + length))),
-        1 => ([at(-wide, 0.0, length), at(wide, 0.0, length), at(0.0, 0.0, z)], at(0.0, 0.0, 0.5 * (z + length))),
+        1 => (
+            [at(-wide, 0.0, length), at(wide, 0.0, length), at(0.0, 0.0, z)],
+            at(0.0, 0.0, 0.5 * (z + length)),
+        ),
         // Beside the axis.
         2 => ([at(-wide, x, length), at(wide, x, length), at(0.0, x, z)], at(0.0, x, 0.5 * (z + length))),
         // From one cap's plane to the other's.
@@ -186,7 +197,10 @@ fn link_and_triangle(random: &mut Random, kind: usize) -> (Link, [Vector; 3], Ve
         4 => ([at(0.0, 0.0, length), at(wide, 0.0, z - wide), at(wide, 0.1, z)], Vector::ZERO),
         5 => ([at(-wide, -wide, z), at(wide, -wide, z), at(x, wide, z)], at(0.3 * x, 0.0, z)),
         // Edge-on, from outside through the rim.
-        6 => ([at(x, 0.0, length), at(radius + wide, 0.0, length), at(x, 0.0, z)], at(x, 0.0, 0.5 * (z + length))),
+        6 => (
+            [at(x, 0.0, length), at(radius + wide, 0.0, length), at(x, 0.0, z)],
+            at(x, 0.0, 0.5 * (z + length)),
+        ),
         _ => {
             let inside = at(x, 0.0, z);
             let [one, two] = [random.direction() * wide, random.direction() * wide];

@@ -149,10 +149,16 @@ impl Descent {
                 self.waiting.extend([high, low]);
                 continue;
             }
-            self.run_from(place, robots, Limit::of(limit), |_| 0, |found| {
-                visit(visitor, found.links, found.distance);
-                Limit::of(limit)
-            });
+            self.run_from(
+                place,
+                robots,
+                Limit::of(limit),
+                |_| 0,
+                |found| {
+                    visit(visitor, found.links, found.distance);
+                    Limit::of(limit)
+                },
+            );
             end_group(visitor);
         }
     }
@@ -258,7 +264,9 @@ impl Descent {
         let mut near = [0; SWEPT];
         let find_near = |limit: Real, near: &mut [u64; SWEPT]| {
             let count = sweep.near(*level, limit, near);
-            heights.as_ref().map_or(count, |heights| heights.keep_near(limit, &mut near[..sweep.links[0].len()]))
+            heights
+                .as_ref()
+                .map_or(count, |heights| heights.keep_near(limit, &mut near[..sweep.links[0].len()]))
         };
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;

@@ -8,7 +8,7 @@ use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
 /// So many pairs of links are kept at once where all places within a margin are asked for: some megabytes.
-const MOST_PAIRS: usize = 1 << 18;
+const MOST_PAIRS: usize = 1 << 16;
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
