@@ -131,12 +131,15 @@ impl<T: Scalar> TwoLinks<T> {
         // Of a point in the plane of a cap rounding may say that it is beyond it; the other link's point may be within.
         let (distance, point1) = first.closest_to(closest.point2);
         let back = Closest { distance, point1, point2: closest.point2 };
-        let closest = closest.nearer(back);
+        let forth = closest;
+        let closest = forth.nearer(back);
         let doubtful = touching::is_doubtful(closest.distance);
         if !may(doubtful) {
             return closest;
         }
+        // Rounding alone may have put a point beyond a flat cap that none of the cases names.
         let measured_at_cap = first.flat_ends_facing(closest.point2).any()
+            | second.flat_ends_facing(forth.point1 - *second_start).any()
             | second.flat_ends_facing(closest.point1 - *second_start).any();
         self.touching(at_flat | first_ends.any() | measured_at_cap, closest)
     }
