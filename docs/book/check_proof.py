@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Checks a proof of clearance: python3 check_proof.py MESH.obj PROOF.txt
 
-Reads a mesh (Wavefront OBJ, triangles) and a proof as docs/book/proofs.md describes it. What is decided is decided in whole
-numbers: a double is a whole number times a power of two, so that nothing is rounded. Only the order in which triangles are
-divided into groups compares differences of doubles, and any order would do. Prints what the proof takes for granted, and
-`yes`, or `no` with the reason. The exit status is 0 for yes and 1 for no.
+Reads a mesh (Wavefront OBJ, triangles) and a proof, both as docs/book/proofs.md describes them. All
+decisions are made in whole numbers: a double is a whole number times a power of two, so nothing is
+rounded. Only the order in which triangles are divided into groups compares differences of doubles,
+and any order would do. Prints the premises of the proof and what it does not cover, then `yes`; or
+one line, `no` with the reason. The exit status is 0 for yes and 1 for no.
 """
 
 import hashlib
@@ -17,6 +18,16 @@ from math import isqrt
 NAMES = {"chain": [], "tube": ["curvature", "length", "off"]}
 NAMES["motion"] = NAMES["tube"] + ["speed", "turn"]
 
+# OBJ statements that neither add nor move a triangle.
+OTHER_STATEMENTS = {"vn", "vt", "o", "g", "s", "usemtl", "mtllib"}
+CORNER = re.compile("([1-9][0-9]{0,8})(/[1-9][0-9]{0,8}|/([1-9][0-9]{0,8})?/[1-9][0-9]{0,8})?")
+
+NOT_COVERED = """Not covered, for you to compare:
+  - the side of the wall: the robot may be on either side of a surface, or outside of a closed one
+  - the premises: that the mesh is your wall, and that these lines describe all of your robot.
+Caps are for start and end: f is the disc across the centreline, r the half ball beyond that disc.
+Between two round caps the centreline has whole balls. The premises:"""
+
 
 class No(Exception):
     """The proof does not show what it claims."""
@@ -27,11 +38,29 @@ def need(condition, reason):
         raise No(reason)
 
 
+def shown(text):
+    """What a file says, as it may be printed: escaped, and not more than 40 characters of it."""
+    return ascii(text[:40]) + ("..." if len(text) > 40 else "")
+
+
+def lines(text):
+    """The lines of a file, one character per byte. LF or CR LF ends a line."""
+    text = text.decode("latin-1").replace("\r\n", "\n")
+    need("\r" not in text, "a line ends with CR alone")
+    return text.split("\n")
+
+
+def words(line):
+    """The words of a line, between blanks and tabs. What stands behind a # is no part of it."""
+    return [word for word in re.split("[ \t]+", line.split("#")[0]) if word]
+
+
 def number(word):
     """The double nearest to a decimal."""
-    need(re.fullmatch(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?", word), f"'{word}' is no number")
+    is_number = re.fullmatch(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?", word)
+    need(is_number, f"{shown(word)} is no number")
     value = float(word)
-    need(value - value == 0, f"'{word}' is out of range")
+    need(value - value == 0, f"{shown(word)} is out of range")
     return value
 
 
@@ -51,10 +80,10 @@ def dot(a, b):
 
 
 class Words:
-    """The words of a proof, one after another. What stands behind a # is no part of it."""
+    """The words of a proof, one after another."""
 
     def __init__(self, text):
-        self.words = [word for line in text.splitlines() for word in line.split("#")[0].split()]
+        self.words = [word for line in lines(text) for word in words(line)]
         self.words.reverse()
 
     def next(self):
@@ -64,11 +93,11 @@ class Words:
     def expect(self, text):
         for word in text.split():
             found = self.next()
-            need(found == word, f"'{found}' stands where '{word}' should")
+            need(found == word, f"{shown(found)} stands where '{word}' should")
 
     def count(self):
         word = self.next()
-        need(re.fullmatch(r"[0-9]{1,9}", word), f"'{word}' is no count")
+        need(re.fullmatch(r"[0-9]{1,9}", word), f"{shown(word)} is no count")
         return int(word)
 
     def number(self):
@@ -81,23 +110,31 @@ class Words:
 
 
 class Mesh:
-    def __init__(self, path):
+    def __init__(self, text):
         self.vertices, self.triangles, self.groups = [], [], {}
-        with open(path, encoding="utf-8-sig") as lines:
-            for line in lines:
-                words = line.split()
-                if words[:1] == ["v"]:
-                    need(len(words) > 3, "a vertex of the mesh has not three coordinates")
-                    self.vertices.append(tuple(number(word) for word in words[1:4]))
-                elif words[:1] == ["f"]:
-                    need(len(words) == 4, "a face of the mesh is not a triangle")
-                    self.triangles.append(tuple(int(word.split("/")[0]) - 1 for word in words[1:]))
+        for line in lines(text.removeprefix(b"\xef\xbb\xbf")):
+            # Some readers join such a line with the next one, a comment too.
+            need(not line.rstrip(" \t").endswith("\\"), f"{shown(line)} is continued")
+            kind, *rest = words(line) or [""]
+            if kind == "v":
+                # Three coordinates, and perhaps a colour. A weight would move the vertex.
+                need(len(rest) in (3, 6), f"{shown(line)} is not a vertex with three coordinates")
+                self.vertices.append(tuple([number(word) for word in rest][:3]))
+            elif kind == "f":
+                need(len(rest) == 3, f"{shown(line)} is not a triangle")
+                corners = [CORNER.fullmatch(word) for word in rest]
+                need(all(corners), f"{shown(line)} does not name three vertices, counted from 1")
+                self.triangles.append(tuple(int(corner[1]) - 1 for corner in corners))
+            else:
+                need(not kind or kind in OTHER_STATEMENTS, f"{shown(line)} is not known of a mesh")
         count, corners = len(self.vertices), self.triangles
-        need(corners and all(0 <= i < count for three in corners for i in three), "a face names no vertex")
+        need(corners, "the mesh has no triangle")
+        need(all(i < count for three in corners for i in three), "a face names no vertex")
         self.low = [tuple(map(min, *(self.vertices[i] for i in three))) for three in corners]
 
     def digest(self):
-        """SHA-256 over all coordinates as doubles, then the numbers of all corners from 0 on, little-endian."""
+        """SHA-256 over all coordinates as doubles, then the numbers of all corners from 0 on,
+        little-endian."""
         sha = hashlib.sha256()
         for vertex in self.vertices:
             # 0 and -0 are one place.
@@ -107,15 +144,18 @@ class Mesh:
         return sha.hexdigest()
 
     def group(self, path):
-        """The group that halvings lead to, '' for all: its triangles, its vertices, and the box around them."""
+        """The group that halvings lead to, '' for all: its triangles, its vertices, and the box
+        around them."""
         if path not in self.groups:
-            half = self.halves(path[:-1])[int(path[-1])] if path else range(len(self.triangles))
+            count = len(self.triangles)
+            half = self.halves(path[:-1])[int(path[-1])] if path else range(count)
             vertices = [self.whole[i] for i in {i for t in half for i in self.triangles[t]}]
             self.groups[path] = (half, vertices, [(min(x), max(x)) for x in zip(*vertices)])
         return self.groups[path]
 
     def halves(self, path):
-        """The rule: in the order of their least coordinates along the axis along which these are spread most."""
+        """The rule: in the order of their least coordinates along the axis along which these are
+        spread most."""
         triangles = self.group(path)[0]
         need(len(triangles) > 1, "one triangle is divided")
         columns = [[self.low[t][axis] for t in triangles] for axis in range(3)]
@@ -125,7 +165,8 @@ class Mesh:
         return ordered[: len(ordered) // 2], ordered[len(ordered) // 2 :]
 
     def not_above(self, path, q):
-        """Two numbers that q . v is not below for any vertex v of a group: that of the box, then the greatest there is."""
+        """Two lower bounds on q . v over the vertices v of a group: that of the box, then the
+        greatest one."""
         _, vertices, box = self.group(path)
         yield sum(min(c * low, c * high) for c, (low, high) in zip(q, box))
         a, b, c = q
@@ -133,18 +174,19 @@ class Mesh:
 
 
 class Shape:
-    """Points of the centreline, the pieces between them, and what is taken for granted of these."""
+    """Points of the centreline, the pieces between them, and the premises about these."""
 
     def __init__(self, words, kind):
         words.expect("shape")
         self.times = (words.number(), words.number()) if kind == "motion" else (0.0, 0.0)
+        self.half = (Fraction(self.times[1]) - Fraction(self.times[0])) / 2
         count = words.count()
         need(count > 0, "a shape has no piece")
-        self.points = [(words.number(), words.number(), words.number()) for _ in range(count + 1)]
+        self.points = [tuple(words.number() for _ in range(3)) for _ in range(count + 1)]
         self.pieces = []
         for _ in range(count):
             radius, caps = words.not_negative(), words.next()
-            need(re.fullmatch("[fr][fr]", caps), f"'{caps}' are no caps")
+            need(re.fullmatch("[fr][fr]", caps), f"{shown(caps)} are no caps")
             rest = {name: words.not_negative() for name in NAMES[kind]}
             self.pieces.append((radius, caps, rest))
         words.expect("steps")
@@ -152,24 +194,40 @@ class Shape:
 
     def premises(self):
         for (radius, caps, rest), start, end in zip(self.pieces, self.points, self.points[1:]):
-            yield f"  {start} to {end}: radius {radius}, caps {caps}" + "".join(f", {n} {v}" for n, v in rest.items())
+            more = "".join(f", {name} {value}" for name, value in rest.items())
+            yield f"  {start} to {end}: radius {radius}, caps {caps}{more}"
+
+    def leads_to(self, later):
+        """Whether the first and the last point of the centreline get to where they are in the next
+        shape of a motion, each as fast as its piece may move."""
+        for end in (0, -1):
+            ways = [(shape, shape.pieces[end][2]) for shape in (self, later)]
+            most = sum(shape.half * Fraction(p["speed"]) + Fraction(p["off"]) for shape, p in ways)
+            places = zip(self.points[end], later.points[end])
+            if sum((Fraction(b) - Fraction(a)) ** 2 for a, b in places) > most**2:
+                return False
+        return True
 
     def bodies(self, scale, margin):
-        """For each piece its two ends, which of them are flat, the radius of both, and how far around all of it must be
-        free, in whole numbers. The page on proofs says why such a body has the piece."""
-        half = (Fraction(self.times[1]) - Fraction(self.times[0])) / 2
+        """For each piece its two ends, which of them are flat, the radius of both, and how far
+        around all of it must be free, in whole numbers. The page on proofs says why such a body
+        contains the piece."""
         points, bodies = [whole(point, scale) for point in self.points], []
         for (r, caps, rest), start, end in zip(self.pieces, points, points[1:]):
-            rest = {name: Fraction(value) for name, value in rest.items()}
-            bend, length, off, speed, turn = (rest.get(name, Fraction(0)) for name in NAMES["motion"])
+            values = {name: Fraction(value) for name, value in rest.items()}
+            named = (values.get(name, Fraction(0)) for name in NAMES["motion"])
+            bend, length, off, speed, turn = named
+            square = sum((b - a) ** 2 for a, b in zip(start, end))
+            is_long = not rest or square <= ((length + 2 * off) * scale) ** 2
+            need(is_long, f"a piece of length {rest.get('length')} does not reach its two points")
             radius = Fraction(r) + bend * length**2 / 8 + off
-            around = margin + half * speed
+            around = margin + self.half * speed
             flat = [cap == "f" for cap in caps]
             if any(flat):
-                chord = Fraction(isqrt(sum((b - a) ** 2 for a, b in zip(start, end))), scale)
+                chord = Fraction(isqrt(square), scale)
                 need(chord > 2 * off, "a flat end has no certain direction")
                 need(bend * length <= 1, "a piece with a flat end bends too much")
-                around += half * turn * Fraction(r) + Fraction(r) * bend * length / 2
+                around += self.half * turn * Fraction(r) + Fraction(r) * bend * length / 2
                 around += off + radius * off * Fraction(22, 7) / chord
             bodies.append((start, end, flat, up(radius * scale), up(around * scale)))
         return bodies
@@ -178,10 +236,11 @@ class Shape:
 def is_below(q, level, body):
     """Whether a body, with what must be free around it, lies below the plane q . x = level.
 
-    Both its ends must be farther below than a + b, where a is how far the end reaches towards the plane and b is how far
-    around it must be free, all times |q|. Of half a ball that the plane is in front of a^2 = r^2 q^2, of a disc across the
-    axis w, or of half a ball from behind, it is r^2 (q^2 - (q . w)^2 / w^2). d > a + b is d^2 > a^2 + b^2 and
-    (d^2 - a^2 - b^2)^2 > 4 a^2 b^2, without roots."""
+    Both its ends must be farther below than a + b, where a is how far the end reaches towards the
+    plane and b is how far around it must be free, all times |q|. Of half a ball that the plane is
+    in front of a^2 = r^2 q^2, of a disc across the axis w, or of half a ball from behind, it is
+    r^2 (q^2 - (q . w)^2 / w^2). d > a + b is d^2 > a^2 + b^2 and (d^2 - a^2 - b^2)^2 > 4 a^2 b^2,
+    without roots."""
     start, end, flat, radius, around = body
     axis = tuple(to - at for at, to in zip(start, end))
     square, length, height = dot(q, q), dot(axis, axis), dot(q, axis)
@@ -211,34 +270,42 @@ def check(mesh, bodies, steps):
             middle = (first + end) // 2
             to_part += [(path, middle, end), (path, first, middle)]
         else:
-            need(re.fullmatch(r"-?[0-9]{1,30},-?[0-9]{1,30},-?[0-9]{1,30}", step), f"'{step}' is no step")
+            is_plane = re.fullmatch(r"-?[0-9]{1,30},-?[0-9]{1,30},-?[0-9]{1,30}", step)
+            need(is_plane, f"{shown(step)} is no step")
             q = tuple(int(word) for word in step.split(","))
-            levels = mesh.not_above(path, q)
-            parted = any(all(is_below(q, level, body) for body in bodies[first:end]) for level in levels)
-            need(parted, f"{step} parts not pieces {first} to {end - 1} from the triangles '{path}'")
+            run, levels = bodies[first:end], mesh.not_above(path, q)
+            parted = any(all(is_below(q, level, body) for body in run) for level in levels)
+            what = f"pieces {first} to {end - 1} from the triangles '{path}'"
+            need(parted, f"{step} parts not {what}")
             planes += 1
     need(next(steps, None) is None, "there are steps left")
     return planes
 
 
 def main(mesh_path, proof_path):
-    mesh = Mesh(mesh_path)
-    with open(proof_path, encoding="utf-8") as file:
+    with open(mesh_path, "rb") as file:
+        mesh = Mesh(file.read())
+    with open(proof_path, "rb") as file:
         words = Words(file.read())
     words.expect("proof of clearance 1 mesh")
     counts = [words.count(), words.count()]
-    need(counts == [len(mesh.vertices), len(mesh.triangles)], "the proof is about another mesh: it has other counts")
+    is_same = counts == [len(mesh.vertices), len(mesh.triangles)]
+    need(is_same, "the proof is about another mesh: it has other counts")
     need(words.next() == mesh.digest(), "the proof is about another mesh")
     words.expect("margin")
     margin, kind = words.not_negative(), words.next()
-    need(kind in NAMES, f"'{kind}' is no kind of robot")
+    need(kind in NAMES, f"{shown(kind)} is no kind of robot")
     shapes = [Shape(words, kind) for _ in range(words.count())]
     words.expect("end")
     need(not words.words, "something stands behind the end")
-    times = [time for shape in shapes for time in shape.times]
     if kind == "motion":
-        need(times[:1] == [0.0] and times[-1:] == [1.0], "the times do not reach from 0 to 1")
-        need(times[1:-1:2] == times[2::2] and times == sorted(times), "a time is left out")
+        times = [time for shape in shapes for time in shape.times]
+        reaches = times[:1] == [0.0] and times[-1:] == [1.0]
+        need(reaches, "the times do not reach from 0 to 1")
+        need(times[1:-1:2] == times[2::2], "a time is left out")
+        need(all(shape.half > 0 for shape in shapes), "an interval of time has no length")
+        follow = all(shape.leads_to(later) for shape, later in zip(shapes, shapes[1:]))
+        need(follow, "the robot jumps between two shapes: it is faster than is stated")
     else:
         need(len(shapes) == 1, "there is not one shape")
     doubles = [x for vertex in mesh.vertices for x in vertex] + [margin]
@@ -246,8 +313,10 @@ def main(mesh_path, proof_path):
     doubles += [piece[0] for shape in shapes for piece in shape.pieces]
     scale = max(x.as_integer_ratio()[1] for x in doubles)
     mesh.whole = [whole(vertex, scale) for vertex in mesh.vertices]
-    planes = sum(check(mesh, shape.bodies(scale, Fraction(margin)), shape.steps) for shape in shapes)
-    print(f"This {kind} keeps more than {margin} from {counts[1]} triangles, by {planes} planes. Taken for granted:")
+    bodies = (shape.bodies(scale, Fraction(margin)) for shape in shapes)
+    planes = sum(check(mesh, all_of, shape.steps) for all_of, shape in zip(bodies, shapes))
+    print(f"This {kind} keeps more than {margin} from {counts[1]} triangles, by {planes} planes.")
+    print(NOT_COVERED)
     for shape in shapes:
         if kind == "motion":
             print(f" from t = {shape.times[0]} to {shape.times[1]}, at their middle:")
@@ -260,6 +329,8 @@ if __name__ == "__main__":
     try:
         main(*sys.argv[1:])
         print("yes")
-    except (No, OSError, ValueError) as reason:
-        print(f"no: {reason}")
+    except Exception as reason:  # Whatever cannot be read is no proof.
+        # A `No` is escaped already where it quotes a file.
+        text = str(reason) if isinstance(reason, No) else ascii(f"{type(reason).__name__}: {reason}")
+        print("no: " + text)
         sys.exit(1)

@@ -41,6 +41,7 @@ mod scalar;
 mod segment_disc;
 mod segment_segment;
 mod segment_triangle;
+mod touching;
 mod triangle_disc;
 mod triangle_modified_cylinder;
 mod unfused;

@@ -28,7 +28,7 @@
 
 use super::point_modified_cylinder::Link;
 use super::segment_segment::{Parameters, parameters};
-use super::{Closest, Convex, DiscSolver, Scalar, Vec3, disc_disc, frame::Frame};
+use super::{Closest, Convex, DiscSolver, Scalar, Vec3, disc_disc, frame::Frame, touching};
 
 /// The distance between two solid modified cylinders, each with the two ends of its axis, its radius, and which of its two
 /// caps are flat. Where the two meet, both points are a common one.
@@ -127,11 +127,29 @@ impl<T: Scalar> TwoLinks<T> {
             first_ends = first_ends.unless(at_flat, first.flat_ends_facing(on_disc));
         }
         // Cases 3 and 4.
-        let closest = self.nearer_from_disc(first_ends.any(), first_ends.centre(first), closest, may);
+        let closest = self.nearer_from_disc(first_ends.any(), first_ends.centre(first), closest, &may);
         // Of a point in the plane of a cap rounding may say that it is beyond it; the other link's point may be within.
         let (distance, point1) = first.closest_to(closest.point2);
         let back = Closest { distance, point1, point2: closest.point2 };
-        closest.nearer(back)
+        let forth = closest;
+        let closest = forth.nearer(back);
+        let doubtful = touching::is_doubtful(closest.distance);
+        if !may(doubtful) {
+            return closest;
+        }
+        // Rounding alone may have put a point beyond a flat cap that none of the cases names.
+        let measured_at_cap = first.flat_ends_facing(closest.point2).any()
+            | second.flat_ends_facing(forth.point1 - *second_start).any()
+            | second.flat_ends_facing(closest.point1 - *second_start).any();
+        self.touching(at_flat | first_ends.any() | measured_at_cap, closest)
+    }
+
+    /// The same, with distances at flat caps that rounding cannot tell from 0 as 0.
+    #[inline(always)]
+    fn touching(&self, at_cap: T::Mask, closest: Closest<T>) -> Closest<T> {
+        let Self { first, second, second_start } = self;
+        let points = [first.end, *second_start, *second_start + second.end];
+        touching::settle(closest, at_cap, touching::extent(points, first.radius.max(second.radius)))
     }
 
     /// The closest points of the flat cap around one end of the first link, which has a length, and the second link. `may` is
@@ -139,16 +157,24 @@ impl<T: Scalar> TwoLinks<T> {
     #[inline(always)]
     pub(crate) fn closest_to_cap(&self, centre: Vec3<T>, may: impl Fn(T::Mask) -> bool) -> Closest<T> {
         let everywhere = self.first.radius.le(self.first.radius);
-        self.nearer_from_disc(everywhere, centre, self.with_nearest_of_second(centre), may)
+        let closest = self.nearer_from_disc(everywhere, centre, self.with_nearest_of_second(centre), may);
+        self.touching(everywhere, closest)
     }
 
     /// The closest points of two flat caps, each around one end of its link. Both are seen from the first link's start.
     #[inline(always)]
-    pub(crate) fn closest_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
+    fn between_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
         let [centre1, centre2] = centres;
         let radii = [self.first.radius, self.second.radius];
         let discs = disc_disc::from_centre(radii, [self.first.axis, self.second.axis], centre2 - centre1);
         Closest { point1: discs.point1 + centre1, point2: discs.point2 + centre1, ..discs }
+    }
+
+    /// The closest points of two flat caps, as [`closest_to_cap`](Self::closest_to_cap) has them.
+    #[inline(always)]
+    pub(crate) fn closest_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
+        let everywhere = self.first.radius.le(self.first.radius);
+        self.touching(everywhere, self.between_caps(centres))
     }
 
     /// Cases 3 and 4 where the mask is true, with the disc of the first link around `centre`, if they are nearer than what is
@@ -173,7 +199,7 @@ impl<T: Scalar> TwoLinks<T> {
         if !may(both) {
             return closest;
         }
-        let discs = self.closest_caps([centre, *second_start + second_ends.centre(second)]);
+        let discs = self.between_caps([centre, *second_start + second_ends.centre(second)]);
         nearer_where(both, closest, discs)
     }
 

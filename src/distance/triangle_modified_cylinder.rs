@@ -19,11 +19,12 @@
 //! to points of the link, so that the lesser is right wherever either is. A triangle that begins in the plane of a
 //! cap and reaches into the link has both as small as rounding, yet it overlaps the link deeply. So the way from p* to
 //! the triangle's deepest vertex is a third candidate: where it passes through the disc the two have a common point.
+//! What is left of rounding in case 2 counts as 0 by the rule of [`touching`].
 
 use super::point_modified_cylinder::Link;
 use super::{
     Closest, Convex, DiscSolver, Mask, Scalar, Vec3, bounds, face::Face, frame::Frame, segment_triangle,
-    triangle_disc,
+    touching, triangle_disc,
 };
 
 /// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to (33).
@@ -156,7 +157,9 @@ impl<T: Scalar> Axial<T> {
         let (passes, point) = self.way_in(link, face);
         let zero = link.radius.zero();
         let met = Closest { distance: zero, point1: point, point2: point };
-        Closest::select(beyond & passes & zero.lt(nearer.distance), met, nearer)
+        let closest = Closest::select(beyond & passes & zero.lt(nearer.distance), met, nearer);
+        let [a, b, c] = face.vertices;
+        touching::settle(closest, beyond, touching::extent([link.end, a, b, c], link.radius))
     }
 
     /// Whether the way from p* to the vertex that lies deepest behind the cap passes through the disc, and where.

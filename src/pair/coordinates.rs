@@ -10,8 +10,9 @@ use super::placed_link::PlacedLink;
 use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2.
-pub(super) const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2: 64 u, and another 64 u by which a
+/// distance at a flat cap may be measured too short, which is 16 u of an extent below 4.
+pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
 /// A link in the mesh's frame, or a pack of them.
 #[derive(Clone, Copy)]

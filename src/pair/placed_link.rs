@@ -132,7 +132,7 @@ impl PlacedLink {
         let axial = Axial::new(&pair.link, &face);
         let closest = if !axial.beyond_flat_cap() {
             axial.without_caps(&pair.link)
-        } else if axial.cap_bounds(&pair.link, &face).0 * pair.unit > bound {
+        } else if (axial.cap_bounds(&pair.link, &face).0 - SLACK) * pair.unit > bound {
             return None;
         } else {
             axial.with_caps(&pair.link, &face)

@@ -92,6 +92,21 @@ impl PlacedTube<'_> {
         }
     }
 
+    /// The body of a piece without its outermost layer: `depth` times twice what the body is larger than the piece, and than what
+    /// rounding can do. Nothing where no more is left of it.
+    pub(super) fn core(&self, piece: &Piece, outer: &Outer, depth: Real) -> Option<PlacedLink> {
+        let (body, radius) = (&outer.body, self.section(piece.section).radius);
+        let layer = depth * 2.0 * ((body.radius() - radius).max(outer.over) + self.slack);
+        let inward = Vector::from(body.axis()) * (2.0 * layer);
+        let [start, end] = body.flat();
+        let ends = [
+            if start { body.start() + inward } else { body.start() },
+            if end { body.end() - inward } else { body.end() },
+        ];
+        let is_left = layer < 0.5 * radius && (ends[1] - ends[0]).dot(Vector::from(body.axis())) > 0.0;
+        is_left.then(|| PlacedLink::between(ends[0], ends[1], radius - layer, body.flat()))
+    }
+
     /// A body that holds the piece.
     pub(crate) fn outer(&self, piece: &Piece) -> Outer {
         let section = self.section(piece.section);

@@ -116,16 +116,19 @@ fn bodies_hold_their_pieces() {
     );
 }
 
-/// The distance of a point from the discs of the tube, by ever finer sampling; and from its balls at round ends, unless
-/// the section's own face is near.
+/// The distance of a point from the discs of the tube, by ever finer sampling; and from the half balls beyond the discs at
+/// round ends. The other half of such a ball may stick out of the section's own face, and is no part of the tube.
 fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     let section = &tube.sections()[number];
     let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
     let end = start + arcs.stretches[number].length;
     let mut least = distance_from_discs(arcs, [start, end], section.radius, x);
     for (end, s) in [start, end].into_iter().enumerate() {
-        if section.faces[end].is_none() {
-            least = least.min(((x - arcs.at(s).0).length() - section.radius).max(0.0));
+        let (centre, tangent) = arcs.at(s);
+        let ahead = (x - centre).dot(tangent) * if end == 0 { -1.0 } else { 1.0 };
+        // Of what is not ahead of a half ball its disc is nearest.
+        if section.faces[end].is_none() && ahead > 0.0 {
+            least = least.min(((x - centre).length() - section.radius).max(0.0));
         }
     }
     least
@@ -191,8 +194,75 @@ fn witnesses_are_no_nearer_than_the_tube() {
             }
         }
     }
-    assert!(checked > 3_000 && touching > 300 && ahead > 300, "{checked} {touching} {ahead}");
+    assert!(checked > 3_000 && touching > 200 && ahead > 300, "{checked} {touching} {ahead}");
     println!("{loose}");
+}
+
+/// Sections with one flat and one round end that are shorter than their radius, straight as a chain's links and bent. A point
+/// ahead of the face is as far away as the face, though the whole ball at the other end would hold it.
+#[test]
+fn witnesses_know_that_a_short_section_ends_at_its_face() {
+    let mut random = Random::new(4);
+    let (mut links, mut bent, mut tight) = (0, 0, 0);
+    for _ in 0..300 {
+        let radius = random.between(0.2, 2.0);
+        let mut arc = |least: Real, most: Real| {
+            let angle = random.between(0.0, 7.0);
+            let bend = [0.0, random.between(0.3, 0.95) / radius][random.below(2) as usize];
+            (radius * random.between(least, most), Vector::new(angle.cos(), angle.sin(), 0.0) * bend)
+        };
+        let (short, long) = (arc(0.02, 0.9), arc(1.0, 3.0));
+        let wider = radius * [1.0, 1.1][random.below(2) as usize];
+        let mut arcs = Arcs::from_frame(random.pose(10.0));
+        let is_turned = random.below(2) == 1;
+        if is_turned {
+            arcs.push(wider, &[long]);
+        }
+        arcs.push(radius, &[short]);
+        if !is_turned {
+            arcs.push(wider, &[long]);
+        }
+        let (arcs, number) = (Arc::new(arcs), usize::from(is_turned));
+        let points = [0.0, arcs.stretches[0].length, arcs.length()].map(|s| arcs.at(s).0);
+        let chain = crate::Chain::from_centreline(
+            &points,
+            &arcs.stretches.iter().map(|stretch| stretch.radius).collect::<Vec<_>>(),
+        )
+        .unwrap();
+        let straight = Tube::from(&chain);
+        let curved = tubes(&mut random, &arcs);
+        for tube in std::iter::once(&straight).chain(curved.iter().filter(|tube| tube.sections().len() == 2))
+        {
+            let section = &tube.sections()[number];
+            let end = number;
+            let (Some(face), None) = (section.faces[end], section.faces[1 - end]) else {
+                continue;
+            };
+            let placed = PlacedTube::new(tube, &Pose::IDENTITY, 0.0).unwrap();
+            let (link, is_link) = (&chain.links()[number], std::ptr::eq(tube, &straight));
+            let other = [link.end(), link.start()][end];
+            for _ in 0..10 {
+                let across = face.outward.cross(random.direction()) * random.between(0.0, radius);
+                let x = face.centre + across + face.outward * (radius * random.between(-0.2, 1.0));
+                let witness = placed.near(number as u32, random.between(section.start, section.end), x);
+                let truth = if is_link {
+                    let [start, end] = [link.start(), link.end()].map(Vec3::from);
+                    point_modified_cylinder(Vec3::from(x), start, end, radius, link.flat()).distance
+                } else {
+                    distance(&arcs, tube, number, x)
+                };
+                assert!(
+                    witness.upper >= truth - 1e-6 * radius,
+                    "{witness:?} but {truth} from {x} to {section:?}"
+                );
+                let in_ball = truth > 0.01 * radius && (x - other).length() < radius;
+                links += usize::from(is_link && in_ball);
+                bent += usize::from(!is_link && in_ball);
+                tight += usize::from(is_link && witness.upper <= truth + 1e-9 * radius);
+            }
+        }
+    }
+    assert!(links > 300 && bent > 300 && tight > 300, "{links} {bent} {tight}");
 }
 
 /// What a ball adds to its own section is in the discs of others: the tube is its discs. The joint is about one radius

@@ -26,6 +26,9 @@ const MOST_MOVES: u32 = 4;
 /// By how much farther than to its surface y moves into a tube.
 const INTO: Real = 1.125;
 
+/// How many cores are tried of two bodies that overlap.
+const MOST_CORES: u32 = 4;
+
 /// Two tubes in one frame.
 #[derive(Clone, Copy)]
 pub(crate) struct TwoTubes<'a> {
@@ -63,6 +66,13 @@ impl FoundBetween {
     pub(crate) fn faster(&self, speeds: [Real; 2]) -> (usize, Real) {
         let k = usize::from(speeds[1] > speeds[0]);
         (self.sections[k] as usize, speeds[k])
+    }
+}
+
+impl FoundBetween {
+    /// The lesser of two bounds, the first of equals.
+    fn nearer(self, other: Self) -> Self {
+        if other.upper < self.upper { other } else { self }
     }
 }
 
@@ -289,8 +299,26 @@ impl Divided for TwoTubes<'_> {
         }
         // A common point of the bodies may be outside of both tubes; half way between the axes it is not.
         let (feet, _) = links[0].nearest_on_axes(links[1]);
-        let deeper = self.found_from(sections, arcs_at(feet), half_way(feet, links.map(PlacedLink::radius)));
-        if deeper.upper < found.upper { deeper } else { found }
+        let mut found = found.nearer(self.found_from(
+            sections,
+            arcs_at(feet),
+            half_way(feet, links.map(PlacedLink::radius)),
+        ));
+        // At flat ends either may be in the plane of a face, which rounding cannot tell from what is before it.
+        let mut depth = 1.0;
+        for _ in 0..MOST_CORES {
+            if found.upper <= 0.0 {
+                break;
+            }
+            let cores = [0, 1].map(|k: usize| self.tubes[k].core(&pair.pieces[k], &bodies[k], depth));
+            let [Some(one), Some(two)] = cores else { break };
+            let Some(NearestOfLinks { on_first: point, .. }) = one.measure_link_within(0.0, &two) else {
+                break;
+            };
+            found = found.nearer(self.found_from(sections, arcs_at([point; 2]), point));
+            depth *= 8.0;
+        }
+        found
     }
 
     fn is_in_first(&self, found: &FoundBetween, halves: &[PiecePair; 2]) -> bool {

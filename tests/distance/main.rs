@@ -4,6 +4,7 @@ mod against_parry;
 mod cases;
 mod census;
 mod certificate;
+mod deep;
 mod discs;
 mod errata;
 mod errata_links;

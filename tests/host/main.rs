@@ -12,6 +12,7 @@ mod free_edges;
 mod halfspace;
 mod inner;
 mod joints;
+mod level_links;
 mod link_links;
 mod link_manifold;
 mod link_pairs;

@@ -119,7 +119,9 @@ fn an_edge_that_touches_a_rim_aslant_is_met_or_let_go() {
             gone += 1;
         }
     }
-    assert!(apart > 300 && met > 3000 && gone > 1500, "{apart} {met} {gone}");
+    // Rounding alone would part more than one in ten.
+    assert_eq!(apart, 0);
+    assert!(met > 3000 && gone > 1500, "{met} {gone}");
 }
 
 /// A hit at the very end of the time counts, whether the wall is a triangle or a mesh.

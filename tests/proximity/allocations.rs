@@ -307,3 +307,24 @@ fn an_exhaustive_engine_keeps_little_at_once() {
     search.within(&robot, &Pose::IDENTITY, f64::INFINITY, 0.0, &mut expected).unwrap();
     assert!(contacts.len() >= 120 && contacts == expected);
 }
+
+/// All places of two robots take as much memory as the robots and the places, and some megabytes, however many pairs of links
+/// are within the margin.
+#[test]
+fn places_of_two_robots_take_little_memory() {
+    let wave = |turn: f64| {
+        let points: Vec<_> = (0..=700)
+            .map(|k| f64::from(k) * 0.1)
+            .map(|s| Vector::new((s * turn).sin(), (s * 0.7).cos(), 0.5 * s))
+            .collect();
+        Chain::capsules(&points, &[0.01; 700]).unwrap()
+    };
+    let (a, b, away) = (wave(1.0), wave(1.3), Pose::translation(9.0, 0.0, 0.0));
+    let (mut pair, mut places) = (RobotPair::new(), Vec::new());
+    let memory = allocation_counter::measure(|| {
+        pair.within(&a, &Pose::IDENTITY, &b, &away, 1000.0, &mut places).unwrap();
+    });
+    assert!(places.len() > 10, "{}", places.len());
+    // 490,000 pairs, each of 88 bytes as an answer.
+    assert!(memory.bytes_max < 16 << 20, "{} bytes", memory.bytes_max);
+}

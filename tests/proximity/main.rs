@@ -13,6 +13,7 @@ mod discs;
 mod far_parts;
 mod fuzz;
 mod large;
+mod level_links;
 mod measured;
 mod motion;
 mod moved;

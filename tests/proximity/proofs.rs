@@ -5,10 +5,12 @@ use super::contacts::{small_mesh, small_robot};
 use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::Random;
+use continuum_testing::narrow_phase::triangle_modified_cylinder;
+use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{BvhSearch, Proof, Proximity};
-use parry_continuum::{Chain, LinearMotion, RigidMotion, Tube, TubeSection};
+use parry_continuum::{Cap, Chain, LinearMotion, RigidMotion, Tube, TubeSection};
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
@@ -27,8 +29,10 @@ for mesh, proof in zip(names[::2], names[1::2]):
         with contextlib.redirect_stdout(said):
             check_proof.main(mesh, proof)
         answer = 'yes'
-    except (check_proof.No, OSError, ValueError) as reason:
+        assert 'the side of the wall' in said.getvalue() and 'the premises' in said.getvalue()
+    except check_proof.No as reason:
         answer = f'no: {reason}'
+    assert answer.isascii() and answer.isprintable() and len(answer) < 300, answer
     lines = said.getvalue().replace(chr(10), '|')
     print(f'{time.process_time() - begin:.3f};{answer};{lines}')
 ";
@@ -54,8 +58,8 @@ impl Checks {
         Self { folder, files: Vec::new() }
     }
 
-    fn add(&mut self, mesh: &str, proof: &str) {
-        for (text, kind) in [(mesh, "obj"), (proof, "txt")] {
+    fn add(&mut self, mesh: &(impl AsRef<[u8]> + ?Sized), proof: &(impl AsRef<[u8]> + ?Sized)) {
+        for (text, kind) in [(mesh.as_ref(), "obj"), (proof.as_ref(), "txt")] {
             let path = self.folder.join(format!("{}.{kind}", self.files.len()));
             fs::write(&path, text).unwrap();
             self.files.push(path);
@@ -324,6 +328,357 @@ fn what_was_tampered_with_is_refused() {
     for (said, expected) in left.iter().zip(&harmless) {
         assert!(said.is_yes && said.text.contains(expected), "{expected}: {said:?}");
     }
+}
+
+/// A wall behind the flat end of a short robot, and the line of a proof that says which mesh it is.
+fn triangle_and_its_name(corners: [Vector; 3]) -> (BvhSearch, String, String) {
+    let mut search = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
+    let far = corners[0] + 1e3 * (1.0 + (corners[1] - corners[0]).length()) * Vector::X;
+    let robot = Chain::capsules(&[far, far + Vector::X], &[0.0]).unwrap();
+    let proof = search.prove(&robot, &Pose::IDENTITY, 0.0).unwrap().unwrap().to_string();
+    let name = proof.lines().nth(1).unwrap().to_owned();
+    let mesh = obj(&search);
+    (search, mesh, name)
+}
+
+/// Links, and tubes of them, that are shorter than their radius and have one flat and one round end: a proof is found up to the
+/// distance from the half ball beyond the round end's disc, believed, and found no farther.
+#[test]
+fn short_pieces_with_one_flat_end_hold_the_half_ball() {
+    let (mut checks, mut shorter) = (Checks::new("half-balls"), 0);
+    for seed in 0..60 {
+        let random = &mut Random::new(seed);
+        let pose = if seed % 2 == 0 { Pose::IDENTITY } else { random.pose(3.0) };
+        let radius = random.between(0.3, 2.0);
+        let short = radius * random.between(0.02, 0.9);
+        // The first link ends in a ball, as there is room up to the tip: it is cut off at the base.
+        let points = [Vector::ZERO, Vector::Z * short, Vector::Z * (short + 3.0 * radius)];
+        let robot = Chain::from_centreline(&points, &[radius; 2]).unwrap();
+        assert_eq!(robot.links()[0].caps(), [Cap::Flat, Cap::Round]);
+        let below = -Vector::Z * radius * random.between(0.02, 1.0 - short / radius);
+        let corner = |random: &mut Random| pose * (below + 0.05 * radius * random.point());
+        let (mut search, mesh, _) = triangle_and_its_name([corner(random), corner(random), corner(random)]);
+        let distance = search.minimum(&robot, &pose).unwrap().distance;
+        if distance <= 0.0 {
+            continue;
+        }
+        shorter += 1;
+        let tube = Tube::from(&robot);
+        for share in [0.5, 0.999] {
+            let proof = search.prove(&robot, &pose, share * distance).unwrap();
+            checks.add(&mesh, &proof.unwrap_or_else(|| panic!("{seed}: no proof")).to_string());
+            let proof = search.prove_tube(&tube, &pose, share * distance, 1e-4 * distance).unwrap();
+            let proof = proof.unwrap_or_else(|| panic!("{seed}: no proof of the tube")).to_string();
+            assert!(proof.contains(" fr "), "{proof}");
+            checks.add(&mesh, &proof);
+        }
+        assert_eq!(search.prove(&robot, &pose, distance).unwrap(), None);
+        assert_eq!(search.prove_tube(&tube, &pose, distance, 1e-4 * distance).unwrap(), None);
+    }
+    let Some(said) = checks.run() else { return };
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+    assert!(shorter > 40 && said.len() == 4 * shorter, "{shorter}");
+}
+
+/// Pieces by the page's own words, as bent, as long and as far off as it allows, beside a triangle: what is believed is true of
+/// every disc and of the half balls beyond round ends.
+#[test]
+fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
+    let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
+    for seed in 0..100 {
+        let random = &mut Random::new(seed);
+        let pose = random.pose(2.0);
+        let length = random.between(0.05, 3.0);
+        let curvature = random.between(0.0, 1.0) / length * f64::from(random.below(2));
+        let radius = random.between(0.1, 0.95) * (1.0 / curvature.max(0.1)).min(3.0);
+        let off = [0.0, 0.02 * length][random.below(2) as usize];
+        let caps = [["ff", "fr", "rf"][random.below(3) as usize], "rr"][random.below(4) as usize / 3];
+        // An arc whose ends are off by as much as is stated.
+        let at = |s: f64| {
+            let (sin, cos) = (curvature * s).sin_cos();
+            let centre = if curvature > 0.0 {
+                Vector::new((1.0 - cos) / curvature, 0.0, sin / curvature)
+            } else {
+                Vector::Z * s
+            };
+            (pose * centre, pose.rotation * Vector::new(sin, 0.0, cos))
+        };
+        let stated = [at(0.0).0, at(length).0].map(|point| point + 0.999 * off * random.direction());
+        // A triangle near the piece's surface, ahead of an end as often as beside.
+        let (centre, along) = at([0.0, length, random.between(0.0, length)][random.below(3) as usize]);
+        let way =
+            (along.cross(random.direction()) * random.unit() + along * random.between(-1.0, 1.0)).normalize();
+        let corner = centre + way * radius * random.between(0.3, 2.5);
+        let corners =
+            [corner, corner + 0.01 * radius * random.point(), corner + 0.01 * radius * random.point()];
+        let (_, mesh, name) = triangle_and_its_name(corners);
+        // How far the piece is, by its discs' rims and centres and its ends' directions.
+        let mut least = f64::INFINITY;
+        let mut visit = |point: Vector| {
+            // Toward a corner is near enough: the triangle is small.
+            least = corners.iter().fold(least, |least, corner| least.min((*corner - point).length()));
+        };
+        for k in 0..=100 {
+            let (centre, along) = at(length * f64::from(k) / 100.0);
+            let way = corner - centre;
+            let across = way - along * way.dot(along);
+            visit(centre + across * (radius / across.length()).min(1.0));
+        }
+        for (end, s) in [0.0, length].into_iter().enumerate() {
+            let (centre, along) = at(s);
+            let outward = if end == 0 { -along } else { along };
+            let way = corner - centre;
+            let is_round = &caps[end..=end] == "r";
+            if is_round && (caps == "rr" || way.dot(outward) > 0.0) {
+                visit(centre + way * (radius / way.length()).min(1.0));
+            }
+        }
+        let stated_piece = format!("{radius:?} {caps} {curvature:?} {:?} {off:?}", length * (1.0 + 1e-12));
+        for share in [0.2, 0.6, 0.9, 1.0, 1.1] {
+            let margin = share * least;
+            let way = (corner - centre.lerp(0.5 * (stated[0] + stated[1]), random.unit())).normalize()
+                * 2f64.powi(30);
+            for way in [way, along * 2f64.powi(30), -along * 2f64.powi(30)] {
+                let [a, b, c] = way.to_array().map(|number| number.round() as i64);
+                let points = stated.map(|p| format!("{:?} {:?} {:?}", p.x, p.y, p.z)).join("\n");
+                checks.add(
+                    &mesh,
+                    &format!(
+                        "proof of clearance 1\n{name}\nmargin {margin:?}\ntube 1\nshape 1\n{points}\n{stated_piece}\nsteps 1\n\
+                         {a},{b},{c}\nend\n"
+                    ),
+                );
+                nearest.push((margin, least, seed));
+            }
+        }
+        flats += usize::from(caps != "rr");
+    }
+    let Some(said) = checks.run() else { return };
+    let mut believed = 0;
+    for ((margin, least, seed), said) in nearest.iter().zip(&said) {
+        assert!(!said.is_yes || margin < &(least * (1.0 + 1e-9)), "{seed}: {margin} of {least}, {said:?}");
+        believed += usize::from(said.is_yes);
+    }
+    assert!(believed > 75 && flats > 50, "{believed} {flats}");
+}
+
+/// Files that are no proofs, or no meshes of triangles: one line says no, and what it quotes is escaped.
+#[test]
+fn malformed_files_are_refused() {
+    let (mut search, mesh, _) = triangle_and_its_name([Vector::ZERO, Vector::X, Vector::Y]);
+    let points = [Vector::new(0.2, 0.2, 2.0), Vector::new(0.2, 0.2, 3.0), Vector::new(0.2, 0.5, 4.0)];
+    let robot = Chain::from_centreline(&points, &[0.5; 2]).unwrap();
+    let chain = search.prove(&robot, &Pose::IDENTITY, 0.5).unwrap().unwrap().to_string();
+    let tube =
+        search.prove_tube(&Tube::from(&robot), &Pose::IDENTITY, 0.5, 0.01).unwrap().unwrap().to_string();
+    // Over the triangle from one side to the other.
+    let [from, to] = [-6.0, 6.0].map(|x| Pose::from_translation(Vector::X * x));
+    let pushed = RigidMotion::new(Tube::from(&robot), [from, to]).unwrap();
+    let motion = search.prove_motion(&pushed, 0.5, 0.01).unwrap().unwrap();
+    assert!(motion.shapes() > 1);
+    let motion = motion.to_string();
+    let mut checks = Checks::new("malformed");
+    let (mut right, mut wrong) = (Vec::new(), Vec::new());
+
+    // What is right in another dress.
+    let corners =
+        ["f 1/1 2/2 3/3\n", "f 1//4 2//4 3//4\n", "f 1/2/3 2/2/3 3/2/3\n", "f\t1  2 3 # the floor\n"];
+    for f in corners {
+        right.push((mesh.replace("f 1 2 3\n", f), chain.clone()));
+    }
+    let exported =
+        "# Fl\u{e4}che\nmtllib a.mtl\no floor\n\nvn 0 0 1\nvt 0 1\ng x y\nusemtl \u{1b}[32m\ns off\n";
+    right.push((format!("{exported}{mesh}"), chain.clone()));
+    right.push((mesh.replace('\n', "\r\n"), chain.replace('\n', "\r\n")));
+    right.push((mesh.replace("v 0.0 0.0 0.0", "v -0.0 0 0e0 0.5 0.5 0.5"), chain.clone()));
+    right.push((format!("\u{feff}{mesh}"), format!("# \u{1b}[2J\n{chain}# behind the end")));
+    right.push((mesh.clone(), tube.clone()));
+    right.push((mesh.clone(), motion.clone()));
+
+    for [from, to] in [
+        ["f 1 2 3", "f 1 2 0_3"],
+        ["f 1 2 3", "f 1 2 \u{663}"],
+        ["f 1 2 3", "f +1 2 3"],
+        ["f 1 2 3", "f 01 2 3"],
+        ["f 1 2 3", "f 1 2 3 1"],
+        ["f 1 2 3", "f 1 2"],
+        ["f 1 2 3", "f 1 2 4"],
+        ["f 1 2 3", "f 0 1 2"],
+        ["f 1 2 3", "f -3 -2 -1"],
+        ["f 1 2 3", "f 1/ 2/ 3/"],
+        ["f 1 2 3", "f 1/x 2/x 3/x"],
+        ["f 1 2 3", "f 1//// 2 3"],
+        ["f 1 2 3", "f 1.0 2 3"],
+        ["f 1 2 3", "f 1 2 \\\n3"],
+        ["f 1 2 3", "f 1 2 3\np 1"],
+        ["f 1 2 3", "f 1 2 3\nl 1 2"],
+        ["f 1 2 3", "f 1 2 3\nF 1 2 3"],
+        ["f 1 2 3", "f 1 2 3\nfo 1 2 3"],
+        ["f 1 2 3", "f 1 2 3\ncall other.obj"],
+        ["f 1 2 3", "f 1 2 3\n\u{1b}[2Jyes"],
+        ["f 1 2 3", "f 1 2 3\n\u{a0}f 1 2 3"],
+        ["f 1 2 3", "f 1\u{a0}2 3"],
+        ["f 1 2 3", "f 1\u{b}2 3"],
+        ["f 1 2 3", "# comment \\\nf 1 2 3"],
+        ["f 1 2 3", "# comment \rf 1 2 3"],
+        ["f 1 2 3", "f 1 2 3\0"],
+        ["f 1 2 3", ""],
+        ["v 0.0", "v 0.0 0.0"],
+        ["v 0.0", "v 0_0.0"],
+        ["v 0.0", "v \u{660}.0"],
+        ["v 0.0", "v nan"],
+        ["v 0.0", "v -inf"],
+        ["v 0.0", "v 0x0"],
+        ["v 0.0", "v 1e999"],
+        ["v 0.0", "vp 0.0"],
+        ["v 0.0 0.0", "v 0.0"],
+    ] {
+        let changed = mesh.replacen(from, to, 1);
+        assert_ne!(changed, mesh, "{from}");
+        wrong.push((changed, chain.clone()));
+    }
+    let long = "9".repeat(200_000);
+    let zeros = format!("0.{}5", "0".repeat(5_000));
+    for (proof, from, to) in [
+        // Numbers that Python reads and the page does not know.
+        (&chain, "margin 0.5", "margin 0_0.5"),
+        (&chain, "margin 0.5", "margin +0.5"),
+        (&chain, "margin 0.5", "margin .5"),
+        (&chain, "margin 0.5", "margin 5e-1_0"),
+        (&chain, "margin 0.5", "margin nan"),
+        (&chain, "margin 0.5", "margin inf"),
+        (&chain, "margin 0.5", "margin \u{661}"),
+        (&chain, "margin 0.5", "margin \u{ff11}"),
+        (&chain, "margin 0.5", "margin 1e400"),
+        (&chain, "margin 0.5", &format!("margin {long}")),
+        (&chain, "margin 0.5", "margin 1/2"),
+        (&chain, "margin 0.5", "margin\u{a0}0.5"),
+        (&chain, "margin 0.5", "margin\u{c}0.5"),
+        (&chain, "margin 0.5", "margin\u{2028}0.5"),
+        (&chain, "margin 0.5", "margin 0.5\0"),
+        (&chain, "margin 0.5", "margin 0.5\u{1b}[A"),
+        (&chain, "margin 0.5", "margin -0.5"),
+        // A line that is there twice, or in another order.
+        (&chain, "margin 0.5", "margin 0.5 margin 0.5"),
+        (&chain, "margin 0.5", "margin 0.5\nmargin 0.1"),
+        (&chain, "proof of clearance 1", "proof of clearance 1\nproof of clearance 1"),
+        (&chain, "mesh 3 1 ", "mesh 3 1 mesh 3 1 "),
+        (&chain, "mesh 3 1 ", "mesh 3 -1 "),
+        (&chain, "mesh 3 1 ", "mesh 3 1_0 "),
+        (&chain, "mesh 3 1 ", &format!("mesh {long} 1 ")),
+        // Counts.
+        (&chain, "chain 1", "chain -1"),
+        (&chain, "chain 1", "chain 0"),
+        (&chain, "chain 1", "chain 1.0"),
+        (&chain, "chain 1", "chain \u{b9}"),
+        (&chain, "chain 1", "chain 999999999"),
+        (&chain, "chain 1", "\u{1b}[2K\u{1b}[1Ayes 1"),
+        (&chain, "shape 2", "shape 999999999"),
+        (&chain, "shape 2", "shape -2"),
+        (&chain, "shape 2", "shape 0"),
+        (&chain, "steps ", "steps -"),
+        (&chain, "steps ", "steps 9999"),
+        (&chain, "0.5 f", "0.5 F"),
+        (&chain, "0.5 f", "0.5 \u{1b}[32m"),
+        (&chain, "0.5 f", "0.5 fff"),
+        (&chain, "end", "\u{1b}[2Kyes"),
+        (&chain, "end", "end yes"),
+        (&chain, "end", "end\n\u{202e}sey"),
+        // Flat, and no direction.
+        (&chain, "0.2 0.2 3.0\n", "0.2 0.2 2.0\n"),
+        // Premises that contradict one another.
+        (&tube, " 0.0 1.0", " 0.0 0.0"),
+        (&tube, " 0.0 1.0", " 0.0 0.9"),
+        (&tube, " 0.0 1.0", " 1.1 1.0"),
+        (&tube, " 0.0 1.0", " -0.1 1.0"),
+        (&tube, "0.2 0.2 3.0\n", "0.2 0.2 2.0\n"),
+        (&motion, "shape 0.0 ", "shape 0.0 0.0 "),
+    ] {
+        let changed = proof.replacen(from, to, 1);
+        assert_ne!(&changed, proof, "{from}");
+        wrong.push((mesh.clone(), changed));
+    }
+    for text in ["", "\n", "#", "proof", "\0", &zeros, &"t ".repeat(100_000), &long] {
+        wrong.push((mesh.clone(), text.to_owned()));
+        wrong.push((text.to_owned(), chain.clone()));
+    }
+    // A motion that gets from one shape to the next faster than it says, at the base or at the tip.
+    let slow = motion.lines().map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
+        [radius, caps, curvature, length, off, _, turn] => {
+            format!("{radius} {caps} {curvature} {length} {off} 0.0 {turn}\n")
+        }
+        _ => format!("{line}\n"),
+    });
+    wrong.push((mesh.clone(), slow.collect()));
+
+    for (mesh, proof) in right.iter().chain(&wrong) {
+        checks.add(mesh, proof);
+    }
+    // A file of bytes that are no text.
+    checks.add(&[0xff, 0xfe, b'v'], &chain);
+    checks.add(&mesh, &[b'p', 0xff, 0x9b]);
+    let Some(said) = checks.run() else { return };
+    let (taken, refused) = said.split_at(right.len());
+    for (said, (mesh, proof)) in taken.iter().zip(&right) {
+        assert!(said.is_yes, "{said:?}: {mesh} {proof}");
+    }
+    for (number, said) in refused.iter().enumerate() {
+        assert!(!said.is_yes, "{said:?}: {:?}", wrong.get(number));
+    }
+}
+
+/// Proofs and meshes with some bytes changed: whatever is believed then is true of the robot that is printed.
+#[test]
+fn what_is_believed_of_a_changed_text_is_true() {
+    let mut search = ball(10.0, 4);
+    let robot = Chain::from_centreline(&bend(4, 8.0, 0.1), &[0.9; 4]).unwrap();
+    let distance = search.minimum(&robot, &Pose::IDENTITY).unwrap().distance;
+    let proof = search.prove(&robot, &Pose::IDENTITY, 0.25 * distance).unwrap().unwrap().to_string();
+    let mesh = obj(&search);
+    let random = &mut Random::new(8);
+    let (mut checks, mut texts) = (Checks::new("changed"), Vec::new());
+    for _ in 0..250 {
+        let mut text = proof.clone().into_bytes();
+        for _ in 0..=random.below(2) {
+            let at = random.below(text.len() as u32) as usize;
+            let digits = b"0123456789.-e \nfr,tp#_\0\x1b\xff";
+            let to = digits[random.below(digits.len() as u32) as usize];
+            match random.below(4) {
+                0 => drop(text.remove(at)),
+                1 => text.insert(at, to),
+                _ => text[at] = to,
+            }
+        }
+        checks.add(&mesh, &text);
+        texts.push(text);
+    }
+    let Some(said) = checks.run() else { return };
+    let (mut believed, mut refused) = (0, 0);
+    for (said, text) in said.iter().zip(&texts) {
+        if !said.is_yes {
+            refused += 1;
+            continue;
+        }
+        believed += 1;
+        // yes;This chain keeps more than 0.5 from ..|  (x, y, z) to (x, y, z): radius r, caps fr|
+        let margin = said.text.split("more than ").nth(1).unwrap().split(' ').next().unwrap();
+        let margin: f64 = margin.parse().unwrap();
+        for line in said.text.split('|').filter(|line| line.starts_with("  (")) {
+            let numbers: Vec<f64> = line
+                .split(|c: char| !(c.is_ascii_digit() || ".-+e".contains(c)))
+                .filter_map(|word| word.parse().ok())
+                .collect();
+            let caps = line.split("caps ").nth(1).unwrap().as_bytes();
+            let flat = [caps[0] == b'f', caps[1] == b'f'];
+            let [start, end] = [0, 3].map(|k| Vec3::new(numbers[k], numbers[k + 1], numbers[k + 2]));
+            for [a, b, c] in search.triangles() {
+                let corners = [a, b, c].map(|&corner| search.vertices()[corner as usize].into());
+                let distance = triangle_modified_cylinder(corners, start, end, numbers[6], flat).distance;
+                assert!(distance > margin * (1.0 - 1e-9), "{distance}: {}", String::from_utf8_lossy(text));
+            }
+        }
+    }
+    assert!(believed > 8 && refused > 80, "{believed} {refused}");
 }
 
 /// Tubes and motions, beside and through what the library itself decides.

@@ -18,14 +18,28 @@ WALL = Mesh(VERTICES, FACES)
 BEND = np.array([[0.0, 0.0, 0.0], [0.0, 0.5, 2.0], [1.0, 1.0, 4.0]])
 
 
-def is_believed(mesh: Mesh, proof: str, folder: Path) -> bool:
+def obj(mesh: Mesh) -> str:
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces.tolist()]
-    (folder / "wall.obj").write_text("\n".join(lines) + "\n")
-    (folder / "proof.txt").write_text(proof)
+    return "\n".join(lines) + "\n"
+
+
+def said(mesh: str, proof: str, folder: Path) -> tuple[int, list[str]]:
+    """The exit status of the program, and the lines that it prints."""
+    (folder / "wall.obj").write_bytes(mesh.encode())
+    (folder / "proof.txt").write_bytes(proof.encode())
     command = [sys.executable, str(CHECKER), str(folder / "wall.obj"), str(folder / "proof.txt")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.returncode == 0 and done.stdout.splitlines()[-1] == "yes"
+    assert done.stderr == ""
+    assert done.stdout.replace("\n", "").isprintable()
+    assert done.stdout.isascii()
+    return done.returncode, done.stdout.splitlines()
+
+
+def is_believed(mesh: Mesh, proof: str, folder: Path) -> bool:
+    status, lines = said(obj(mesh), proof, folder)
+    assert (lines[-1] == "yes") == (status == 0)
+    return status == 0
 
 
 def test_proofs_are_believed(tmp_path: Path) -> None:
@@ -64,3 +78,47 @@ def test_one_at_a_time() -> None:
         with pytest.raises(ContinuumError, match="one robot or motion, and 2 are given") as raised:
             ask()
         assert raised.value.kind == "bad_shape"
+
+
+def test_what_is_not_covered_is_said(tmp_path: Path) -> None:
+    proof = WALL.prove(BEND, 0.5, margin=1.0)
+    assert proof is not None
+    _, lines = said(obj(WALL), proof, tmp_path)
+    text = " ".join(lines)
+    assert "Not covered" in text
+    assert "the side of the wall" in text
+    assert "premises" in text
+
+
+def test_malformed_files_are_refused_in_one_line(tmp_path: Path) -> None:
+    proof, mesh = WALL.prove(BEND, 0.5, margin=1.0), obj(WALL)
+    assert proof is not None
+    for changed in (
+        "",
+        "\0",
+        "yes",
+        proof.replace("chain 1", "\x1b[2K\x1b[1Ayes 1"),
+        proof.replace("margin 1.0", "margin 1_0"),
+        proof.replace("margin 1.0", "margin nan"),
+        proof.replace("margin 1.0", "margin \u0661"),
+        proof.replace("margin 1.0", "margin " + "9" * 100_000),
+        proof.replace("end", "end\x1b[2K\ryes"),
+    ):
+        assert changed != proof
+        status, lines = said(mesh, changed, tmp_path)
+        assert status == 1
+        assert len(lines) == 1
+        assert lines[0].startswith("no: ")
+    for changed in (
+        mesh.replace("f 1 ", "f 0_1 ", 1),
+        mesh.replace("f 1 ", "f \u0661 ", 1),
+        mesh + "fo 1 2 3\n",
+        mesh + "\x1b[2Kyes\n",
+        mesh + "# \\\n",
+    ):
+        assert changed != mesh
+        status, lines = said(changed, proof, tmp_path)
+        assert status == 1
+        assert len(lines) == 1
+        assert lines[0].startswith("no: ")
+    assert said(mesh.replace("\n", "\r\n"), proof.replace("\n", "\r\n"), tmp_path)[0] == 0

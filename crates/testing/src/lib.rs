@@ -2,7 +2,7 @@
 //!
 //! | what | modules |
 //! |---|---|
-//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`Random`], the same anywhere |
+//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`LevelLinks`] side by side; [`Random`], the same anywhere |
 //! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
 //! | effort | [`rounds`], how many rounds a random test runs |
 //! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
@@ -19,6 +19,7 @@ pub mod fuzz;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod kernels;
+mod level;
 pub mod narrow_phase;
 pub mod placements;
 pub mod precision;
@@ -31,6 +32,7 @@ pub mod rotation;
 pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, LinkCase, distance_cases, link_cases, read_lines};
 pub use effort::rounds;
+pub use level::{LevelLinks, found_level_links};
 pub use random::Random;
 
 /// The answers of a batch, each of which there has to be.

@@ -15,6 +15,9 @@ impl BvhSearch {
     /// A proof that the robot keeps more than `margin` away from the mesh, for those who do not trust this library: a text
     /// that a short program in plain Python checks. The [page on proofs](crate::book::proofs) has both.
     ///
+    /// The proof does not say on which side of the wall the robot is: [`side`](Self::side) answers that. The program prints this,
+    /// and the premises.
+    ///
     /// `None` if the robot does not keep the margin, or by no more than rounding. The work is that of many queries: a proof
     /// is for a plan that somebody signs, and not for a loop.
     ///

@@ -11,8 +11,8 @@
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// The hull of two ends, each a disc across the line between them or the half of a ball beyond it, and what must be free
-/// around it.
+/// The hull of two ends, each a disc across the line between them or the half of a ball beyond that disc, and what must be
+/// free around it. Of two ends at one place both are round: the ball.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
     pub ends: [Vector; 2],
@@ -28,6 +28,10 @@ impl Body {
         let slack = 16.0 * f64::UNIT_ROUNDOFF;
         let (length, sum) = (q.length(), q.abs().element_sum());
         let axis = self.ends[1] - self.ends[0];
+        if axis == Vector::ZERO && self.flat != [false; 2] {
+            // A disc without a direction is refused by whoever checks the proof.
+            return false;
+        }
         let across = q.cross(axis).length() / axis.length();
         // Which ends the way to the plane leads out of, where both halves of a ball would count if there is no axis.
         let out = [q.dot(axis) <= 0.0, q.dot(axis) >= 0.0];

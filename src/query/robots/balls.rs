@@ -13,8 +13,8 @@
 //! squares that are compared by as much as 50 u of a length, both radii by u. Of two balls the half lengths err by 8 u
 //! each, and the rest by less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther
 //! than anything. Together that is 140 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured
-//! limit may err, is next to nothing. Where robots are much farther apart than 2^16 times their size this tells no links
-//! apart, and all are measured.
+//! limit may err, is next to nothing. Of robots that are much farther apart than 2^16 times their size this tells no links
+//! apart: [`heights`](super::heights) does.
 //!
 //! A normal may vanish, or its square leave the range of numbers. So one that is shorter than 2^-30 is counted as if it
 //! were as long as that, which asks for more than is needed. The limit is never negative, so with the slack of 2^-16 no

@@ -6,10 +6,11 @@
 //! the pair whose centres are nearest is measured first, in one pack with those [beside](Sweep::beside) it: one of them is
 //! often the nearest of all, which leaves least to be measured. Where the limit is a distance that has been found, a pair
 //! that is as far may still hold lower links, so it is looked at, unless that distance is 0 and its lowest links come after
-//! those that were found.
+//! those that were found. Links of nodes that are tiny in the frame are told apart by [`Heights`] in double precision.
 
 use super::balls::{Balls, SWEPT, Sweep};
-use super::outline::SearchFrame;
+use super::heights::Heights;
+use super::outline::{Outline, SearchFrame};
 use crate::answer::RobotProximity;
 use crate::distance::lanes::set_bits;
 use crate::pair::{LinksTogether, PlacedRobot, TOGETHER};
@@ -29,6 +30,10 @@ const AT_ONCE: usize = 4 * TOGETHER;
 struct Place {
     node: usize,
     first: usize,
+}
+
+impl Place {
+    const ROOT: Self = Self { node: 0, first: 0 };
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +85,8 @@ impl Limit {
 pub(super) struct Descent {
     level: Level,
     stack: Vec<Entry>,
+    /// Nodes of the first robot whose links are asked about group by group.
+    waiting: Vec<Place>,
     frame: SearchFrame,
     /// Those of both robots; of a robot and itself the first.
     balls: [Balls; 2],
@@ -92,6 +99,7 @@ impl Default for Descent {
         Self {
             level: Level::new(),
             stack: Vec::new(),
+            waiting: Vec::new(),
             frame: SearchFrame::default(),
             balls: Default::default(),
             asked_from: Vec::new(),
@@ -108,10 +116,51 @@ impl Descent {
         robots: [&PlacedRobot; 2],
         limit: Limit,
         asked_from: impl Fn(usize) -> usize,
-        visit: impl FnMut(RobotProximity) -> Limit,
+        mut visit: impl FnMut(RobotProximity) -> Limit,
     ) {
         self.begin(robots);
-        self.run_from(Place { node: 0, first: 0 }, robots, limit, asked_from, visit);
+        self.run_from(Place::ROOT, robots, limit, asked_from, |found| visit(found.answer()));
+    }
+
+    /// Shows `visit` all pairs of links that are at most `limit` apart, with their distances: the links of the first robot in groups
+    /// that follow one another, the pairs of a group in any order. `end_group` follows each group that may have some; a group
+    /// has at most `most` pairs, or one link.
+    pub fn run_in_groups<V>(
+        &mut self,
+        robots: [&PlacedRobot; 2],
+        limit: Real,
+        most: usize,
+        visitor: &mut V,
+        mut visit: impl FnMut(&mut V, [usize; 2], Real),
+        mut end_group: impl FnMut(&mut V),
+    ) {
+        self.begin(robots);
+        let most_links = (most / robots[1].links().len()).max(1);
+        let all = self.frame.outline(robots[1], 0);
+        self.waiting.clear();
+        self.waiting.push(Place::ROOT);
+        while let Some(place) = self.waiting.pop() {
+            let outline = self.frame.outline(robots[0], place.node);
+            if self.frame.outside(outline.at_least(&all)) > limit {
+                continue;
+            }
+            if robots[0].link_tree()[place.node].links() > most_links {
+                let [low, high] = halves(robots[0].link_tree(), place);
+                self.waiting.extend([high, low]);
+                continue;
+            }
+            self.run_from(
+                place,
+                robots,
+                Limit::of(limit),
+                |_| 0,
+                |found| {
+                    visit(visitor, found.links, found.distance);
+                    Limit::of(limit)
+                },
+            );
+            end_group(visitor);
+        }
     }
 
     /// Makes ready for two robots: all that is asked of them until the next time.
@@ -129,10 +178,10 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         link: usize,
-        visit: impl FnMut(RobotProximity) -> Limit,
+        mut visit: impl FnMut(RobotProximity) -> Limit,
     ) {
         let leaf = Place { node: place_of_leaf(link, robots[0].links().len()), first: link };
-        self.run_from(leaf, robots, Limit::of(Real::INFINITY), |_| 0, visit);
+        self.run_from(leaf, robots, Limit::of(Real::INFINITY), |_| 0, |found| visit(found.answer()));
     }
 
     /// Whether two links of a robot beside itself may be at most `bound` apart, after [`run`](Self::run): told by the
@@ -150,10 +199,10 @@ impl Descent {
         robots: [&PlacedRobot; 2],
         mut limit: Limit,
         asked_from: impl Fn(usize) -> usize,
-        mut visit: impl FnMut(RobotProximity) -> Limit,
+        mut visit: impl FnMut(&Measured) -> Limit,
     ) {
         self.stack.clear();
-        self.stack.push(Entry { places: [place, Place { node: 0, first: 0 }], at_least: 0.0 });
+        self.stack.push(Entry { places: [place, Place::ROOT], at_least: 0.0 });
         while let Some(entry) = self.stack.pop() {
             let firsts = entry.places.map(|place| place.first);
             let links = [0, 1].map(|robot: usize| {
@@ -166,7 +215,9 @@ impl Descent {
             if links.iter().all(|links| links.len() <= SWEPT) {
                 self.asked_from.clear();
                 self.asked_from.extend(links[0].clone().map(&asked_from));
-                limit = self.sweep(robots, links, limit, &mut visit);
+                let outlines =
+                    [0, 1].map(|robot: usize| self.frame.outline(robots[robot], entry.places[robot].node));
+                limit = self.sweep(robots, links, &outlines, limit, &mut visit);
                 continue;
             }
             let divided = usize::from(links[1].len() > links[0].len());
@@ -190,8 +241,9 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         links: [Range<usize>; 2],
+        outlines: &[Outline; 2],
         mut limit: Limit,
-        visit: &mut impl FnMut(RobotProximity) -> Limit,
+        visit: &mut impl FnMut(&Measured) -> Limit,
     ) -> Limit {
         let Self { level, frame, balls: [first, second], asked_from, together, .. } = self;
         first.place(robots[0], frame, links[0].clone());
@@ -203,19 +255,34 @@ impl Descent {
             &*second
         };
         let sweep = Sweep { balls: [first, second], links, asked_from };
+        let heights = Heights::of_tiny(&sweep, outlines, frame);
+        if let Some(heights) = &heights
+            && heights.at_least() > frame.length(limit.distance)
+        {
+            return limit;
+        }
         let mut near = [0; SWEPT];
+        let find_near = |limit: Real, near: &mut [u64; SWEPT]| {
+            let count = sweep.near(*level, limit, near);
+            heights
+                .as_ref()
+                .map_or(count, |heights| heights.keep_near(limit, &mut near[..sweep.links[0].len()]))
+        };
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
-        if !is_bounded || sweep.near(*level, frame.length(limit.distance), &mut near) > MANY {
+        if !is_bounded || find_near(frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
-            looked_at = sweep.nearest(*level);
+            looked_at = match &heights {
+                Some(heights) => heights.nearest(&sweep),
+                None => sweep.nearest(*level),
+            };
             let pairs = looked_at.into_iter().flat_map(|pair| sweep.beside(pair));
             limit = measure(*level, robots, &sweep, together, pairs, limit, visit);
             if limit.leaves_out(0.0, sweep.links.each_ref().map(|links| links.start)) {
                 return limit;
             }
             if !is_bounded || limit.distance < before {
-                sweep.near(*level, frame.length(limit.distance), &mut near);
+                find_near(frame.length(limit.distance), &mut near);
             }
         }
         let [first, second] = &sweep.links;
@@ -236,7 +303,7 @@ fn measure(
     together: &mut LinksTogether,
     mut pairs: impl Iterator<Item = [usize; 2]>,
     mut limit: Limit,
-    visit: &mut impl FnMut(RobotProximity) -> Limit,
+    visit: &mut impl FnMut(&Measured) -> Limit,
 ) -> Limit {
     let mut links = [[0; 2]; AT_ONCE];
     loop {
@@ -261,10 +328,25 @@ fn measure(
         for (pair, distance) in together.near() {
             let links = links[pair];
             if limit.admits(distance, links) {
-                let [first, second] = [robots[0].link(links[0]), robots[1].link(links[1])];
-                limit = visit(together.nearest(pair).answer(links, [&first, &second]));
+                limit = visit(&Measured { robots, links, distance, together, pair });
             }
         }
+    }
+}
+
+/// Two links that are within the limit.
+struct Measured<'a, 'r> {
+    robots: [&'a PlacedRobot<'r>; 2],
+    links: [usize; 2],
+    distance: Real,
+    together: &'a LinksTogether,
+    pair: usize,
+}
+
+impl Measured<'_, '_> {
+    fn answer(&self) -> RobotProximity {
+        let [first, second] = [0, 1].map(|robot: usize| self.robots[robot].link(self.links[robot]));
+        self.together.nearest(self.pair).answer(self.links, [&first, &second])
     }
 }
 

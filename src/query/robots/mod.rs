@@ -2,6 +2,7 @@
 
 mod balls;
 mod descent;
+mod heights;
 mod local_minima;
 mod one_robot;
 mod outline;

@@ -10,8 +10,9 @@ use parry3d_f64::math::{Real, Vector};
 /// What rounding can add to the distance between two capsules, where all coordinates are below 2.
 ///
 /// Each coordinate of an end errs by u of it, by as much again where it was moved, and the difference of two by 4 u more;
-/// the foot on either axis and the length of the way between them by less than 16 u. Both radii are exact but for u.
-const SLACK: Real = 64.0 * f64::UNIT_ROUNDOFF;
+/// the foot on either axis and the length of the way between them by less than 16 u. Both radii are exact but for u. A distance
+/// at a flat cap may be measured too short by 16 u of an extent below 4: another 64 u.
+pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
 /// A capsule around links.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,20 @@ impl Outline {
     pub fn at_least(&self, other: &Self) -> Real {
         let axes = segment_parameters(self.start - other.start, self.along, other.along);
         axes.gap.norm() - self.radius - other.radius - SLACK
+    }
+}
+
+impl Outline {
+    /// How long it is.
+    pub fn size(&self) -> Real {
+        self.along.norm() + 2.0 * self.radius
+    }
+
+    /// The unit vector along the way from its axis to another's, unless they meet.
+    pub fn way_to(&self, other: &Self) -> Option<Vector> {
+        let axes = segment_parameters(self.start - other.start, self.along, other.along);
+        let way = -Vector::from(axes.gap.normalised());
+        (way != Vector::ZERO).then_some(way)
     }
 }
 

@@ -7,6 +7,9 @@ use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
+/// So many pairs of links are kept at once where all places within a margin are asked for: some megabytes.
+const MOST_PAIRS: usize = 1 << 16;
+
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairMemory {
@@ -101,11 +104,9 @@ impl<'a> TwoRobots<'a> {
     pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
-        descent.run(self.both(), Limit::of(margin), all, |found| {
-            minima.push(found);
-            Limit::of(margin)
-        });
-        minima.finish(out);
+        let (push, end_rows) = (LocalMinima::push, LocalMinima::end_rows);
+        descent.run_in_groups(self.both(), margin, MOST_PAIRS, minima, push, end_rows);
+        out.extend(minima.finish().iter().map(|&links| measure_pair(self.both(), links)));
     }
 
     /// Whether the robots have the links that others had.

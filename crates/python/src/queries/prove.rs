@@ -62,6 +62,8 @@ impl Mesh {
     /// A proof that a robot keeps more than a margin away, for those who do not trust this library: a text that a short program in
     /// plain Python checks, ``docs/book/check_proof.py`` in the repository. The page on proofs beside it says what it means.
     ///
+    /// The proof does not say on which side of the wall the robot is: `side` answers that.
+    ///
     /// The program reads the mesh as an OBJ file with the vertices and triangles that the mesh has here, in its order.
     ///
     /// Parameters

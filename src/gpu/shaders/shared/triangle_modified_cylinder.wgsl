@@ -73,7 +73,24 @@ fn axial_with_caps(axial: Axial, link: Link, face: Face) -> Closest {
     let nearer = closest_select(beyond && disc.distance < upper.distance, moved, upper);
     let way_in = axial_way_in(axial, cap, link.radius, face);
     let met = Closest(real(0.0), way_in.point, way_in.point);
-    return closest_select(beyond && way_in.passes && real(0.0) < nearer.distance, met, nearer);
+    let closest = closest_select(beyond && way_in.passes && real(0.0) < nearer.distance, met, nearer);
+    return settled(closest, beyond, extent_with(link, face));
+}
+
+// The largest difference in a coordinate of two of the points, the link's start among them, or the radius.
+fn extent_with(link: Link, face: Face) -> real {
+    let low = min(min(min(zero(), link.end), min(face.a, face.b)), face.c);
+    let high = max(max(max(zero(), link.end), max(face.a, face.b)), face.c);
+    return max(largest(high - low), link.radius);
+}
+
+// The same, but where a flat cap decides and the distance is no more than rounding it is 0, with one common point: the twin of
+// distance/touching.rs.
+fn settled(closest: Closest, at_cap: bool, extent: real) -> Closest {
+    let limit = extent * (real(8.0) * UNIT_ROUNDOFF);
+    let meets = at_cap && real(0.0) < closest.distance && closest.distance <= limit;
+    let middle = (closest.point1 + closest.point2) * real(0.5);
+    return closest_select(meets, Closest(real(0.0), middle, middle), closest);
 }
 
 struct WayIn {
