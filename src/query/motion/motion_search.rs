@@ -21,7 +21,7 @@
 
 use super::failure::Failure;
 use super::moment::{Moment, Seen, Wanted};
-use super::moving::Moving;
+use super::moving::{Moving, SmallRooms};
 use super::own_directions::OwnDirections;
 use super::pace::{Pace, middle, rests};
 use super::present::Present;
@@ -51,6 +51,8 @@ pub(crate) struct MotionMemory {
     /// Where the vertices go, if the mesh moves.
     mesh: MovingMesh,
     directions: OwnDirections,
+    /// Forgotten with each question: answers do not depend on earlier ones.
+    small_rooms: SmallRooms,
 }
 
 /// An interval of time and what has to be looked at in it.
@@ -207,8 +209,9 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Begins with each part of the motion's time.
     pub(super) fn begin(&mut self) {
-        let MotionMemory { present, intervals, failed, .. } = &mut *self.memory;
+        let MotionMemory { present, intervals, failed, small_rooms, .. } = &mut *self.memory;
         present.forget();
+        *small_rooms = SmallRooms::default();
         intervals.clear();
         failed.clear();
         let legs = self.motion.legs().max(1);
@@ -231,7 +234,8 @@ impl<M: Motion> MotionSearch<'_, M> {
             refine(tube, turn.pieces, &mut moment)?;
             let Moment { mut moving, pace, seen, .. } = moment;
             let is_contact = seen.contact.is_some();
-            let is_left = if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin) };
+            let is_left =
+                if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin).sides };
             Ok((seen, pace.still, is_left))
         })?;
         Ok(Judged { seen, still, is_left, failed })
@@ -244,7 +248,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         ask: impl FnOnce(&mut TubeInMesh, &mut Turn, Moving<M>, Pace) -> Result<T, ProximityError>,
     ) -> Result<(T, Range<usize>), ProximityError> {
         let (t, motion, times) = (interval.middle(), self.motion, interval.times);
-        let MotionMemory { present, pieces, begun, failed, failures, mesh, directions, .. } =
+        let MotionMemory { present, pieces, begun, failed, failures, mesh, directions, small_rooms, .. } =
             &mut *self.memory;
         let pose = present.turn_to(motion, t)?;
         self.shapes += 1;
@@ -276,6 +280,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             last: &mut self.last,
             beside: 0.0,
             directions,
+            small_rooms,
         };
         let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
         let seen = ask(&mut tube, &mut turn, moving, pace)?;
