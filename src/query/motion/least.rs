@@ -15,14 +15,12 @@ use super::motion_search::{Interval, MotionSearch};
 use super::moves::Moves;
 use super::moving::{Left, Moving};
 use super::pace::Pace;
+use super::progress::MOST_SHAPES;
 use super::waiting::Waiting;
 use crate::answer::{MotionClearance, ProximityError};
 use crate::pieces::{Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict, refine};
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
-
-/// After so many shapes the bounds are what they are: a limit on the time that a query takes.
-const MOST_SHAPES: u64 = 1 << 16;
 
 /// After so many pieces none is halved any more in a shape.
 const MOST_PIECES: u32 = 1 << 16;

@@ -25,9 +25,9 @@ use super::moving::{Moving, SmallRooms};
 use super::own_directions::OwnDirections;
 use super::pace::{Pace, middle, rests};
 use super::present::Present;
-use super::progress::{PATIENCE, Progress};
+use super::progress::{MOST_SHAPES, PATIENCE, Progress};
 use super::waiting::Waiting;
-use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
+use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
 use crate::pieces::{Divided, Found, Piece, PlacedTube, TubeInMesh, refine};
 use crate::robot::Motion;
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
@@ -148,15 +148,15 @@ impl<M: Motion> MotionSearch<'_, M> {
             }
             self.memory.intervals.extend(interval.halves(still, is_left, &failed).into_iter().flatten());
         }
-        Ok(progress.undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
+        Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
     /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
-    /// larger intervals first, and with patience.
+    /// larger intervals first, and with patience. After [`MOST_SHAPES`] shapes the answer begins where the rest does.
     pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
-        let (mut clear_until, mut most) = (1.0, u64::MAX);
+        let (mut clear_until, mut most) = (1.0, MOST_SHAPES);
         self.begin();
         // The last one comes first.
         self.memory.intervals.make_contiguous().reverse();
@@ -167,7 +167,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             if seen.is_undecided && undecided.is_none() {
                 undecided = Some(interval.times);
-                most = self.shapes + PATIENCE;
+                most = most.min(self.shapes + PATIENCE);
             }
             if let Some(found) = seen.contact {
                 let t = interval.middle();
@@ -188,10 +188,15 @@ impl<M: Motion> MotionSearch<'_, M> {
             let halves = interval.halves(still, is_left, &failed);
             self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
+        let left = self.memory.intervals.iter().map(|interval| interval.times);
+        let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
         let Some((t, found)) = contact else {
-            return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
+            let near = undecided.map(|interval| (interval, UndecidedReason::Near));
+            let first = near.or(left.map(|interval| (interval, UndecidedReason::Work)));
+            return Ok(first.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
         };
-        let clear_until = undecided.map_or(clear_until, |interval| interval[0].min(clear_until));
+        let unknown = undecided.into_iter().chain(left).map(|interval| interval[0]);
+        let clear_until = unknown.fold(clear_until, Real::min);
         Ok(MotionAnswer::contact(clear_until, self.shape_in_contact(t, &found)))
     }
 
