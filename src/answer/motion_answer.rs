@@ -14,7 +14,7 @@ use parry3d_f64::math::Real;
 pub struct MotionAnswer {
     /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shape was found that is at most the margin away,
     /// but one that is so by the resolution more; or one in which the end of a link becomes flat or round, so close to the
-    /// mesh that this decides.
+    /// mesh that this decides; or the limit of work was reached. `reason` says which.
     pub decision: Decision,
     /// The first interval of time in which the margin may not be kept: it is kept before it. `[1, 1]` where it always is.
     pub interval: [Real; 2],

@@ -162,13 +162,17 @@ impl Ranges {
             }
             let own = self.of_place(shares).into_iter().map(|range| stated(section, range));
             let around = dyadic.iter().filter(|(range, _)| holds(*range, shares)).map(|(_, stated)| *stated);
-            let least = own.chain(around).fold([Real::INFINITY; 2], |least, stated| {
-                // Written so that NaN stays.
-                [0, 1].map(|k| if stated[k] >= least[k] { least[k] } else { stated[k] })
-            });
+            let least = own
+                .chain(around)
+                .fold([Real::INFINITY; 2], |least, stated| [0, 1].map(|k| smaller(least[k], stated[k])));
             out.push(least);
         }
     }
+}
+
+/// The smaller one; NaN if either is.
+fn smaller(a: Real, b: Real) -> Real {
+    if a <= b || a.is_nan() { a } else { b }
 }
 
 /// The parts of a section, level by level.
