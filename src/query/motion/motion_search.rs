@@ -12,11 +12,15 @@
 //! the middle by where it goes (`side`), against all triangles that are near enough, each in a direction of its own (`own_directions`). What
 //! keeps the margin on one side is not looked at there again; where all do, that side is settled.
 //!
+//! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was not in vain.
+//!
+//! **A limit.** A question ends after `MOST_SHAPES` shapes: `progress`.
+//!
 //! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is the piece's speed and that of
 //! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
 //!
 //! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
-//! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
+//! disc, now and later. So are those of a link that may lose its direction. The intervals become shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::failure::Failure;

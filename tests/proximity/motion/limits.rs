@@ -42,7 +42,7 @@ fn a_slide_along_a_plane_takes_few_shapes() {
     let mut random = Random::new(61);
     for unit in [1.0, 1e-3, 1e-6] {
         let mut search = floor(0.0, unit);
-        for resolution in [1e-2, 1e-4, 1e-6, 1e-8] {
+        for resolution in [1e-2, 1e-4, 1e-6] {
             for room in [1.5, 2.5, 10.0] {
                 let height = room * resolution;
                 let (from, to) = (needle(-5.0, 0.0, height), needle(5.0, random.between(-3.0, 3.0), height));
@@ -80,7 +80,7 @@ fn a_slide_along_a_plane_takes_few_shapes() {
 /// No question looks at more shapes than it says, and it says why it ends.
 #[test]
 fn a_question_ends_at_its_limit_and_says_so() {
-    let (from, to) = (needle(-5.0, 0.0, 2.5e-7), needle(5.0, 0.0, 2.5e-7));
+    let (from, to) = (needle(-5.0, 0.0, 2.5e-6), needle(5.0, 0.0, 2.5e-6));
     let slide = LinearMotion::chain(&from, &to, &[0.5]).unwrap();
     let slide = Speeds(&slide);
     let mut search = floor(0.0, 1.0);
@@ -88,9 +88,9 @@ fn a_question_ends_at_its_limit_and_says_so() {
     for first in [false, true] {
         let counted = Counted::new(&slide);
         let answer = if first {
-            search.time_of_contact(&counted, 0.0, 1e-7).unwrap()
+            search.time_of_contact(&counted, 0.0, 1e-6).unwrap()
         } else {
-            search.clears_motion(&counted, 0.0, 1e-7).unwrap()
+            search.clears_motion(&counted, 0.0, 1e-6).unwrap()
         };
         assert_eq!((answer.decision, answer.reason), (Decision::Undecided, limit), "{first}: {answer:?}");
         assert!(counted.count() == MOST_SHAPES, "{}", counted.count());
@@ -99,13 +99,13 @@ fn a_question_ends_at_its_limit_and_says_so() {
     let vertices =
         [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]].map(|[x, y]| Vector::new(x, y, 0.0));
     let counted = Counted::new(&slide);
-    let answer = search.clears_motion_while(&vertices, &counted, 0.0, 1e-7).unwrap();
+    let answer = search.clears_motion_while(&vertices, &counted, 0.0, 1e-6).unwrap();
     assert_eq!((answer.reason, counted.count()), (limit, MOST_SHAPES));
     // Two robots side by side.
-    let beside = needle(-5.0, 1.0 + 2.5e-7, 2.5e-7);
+    let beside = needle(-5.0, 1.0 + 2.5e-6, 2.5e-6);
     let rests = LinearMotion::chain(&beside, &beside.map(|point| point + Vector::X * 10.0), &[0.5]).unwrap();
     let counted = Counted::new(&slide);
-    let answer = RobotPair::new().clears_motion(&counted, &rests, 0.0, 1e-7).unwrap();
+    let answer = RobotPair::new().clears_motion(&counted, &rests, 0.0, 1e-6).unwrap();
     assert_eq!((answer.decision, answer.reason), (Decision::Undecided, limit), "{answer:?}");
     assert!(counted.count() <= MOST_SHAPES, "{}", counted.count());
     // What is near is not what ends for want of shapes.
