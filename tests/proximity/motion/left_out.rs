@@ -281,6 +281,10 @@ fn honest_motions_pass() {
         let (from, to) = (points(size), points(size));
         verify_motion(&LinearMotion::chain(&from, &to, &radii).unwrap(), steps).unwrap();
         verify_motion(&LinearMotion::capsules(&from, &to, &radii).unwrap(), steps).unwrap();
+        // A chain that does not turn.
+        let shift = random.point() * size;
+        let moved: Vec<_> = from.iter().map(|&point| point + shift).collect();
+        verify_motion(&LinearMotion::chain(&from, &moved, &radii).unwrap(), steps).unwrap();
         let mut bent = || -> Vec<_> {
             (0..3)
                 .map(|_| BendingSection {
