@@ -8,6 +8,7 @@
 
 use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
+use super::moves::Moves;
 use super::moving_pair::MovingPair;
 use super::pace::{Pace, check_pace, half, middle};
 use super::present::Present;

@@ -130,11 +130,13 @@ impl Ranges {
         });
     }
 
-    /// Those that hold the place and no other one as well: it alone, all before it, all behind it, and what was drawn.
-    fn of_place(&self, [from, to]: [Real; 2]) -> [[Real; 2]; 4] {
+    /// Those that belong to a place: it alone, all before it, all behind it, and what was drawn. Of a chord, which lies
+    /// between two such places, it alone.
+    fn of_place(&self, [from, to]: [Real; 2]) -> impl Iterator<Item = [Real; 2]> + use<> {
         let [before, behind] = self.parts;
-        let drawn = [from * (1.0 - before), to + (1.0 - to) * behind];
-        [[from, to], [0.0, to], [from, 1.0], [drawn[0].min(from), drawn[1].clamp(to, 1.0)]]
+        let drawn = [(from * (1.0 - before)).min(from), (to + (1.0 - to) * behind).clamp(to, 1.0)];
+        let around = [[0.0, to], [from, 1.0], drawn].into_iter().filter(move |_| from == to);
+        std::iter::once([from, to]).chain(around)
     }
 
     /// How far each place may move, and by how much it may turn, between two times: the least that is stated for a range of
@@ -160,7 +162,7 @@ impl Ranges {
                 dyadic.clear();
                 dyadic.extend(dyadic_ranges().map(|range| (range, stated(section, range))));
             }
-            let own = self.of_place(shares).into_iter().map(|range| stated(section, range));
+            let own = self.of_place(shares).map(|range| stated(section, range));
             let around = dyadic.iter().filter(|(range, _)| holds(*range, shares)).map(|(_, stated)| *stated);
             let least = own
                 .chain(around)
@@ -237,7 +239,11 @@ fn check_courses(
     let mut dyadic = Vec::new();
     let mut present = None;
     for (number, place) in places.iter().enumerate() {
-        let &SampledPlace { section, shares: [share, _] } = place;
+        let &SampledPlace { section, shares: [share, end] } = place;
+        if share < end {
+            // A chord begins at a place that is asked about itself.
+            continue;
+        }
         if present != Some(section) {
             present = Some(section);
             dyadic.clear();
@@ -245,7 +251,7 @@ fn check_courses(
         }
         let own = ranges.of_place([share; 2]).map(|range| (range, motion.course(section, range, times)));
         let around = dyadic.iter().copied().filter(|(range, _)| holds(*range, [share; 2]));
-        for (shares, course) in own.into_iter().chain(around) {
+        for (shares, course) in own.chain(around) {
             let Some(course) = course else { continue };
             let length = shares[1] - shares[0];
             let way = course.way(if length > 0.0 { (share - shares[0]) / length } else { 0.0 });

@@ -26,7 +26,7 @@ fn a_needle_that_grows_out_of_nothing_keeps_its_margin() {
             let grows = LinearMotion::chain(&from, &grown, &[unit]).unwrap();
             let shrinks = LinearMotion::chain(&grown, &from, &[unit]).unwrap();
             let both = MotionPath::new(vec![grows.clone(), shrinks.clone()]).unwrap();
-            for resolution in [1e-1, 1e-3, 1e-6] {
+            for resolution in [1e-1, 1e-3, 1e-5] {
                 let motions: [&dyn Motion; 3] = [&grows, &shrinks, &both];
                 for motion in motions {
                     let counted = Counted::new(motion);
