@@ -244,7 +244,8 @@ def main(mesh_path, proof_path):
     doubles = [x for vertex in mesh.vertices for x in vertex] + [margin]
     doubles += [x for shape in shapes for point in shape.points for x in point]
     doubles += [piece[0] for shape in shapes for piece in shape.pieces]
-    scale = max(x.as_integer_ratio()[1] for x in doubles)
+    # Coordinates become whole numbers so, and what is rounded up to one is rounded by little.
+    scale = max(x.as_integer_ratio()[1] for x in doubles) * 2**64
     mesh.whole = [whole(vertex, scale) for vertex in mesh.vertices]
     planes = sum(check(mesh, shape.bodies(scale, Fraction(margin)), shape.steps) for shape in shapes)
     print(f"This {kind} keeps more than {margin} from {counts[1]} triangles, by {planes} planes. Taken for granted:")
