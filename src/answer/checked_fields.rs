@@ -36,8 +36,8 @@ macro_rules! checked_fields {
 
 pub(super) use checked_fields;
 
-/// What no answer about a motion has: times that are none, or a contact without that decision, or that without a contact;
-/// or a reason without `Undecided`.
+/// What no answer about a motion has: times that are none, or a contact without that decision, or
+/// that without a contact; or a reason without `Undecided`.
 #[cfg(feature = "serde-serialize")]
 pub(super) fn check_motion<C: std::fmt::Debug>(
     decision: super::Decision,

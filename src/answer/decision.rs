@@ -17,9 +17,10 @@ pub enum Decision {
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum UndecidedReason {
-    /// A shape comes within the resolution of the margin, as far as it is known; or the end of a link becomes flat or round where
-    /// that decides. A finer resolution may help.
+    /// A shape comes within the resolution of the margin, as far as it is known; or the end of a
+    /// link becomes flat or round where that decides. A finer resolution may help.
     Near,
-    /// The question has reached its limit of work. A coarser resolution helps, or a motion in several parts.
+    /// The question has reached its limit of work. A coarser resolution helps, or a motion in
+    /// several parts.
     Work,
 }

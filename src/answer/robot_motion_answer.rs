@@ -14,8 +14,8 @@ use parry3d_f64::math::Real;
 pub struct RobotMotionAnswer {
     /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shapes were found that are at most the margin apart,
     /// but some that are farther apart than that by no more than the resolution and stated errors; or some in which the end of a
-    /// link becomes flat or round, so close to the other robot that this decides; or the limit of work was reached. `reason` says
-    /// which.
+    /// link becomes flat or round, so close to the other robot that this decides; or the limit of
+    /// work was reached. `reason` says which.
     pub decision: Decision,
     /// The first interval of time in which it is not known whether the margin is kept: it is kept before it. `[1, 1]` where it always
     /// is; a contact may not be the first one, so that the interval begins with 0.

@@ -409,7 +409,8 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     assert!(tampered.iter().all(|said| !said.is_yes), "{tampered:?}");
 }
 
-/// Rims move where the centreline rests, and a link that grows out of nothing is a ball for a moment only.
+/// Rims move where the centreline rests, and a link that grows out of nothing is a ball for a
+/// moment only.
 #[test]
 fn motions_that_roll_and_grow_are_proven() {
     let mut checks = Checks::new("rolls");

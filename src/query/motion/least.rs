@@ -166,8 +166,9 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
         self.known.lower = self.known.lower.min(lower);
     }
 
-    /// Asks by courses which of the failed pieces come no nearer than `wanted`, and settles these at that. A piece failed
-    /// beside a `wanted` of its own, which has fallen since if a nearer shape was found.
+    /// Asks by courses which of the failed pieces come no nearer than `wanted`, and settles these
+    /// at that. A piece failed beside a `wanted` of its own, which has fallen since if a nearer
+    /// shape was found.
     fn leave_by_courses(&mut self, tube: &mut TubeInMesh) -> [bool; 2] {
         let wanted = self.wanted();
         let Left { sides, is_any_settled } = self.moving.leave_by_courses(tube, wanted);

@@ -12,7 +12,8 @@
 //! the middle by where it goes (`side`), against all triangles that are near enough, each in a direction of its own (`own_directions`). What
 //! keeps the margin on one side is not looked at there again; where all do, that side is settled.
 //!
-//! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was not in vain.
+//! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was
+//! not in vain.
 //!
 //! **A limit.** A question ends after `MOST_SHAPES` shapes: `progress`.
 //!
@@ -20,7 +21,8 @@
 //! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
 //!
 //! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
-//! disc, now and later. So are those of a link that may lose its direction. The intervals become shorter until the end lasts, or the moment is found at which it becomes
+//! disc, now and later. So are those of a link that may lose its direction. The intervals become
+//! shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::failure::Failure;
@@ -157,7 +159,8 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
     /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
-    /// larger intervals first, and with patience. After [`MOST_SHAPES`] shapes the answer begins where the rest does.
+    /// larger intervals first, and with patience. After [`MOST_SHAPES`] shapes the answer begins
+    /// where the rest does.
     pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
         let (mut clear_until, mut most) = (1.0, MOST_SHAPES);

@@ -17,7 +17,8 @@ use parry3d_f64::math::Real;
 /// Of more pieces that failed in an interval, courses are not asked: that would take longer than another shape.
 const MOST_PIECES: usize = 8;
 
-/// A piece with less room than this part of its reach seldom goes so much along the wall: one that slides along it does.
+/// A piece with less room than this part of its reach seldom goes so much along the wall: one that
+/// slides along it does.
 const LEAST_ROOM: Real = 0.1;
 
 /// The pieces of a robot that moves, in an interval of time.
@@ -90,7 +91,8 @@ pub(crate) struct Left {
 
 impl<M: Motion> Moving<'_, M> {
     /// Which of the pieces that failed keep the margin before the middle shape all the same, or after it, by where they go. The
-    /// nearest one is asked first, and none after one that does not: that side has to be looked at anyway.
+    /// nearest one is asked first, and none after one that does not: that side has to be looked at
+    /// anyway.
     pub(crate) fn leave_by_courses(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
         let nearest = self.failures.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
         let mut left = Left { sides: [false; 2], is_any_settled: false };
@@ -145,7 +147,8 @@ pub(crate) struct SmallRooms {
     left: u32,
 }
 
-/// The longest pause. A course costs up to as much as a shape: so it costs an eighth more at most where it is always in vain.
+/// The longest pause. A course costs up to as much as a shape: so it costs an eighth more at most
+/// where it is always in vain.
 const LONGEST_PAUSE: u32 = 15;
 
 impl SmallRooms {

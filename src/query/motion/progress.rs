@@ -38,7 +38,8 @@ impl Progress {
         }
     }
 
-    /// The first interval of which nothing is known, and why, if no more shapes are to be looked at; these intervals were not.
+    /// The first interval of which nothing is known, and why, if no more shapes are to be looked
+    /// at; these intervals were not.
     pub(super) fn gives_up(
         &self,
         shapes: u64,

@@ -17,8 +17,8 @@ const MOST_SHAPES: usize = 1 << 16;
 const MOST_BYTES: usize = 1 << 24;
 
 /// Shapes, each with the steps that part it from the mesh while its interval lasts, in the order of time; none where a shape
-/// comes as near as the margin, or so near that moving by `resolution` matters, or where they are more than a proof holds.
-/// `reach` is the mesh's largest coordinate.
+/// comes as near as the margin, or so near that moving by `resolution` matters, or where they are
+/// more than a proof holds. `reach` is the mesh's largest coordinate.
 pub(crate) fn motion_proof(
     parting: &mut Parting,
     reach: Real,

@@ -4,7 +4,8 @@ use super::Motion;
 use crate::robot::Drift;
 use parry3d_f64::math::Real;
 
-/// A direction that turns faster than this, in rad, changes at one instant: no interval is short enough to follow it.
+/// A direction that turns faster than this, in rad, changes at one instant: no interval is short
+/// enough to follow it.
 const FASTEST_TURN: Real = (1_u64 << 24) as Real;
 
 /// An interval of time, seen from its middle.

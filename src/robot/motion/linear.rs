@@ -4,25 +4,28 @@
 //! function of u: between two shares it is at most the larger of that at the two.
 //!
 //! # The turn of a link
-//! **Definitions.** d(t) leads from the link's start to its end, d0 and d1 at the times 0 and 1, w = d1 - d0 and
-//! n = d / |d|. L is a lower bound on |d(t)| during the interval.
+//! **Definitions.** d(t) leads from the link's start to its end, d0 and d1 at the times 0 and 1, w
+//! = d1 - d0 and n = d / |d|. L is a lower bound on |d(t)| during the interval.
 //!
 //! **Claim.** n turns no faster than |d0 x d1| / L^2. **Proof.** |n'| = |d x w| / |d|^2, and
 //! d x w = d0 x w = d0 x d1 at all times.
 //!
-//! **Claim.** |d(t)| >= min(m . d(t0), m . d(t1)) in the interval from t0 to t1, for any unit vector m. **Proof.**
+//! **Claim.** |d(t)| >= min(m . d(t0), m . d(t1)) in the interval from t0 to t1, for any unit
+//! vector m. **Proof.**
 //! |d| >= m . d, which is linear in t. For m we take the direction of d where |d| is least, at t = -<d0, w> / |w|^2 or at the
 //! nearer end of the interval.
 //!
-//! **Rounding.** A difference of two points is off by u for each of its coordinates, so d0, d1 and d(t) are off by u relative
-//! to |d0| and |d1|, wherever the link is, and d0 x d1 by less than 8 u |d0| |d1|. The vertices of a shape are off by
-//! e = 9 u reach each, where no coordinate is larger than reach. So the direction of a computed link is off by 2 e / |d| and
-//! less than 32 u reach / |d|. A link that is at least as long as its radius moves its rims by less than 32 u reach for it,
-//! which the slack of a placed tube includes. The faces of a shorter one are tilted by it (`tilt_faces`).
+//! **Rounding.** A difference of two points is off by u for each of its coordinates, so d0, d1 and
+//! d(t) are off by u relative to |d0| and |d1|, wherever the link is, and d0 x d1 by less than 8 u
+//! |d0| |d1|. The vertices of a shape are off by e = 9 u reach each, where no coordinate is larger
+//! than reach. So the direction of a computed link is off by 2 e / |d| and less than 32 u reach /
+//! |d|. A link that is at least as long as its radius moves its rims by less than 32 u reach for
+//! it, which the slack of a placed tube includes. The faces of a shorter one are tilted by it
+//! (`tilt_faces`).
 //!
 //! # A link that loses its length
-//! It is marked: during an interval in which its length may vanish, queries take its flat ends for round, which holds both
-//! (`lasting`).
+//! It is marked: during an interval in which its length may vanish, queries take its flat ends for
+//! round, which holds both (`lasting`).
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
@@ -212,7 +215,8 @@ impl Motion for LinearMotion {
     }
 }
 
-/// A lower bound on the length of a vector between two times, which changes evenly from the first to the last one.
+/// A lower bound on the length of a vector between two times, which changes evenly from the first
+/// to the last one.
 fn least_length([first, last]: [Vector; 2], times: [Real; 2]) -> Real {
     let at = |t: Real| first * (1.0 - t) + last * t;
     let change = last - first;
@@ -220,7 +224,8 @@ fn least_length([first, last]: [Vector; 2], times: [Real; 2]) -> Real {
     // Without a change the quotient is NaN, and any time will do.
     let time = if fastest > times[0] { fastest.min(times[1]) } else { times[0] };
     let direction = direction(at(time));
-    // Both vectors are off by u, and so are weights, products, sums and the direction: less than 16 u in all.
+    // Both vectors are off by u, and so are weights, products, sums and the direction: less than 16
+    // u in all.
     let rounding = |t: Real| 16.0 * Real::UNIT_ROUNDOFF * (first.length() * (1.0 - t) + last.length() * t);
     let least = times.map(|t| direction.dot(at(t)) - rounding(t));
     least[0].min(least[1]).max(0.0)

@@ -5,10 +5,11 @@
 //! 4 and more steps apart, and with the first shape. The ways that were stated for the steps between them add up, and what is
 //! unknown of the two shapes counts once.
 //!
-//! **Ranges of shares.** A bound holds for every place of the range that it is stated for. So each place is compared with the bounds
-//! of many ranges that hold it, and the least of them counts: the place alone, from the base to it, from it to the tip, the
-//! dyadic ranges at three levels, the whole section, and one range that is drawn for each step. A bound that looks at one end
-//! of its range only is too low for some of these.
+//! **Ranges of shares.** A bound holds for every place of the range that it is stated for. So each
+//! place is compared with the bounds of many ranges that hold it, and the least of them counts: the
+//! place alone, from the base to it, from it to the tip, the dyadic ranges at three levels, the
+//! whole section, and one range that is drawn for each step. A bound that looks at one end of its
+//! range only is too low for some of these.
 //!
 //! A course is compared with three shapes: those at both ends of its time, and the one at its middle, where what moves at a constant
 //! acceleration is farthest off.
@@ -26,9 +27,10 @@ use parry3d_f64::math::Real;
 /// steps apart, and for each shape and the first. A bound that is too low only for a moment, or only between two places, shows
 /// if the steps are fine enough. Steps cannot be too fine.
 ///
-/// A speed is asked for ranges of shares, and holds for every place of its range. So the motion is asked for several ranges that
-/// hold a place s: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves, quarters and eighths of the section, and one range
-/// that is drawn for each step, always the same ones. The least of these bounds counts, and is what the error names.
+/// A speed is asked for ranges of shares, and holds for every place of its range. So the motion is
+/// asked for several ranges that hold a place s: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves,
+/// quarters and eighths of the section, and one range that is drawn for each step, always the same
+/// ones. The least of these bounds counts, and is what the error names.
 ///
 /// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at its middle, between steps and
 /// between shapes that are 2, 4, 8 and more steps apart, for the same ranges.
@@ -130,8 +132,8 @@ impl Ranges {
         });
     }
 
-    /// Those that belong to a place: it alone, all before it, all behind it, and what was drawn. Of a chord, which lies
-    /// between two such places, it alone.
+    /// Those that belong to a place: it alone, all before it, all behind it, and what was drawn. Of
+    /// a chord, which lies between two such places, it alone.
     fn of_place(&self, [from, to]: [Real; 2]) -> impl Iterator<Item = [Real; 2]> + use<> {
         let [before, behind] = self.parts;
         let drawn = [(from * (1.0 - before)).min(from), (to + (1.0 - to) * behind).clamp(to, 1.0)];
@@ -139,8 +141,8 @@ impl Ranges {
         std::iter::once([from, to]).chain(around)
     }
 
-    /// How far each place may move, and by how much it may turn, between two times: the least that is stated for a range of
-    /// shares that holds it.
+    /// How far each place may move, and by how much it may turn, between two times: the least that
+    /// is stated for a range of shares that holds it.
     fn ways_and_angles(
         &self,
         motion: &impl Motion,

@@ -13,14 +13,15 @@
 //! a vertex between that and the end, and an end that is less than r_k <= R_k away from all of these is flat by either rule.
 //!
 //! # Directions
-//! The flat ends of a section count as round in an interval of time in two cases. A ball around the end holds the disc then,
-//! whichever way the disc stands, so only the centreline's speed counts.
-//! 1. The section is marked (`fades`), and the way from its one end to the other changes by as much as it is long. It may
-//!    lose its length in the interval, and with it its direction.
+//! The flat ends of a section count as round in an interval of time in two cases. A ball around the
+//! end holds the disc then, whichever way the disc stands, so only the centreline's speed counts.
+//! 1. The section is marked (`fades`), and the way from its one end to the other changes by as much
+//!    as it is long. It may lose its length in the interval, and with it its direction.
 //! 2. The section turns by more than [`MOST_TURN`] = 1 rad.
 //!
-//! **Claim.** In case 2 the ball is the closer bound. **Proof.** Let r be the radius and a > 1 the turn. A flat end counts
-//! r a in all directions. Every point of the ball is within r of the disc's centre, and r < r a.
+//! **Claim.** In case 2 the ball is the closer bound. **Proof.** Let r be the radius and a > 1 the
+//! turn. A flat end counts r a in all directions. Every point of the ball is within r of the disc's
+//! centre, and r < r a.
 
 use super::Tube;
 use crate::distance::Scalar;
@@ -47,7 +48,8 @@ const MOST_TURN: Real = 1.0;
 /// A marked section has a direction if it is longer than this many times the rounding of a point.
 const LEAST_LENGTH: Real = 8.0;
 
-/// How far sections move and turn from a shape until an interval of time ends, before it and after it.
+/// How far sections move and turn from a shape until an interval of time ends, before it and after
+/// it.
 pub(crate) trait Drift {
     /// By how much an end of a section moves at most.
     fn moves(&self, section: usize, end: usize) -> Real;
@@ -58,7 +60,8 @@ pub(crate) trait Drift {
     /// By how much a section turns at most, in rad.
     fn turns(&self, section: usize) -> Real;
 
-    /// Whether intervals can be so short that what turns so far in this one turns by less than 1 rad.
+    /// Whether intervals can be so short that what turns so far in this one turns by less than 1
+    /// rad.
     fn can_follow(&self, turn: Real) -> bool;
 }
 
@@ -100,8 +103,8 @@ impl Tube {
         }
     }
 
-    /// Marks the flat ends that stay so for a time, and the sections whose direction may get lost in it. By how much those
-    /// that may not stay so move, with their limits, is returned.
+    /// Marks the flat ends that stay so for a time, and the sections whose direction may get lost
+    /// in it. By how much those that may not stay so move, with their limits, is returned.
     pub(crate) fn hold_faces(&mut self, drift: &impl Drift) -> Real {
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;
         let mut opening = self.mark_lost_directions(drift, rounding);
@@ -134,8 +137,8 @@ impl Tube {
         opening
     }
 
-    /// Marks the sections whose flat ends count as round in the interval (cases 1 and 2). By how much the rims of the latter
-    /// move is returned, if a shorter interval helps.
+    /// Marks the sections whose flat ends count as round in the interval (cases 1 and 2). By how
+    /// much the rims of the latter move is returned, if a shorter interval helps.
     fn mark_lost_directions(&mut self, drift: &impl Drift, rounding: Real) -> Real {
         let mut opening: Real = 0.0;
         for (number, section) in self.sections.iter_mut().enumerate() {

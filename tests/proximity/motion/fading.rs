@@ -14,7 +14,8 @@ fn point(place: Vector) -> BvhSearch {
     BvhSearch::from_triangles(&[place; 3], &[[0, 1, 2]]).unwrap()
 }
 
-/// A flat needle that grows out of nothing keeps free what is ahead of its tip, at every resolution.
+/// A flat needle that grows out of nothing keeps free what is ahead of its tip, at every
+/// resolution.
 #[test]
 fn a_needle_that_grows_out_of_nothing_keeps_its_margin() {
     for unit in [1.0, 1e-3, 1e-6, 1e3] {
@@ -44,8 +45,8 @@ fn a_needle_that_grows_out_of_nothing_keeps_its_margin() {
     }
 }
 
-/// What is behind the base of a needle is free of a needle that has a length, however short; and touched by one that has none,
-/// which is a ball.
+/// What is behind the base of a needle is free of a needle that has a length, however short; and
+/// touched by one that has none, which is a ball.
 #[test]
 fn a_link_without_a_length_is_a_ball_for_a_moment() {
     let mut behind = point(Vector::Z * -0.5);
@@ -83,7 +84,8 @@ fn a_link_that_nearly_loses_its_length_is_answered() {
     }
 }
 
-/// Robots whose links grow out of nothing, go through nothing or nearly so, against their shapes in steps.
+/// Robots whose links grow out of nothing, go through nothing or nearly so, against their shapes in
+/// steps.
 #[test]
 fn links_that_lose_their_length_are_never_misjudged() {
     losing(120, 41);

@@ -245,7 +245,8 @@ fn points(places: &[Vector]) -> BvhSearch {
     BvhSearch::from_triangles(&vertices, &triangles).unwrap()
 }
 
-/// A piece that has failed beside what was wanted then is settled at what is wanted later, when a nearer one is found.
+/// A piece that has failed beside what was wanted then is settled at what is wanted later, when a
+/// nearer one is found.
 #[test]
 fn what_displacements_settle_bounds_the_answer() {
     // As it was found.
@@ -259,7 +260,8 @@ fn what_displacements_settle_bounds_the_answer() {
         let least = search.clearance_of_motion(&motion, tolerance).unwrap();
         assert!(least.lower <= 7.5 && 7.5 <= least.upper && least.resolved, "{tolerance}: {least:?}");
     }
-    // Chains of which one part moves towards its wall, and another part rests beside one a little farther away.
+    // Chains of which one part moves towards its wall, and another part rests beside one a little
+    // farther away.
     let (mut random, mut nearer) = (Random::new(51), 0);
     for round in 0..400 {
         let unit = [1.0, 1e-3, 1e-6][round % 3];

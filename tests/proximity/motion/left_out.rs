@@ -152,7 +152,8 @@ fn a_way_there_and_back_is_missed() {
     }
 }
 
-/// A needle that turns about its base, and states of a range of shares what holds of a part of it only.
+/// A needle that turns about its base, and states of a range of shares what holds of a part of it
+/// only.
 struct Turning<F> {
     /// From a range of shares to the share whose speed is stated.
     stated: F,
@@ -192,8 +193,8 @@ impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
     }
 }
 
-/// What is stated of a range must hold for all of it: a bound that looks at one of its ends, at its middle or at its length is
-/// too low for a place alone, or for the whole section, or for neither.
+/// What is stated of a range must hold for all of it: a bound that looks at one of its ends, at its
+/// middle or at its length is too low for a place alone, or for the whole section, or for neither.
 #[test]
 fn a_bound_for_a_part_of_a_range_is_missed() {
     let understated: [(&str, fn([Real; 2]) -> Real); 6] = [
@@ -217,7 +218,8 @@ fn a_bound_for_a_part_of_a_range_is_missed() {
             let right = Turning { stated: |shares: [Real; 2]| shares[1], is_course };
             assert_eq!(verify_motion(&right, steps), Ok(()), "{is_course} {steps}");
             for (name, stated) in understated {
-                // A single step has no shape at its middle, where a course would be left, and draws one range only.
+                // A single step has no shape at its middle, where a course would be left, and draws
+                // one range only.
                 if steps == 1 && (is_course || name.ends_with("grid")) {
                     continue;
                 }
