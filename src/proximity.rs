@@ -112,8 +112,8 @@ pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof,
     ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact, SceneContact,
-    SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece, Witness,
-    Work,
+    SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece,
+    UndecidedReason, Witness, Work,
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between,

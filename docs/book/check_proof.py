@@ -311,7 +311,8 @@ def main(mesh_path, proof_path):
     doubles = [x for vertex in mesh.vertices for x in vertex] + [margin]
     doubles += [x for shape in shapes for point in shape.points for x in point]
     doubles += [piece[0] for shape in shapes for piece in shape.pieces]
-    scale = max(x.as_integer_ratio()[1] for x in doubles)
+    # Coordinates become whole numbers so, and what is rounded up to one is rounded by little.
+    scale = max(x.as_integer_ratio()[1] for x in doubles) * 2**64
     mesh.whole = [whole(vertex, scale) for vertex in mesh.vertices]
     bodies = (shape.bodies(scale, Fraction(margin)) for shape in shapes)
     planes = sum(check(mesh, all_of, shape.steps) for all_of, shape in zip(bodies, shapes))

@@ -36,18 +36,23 @@ macro_rules! checked_fields {
 
 pub(super) use checked_fields;
 
-/// What no answer about a motion has: times that are none, or a contact without that decision, or that without a contact.
+/// What no answer about a motion has: times that are none, or a contact without that decision, or
+/// that without a contact; or a reason without `Undecided`.
 #[cfg(feature = "serde-serialize")]
 pub(super) fn check_motion<C: std::fmt::Debug>(
     decision: super::Decision,
     [from, to]: [parry3d_f64::math::Real; 2],
     contact: Option<&C>,
+    reason: Option<super::UndecidedReason>,
 ) -> Result<(), String> {
     if !(0.0 <= from && from <= to && to <= 1.0) {
         return Err(format!("times of a motion are from 0 to 1 and in order, not {from} to {to}"));
     }
     if (decision == super::Decision::Contact) != contact.is_some() {
         return Err(format!("the decision is {decision:?}, and the contact is {contact:?}"));
+    }
+    if (decision == super::Decision::Undecided) != reason.is_some() {
+        return Err(format!("the decision is {decision:?}, and the reason is {reason:?}"));
     }
     Ok(())
 }

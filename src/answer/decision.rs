@@ -11,3 +11,16 @@ pub enum Decision {
     /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on the work, leaves it open.
     Undecided,
 }
+
+/// Why it stays open whether a motion keeps a margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum UndecidedReason {
+    /// A shape comes within the resolution of the margin, as far as it is known; or the end of a
+    /// link becomes flat or round where that decides. A finer resolution may help.
+    Near,
+    /// The question has reached its limit of work. A coarser resolution helps, or a motion in
+    /// several parts.
+    Work,
+}

@@ -28,7 +28,7 @@ mod work;
 pub use certificate::Certificate;
 pub use clearance::Clearance;
 pub use contact::Contact;
-pub use decision::Decision;
+pub use decision::{Decision, UndecidedReason};
 pub use derivative::Derivative;
 pub use error::{MeshError, PlacementFault, ProximityError};
 pub use feature::{ContactFeature, LinkFeature, TriangleFeature};

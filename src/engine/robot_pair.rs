@@ -197,7 +197,8 @@ impl RobotPair {
     /// - `Clear` is proven from the speeds that the motions state, for every instant and not only for some.
     /// - `Contact` names a time, and two points of the shapes at that time that are at most the margin apart.
     /// - `Undecided`: the robots come within `resolution` of the margin and of what they state as their own errors, or an end turns
-    ///   from flat to round there.
+    ///   from flat to round there; or the question ends after 65,536 shapes of each, or after a million pairs of pieces in all of
+    ///   them. The [reason](RobotMotionAnswer::reason) says which.
     ///
     /// The work is one query about two tubes for each time that the proof needs, which are the fewer, the slower the robots are
     /// compared with the room between them. The speeds are trusted: see [`verify_motion`](crate::verify_motion).
@@ -422,8 +423,8 @@ pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<D
 /// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`] asks for it, and two points of that
 ///   shape in the mesh's frame.
 /// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or
-///   few samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or a million pairs of pieces
-///   do not decide it.
+///   few samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or the question ends
+///   after 65,536 shapes, or after 262,144 pairs of pieces in all of them. The [reason](RobotMotionAnswer::reason) says which.
 ///
 /// The work is one query about a tube beside itself for each time that the proof needs: four to eight for each rad that a part of
 /// the robot turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion). So is

@@ -77,7 +77,8 @@ impl<'a> PlacedTube<'a> {
 
     /// The flat ends of a section that bodies may end with.
     pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
-        let is_sure = |face: &Face| (face.lasting.is_safe() || !self.is_moving) && face.tilt < Real::INFINITY;
+        let lasts = |face: &Face| !self.is_moving || face.lasting.is_safe() && !section.fades;
+        let is_sure = |face: &Face| lasts(face) && face.tilt < Real::INFINITY;
         self.tube.faces(section).map(|face| face.filter(is_sure))
     }
 

@@ -35,11 +35,11 @@ pub use motion::{
     BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
     bending_course, bending_speed, verify_motion,
 };
-pub(crate) use motion::{Sections, ShapePath, check_speed};
+pub(crate) use motion::{MotionDrift, Sections, ShapePath, check_speed};
 pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use tube::{CurveBound, Face, Lasting, Section, TooSharp, TubeTurns};
+pub(crate) use tube::{CurveBound, Drift, Face, Lasting, Section, TooSharp, TubeTurns};
 pub use tube::{Tube, TubeSection};

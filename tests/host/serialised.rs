@@ -159,6 +159,7 @@ fn what_no_query_about_a_motion_answers_is_an_error() {
     assert_eq!(answer("Contact", [0.5, 0.5], Some(&contact)), "");
     assert!(answer("Contact", [0.75, 0.5], Some(&contact)).contains("in order, not 0.75 to 0.5"));
     assert!(answer("Contact", [0.5, 0.5], None).contains("the contact is None"));
+    assert!(answer("Undecided", [0.0, 0.5], None).contains("the reason is None"));
     assert!(answer("Clear", [1.0, 1.0], Some(&contact)).contains("the decision is Clear"));
     assert_eq!(answer("Undecided", [0.25, 0.5], None), "");
     assert!(answer("Undecided", [0.5, 0.25], None).contains("in order"));

@@ -764,6 +764,43 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     assert!(tampered.iter().all(|said| !said.is_yes), "{tampered:?}");
 }
 
+/// Rims move where the centreline rests, and a link that grows out of nothing is a ball for a
+/// moment only.
+#[test]
+fn motions_that_roll_and_grow_are_proven() {
+    let mut checks = Checks::new("rolls");
+    let wall = [[-9.0, 1.5, -9.0], [9.0, 1.5, -9.0], [0.0, 1.5, 9.0]].map(Vector::from_array);
+    let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]]).unwrap();
+    let needle = Tube::from(&Chain::from_centreline(&[Vector::ZERO, Vector::X * 5.0], &[0.5]).unwrap());
+    let mut proven = 0;
+    for turn in [3.0, 0.3, 0.01] {
+        let rolled = [Pose::IDENTITY, Pose::rotation(Vector::X * turn)];
+        let motion = RigidMotion::new(needle.clone(), rolled).unwrap();
+        for margin in [0.99, 0.9, 0.5, 0.3, 0.0] {
+            let proof = search.prove_motion(&motion, margin, 1e-3).unwrap();
+            let proof = proof.unwrap_or_else(|| panic!("turned by {turn}, margin {margin}: no proof"));
+            checks.add(&obj(&search), &proof.to_string());
+            proven += 1;
+        }
+        assert_eq!(search.prove_motion(&motion, 1.01, 1e-3).unwrap(), None);
+    }
+    // The flat tip of a needle that grows comes to 0.5 before the wall.
+    let grown = [Vector::ZERO, Vector::Y];
+    for begin in [0.0, 1e-9, 1e-3] {
+        let motion = LinearMotion::chain(&[Vector::ZERO, Vector::Y * begin], &grown, &[0.9]).unwrap();
+        for margin in [0.0, 0.3, 0.45] {
+            let proof = search.prove_motion(&motion, margin, 1e-3).unwrap();
+            let proof = proof.unwrap_or_else(|| panic!("from {begin}, margin {margin}: no proof"));
+            checks.add(&obj(&search), &proof.to_string());
+            proven += 1;
+        }
+        assert_eq!(search.prove_motion(&motion, 0.51, 1e-3).unwrap(), None);
+    }
+    let Some(said) = checks.run() else { return };
+    assert_eq!(said.len(), proven);
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+}
+
 /// The robot of the demo at its goal, and where it stands in the ventricle.
 fn robot_in_ventricle() -> (Chain, Pose) {
     let robot = ctr::three_tubes().centreline(&ventricle::goal(), 60);

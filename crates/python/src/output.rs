@@ -3,7 +3,7 @@
 use crate::input::numpy;
 use numpy::{Element, IxDyn, PyArray1, PyArrayDyn, PyArrayMethods};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Decision, Side};
+use parry_continuum::proximity::{Decision, Side, UndecidedReason};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
@@ -105,7 +105,7 @@ fn answers(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     Ok(ANSWERS.get_or_try_init(py, import)?.bind(py))
 }
 
-/// A member of the class `Side` or `Decision`, or an array of their values.
+/// A member of the class `Side`, `Decision` or `UndecidedReason`, or an array of their values.
 pub(crate) fn members<'py>(
     py: Python<'py>,
     class: &str,
@@ -133,6 +133,15 @@ pub(crate) fn decision_value(decision: Decision) -> i8 {
         Decision::Contact => -1,
         Decision::Undecided => 0,
         Decision::Clear => 1,
+    }
+}
+
+/// As the class `UndecidedReason` has it.
+pub(crate) fn reason_value(reason: Option<UndecidedReason>) -> i8 {
+    match reason {
+        None => 0,
+        Some(UndecidedReason::Work) => 2,
+        Some(_) => 1,
     }
 }
 

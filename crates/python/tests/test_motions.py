@@ -18,6 +18,8 @@ from parry_continuum import (
     MotionPath,
     MovingBase,
     RigidMotion,
+    RobotPair,
+    UndecidedReason,
 )
 from shapes import Array, poses, robots, sphere
 
@@ -84,6 +86,22 @@ def hold(motion: Motion, distances: Array, step: float, loose: float = 1e-9) -> 
     assert (distances[TIMES < at.interval[0]] > margin - loose).all()
     assert at.interval[0] <= TIMES[distances <= margin - loose][0]
     return int(least == 0)
+
+
+def test_reasons() -> None:
+    """A motion that is undecided says why; of a batch there is a number for each."""
+    floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    start, end = np.array([[0, 0, 2.0], [0, 0, 5.0]]), np.array([[0, 0, 1.0], [0, 0, 5.0]])
+    motion = LinearMotion(start, end, RADIUS)
+    near = floor.clears_path(np.stack([start, end]), RADIUS, deviation=0.3, margin=0.8, resolution=0.01)
+    assert near.decision is Decision.UNDECIDED and near.reason is UndecidedReason.NEAR
+    for margin, decision in [(0.5, Decision.CLEAR), (1.5, Decision.CONTACT)]:
+        found = floor.clears_motion(motion, margin=margin, resolution=0.1)
+        assert found.decision is decision and found.reason is UndecidedReason.NONE
+    many = floor.clears_motion(np.stack([start] * 2), np.stack([end, start]), RADIUS, margin=1.5, resolution=0.1)
+    assert many.reason.dtype == np.int8 and many.reason.tolist() == [UndecidedReason.NONE] * 2
+    at_rest = RobotPair().clears_motion(motion, LinearMotion(start + [9, 0, 0], end + [9, 0, 0], RADIUS), 0.5, 0.1)
+    assert at_rest.decision is Decision.CLEAR and at_rest.reason is UndecidedReason.NONE
 
 
 def test_rigid_motions() -> None:

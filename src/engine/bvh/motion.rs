@@ -14,9 +14,13 @@ impl BvhSearch {
     ///   states, rounding included. A robot that passes through a wall is never `Clear`, although it may be far from the wall
     ///   on both sides.
     /// - `Contact`: the answer names a shape that is at most the margin away, and its time.
-    /// - `Undecided`: some shape is farther away than the margin by no more than `resolution`, which is a length. There is one
-    ///   other case: an end of a link or section that lies one radius behind a flat face turns from flat to round, and it is
-    ///   this end that comes near.
+    /// - `Undecided`, because of [`Near`](crate::proximity::UndecidedReason::Near): some shape is
+    ///   farther away than the margin by no more than `resolution`, which is a length. There are
+    ///   two other cases: an end of a link or section that lies one radius behind a flat face turns
+    ///   from flat to round, and it is this end that comes near; or a link loses its length for a
+    ///   moment, and what comes near is the ball that it is then.
+    /// - `Undecided`, because of [`Work`](crate::proximity::UndecidedReason::Work): the question
+    ///   ends after 65,536 shapes.
     ///
     /// The work is one tube query for each shape that the proof needs. One shape is enough where the motion is small beside
     /// the room that it has, and more are needed where it passes close by. Only the pieces of the robot that are not proven
@@ -66,7 +70,8 @@ impl BvhSearch {
     ///
     /// Until the first time the margin is kept, which is proven. At the second time a shape does not keep it, which the answer
     /// names. Between the two, the place that touches moves by no more than the resolution. They are farther apart only if the
-    /// motion comes within the resolution of the margin before.
+    /// motion comes within the resolution of the margin before, or if the question ends after
+    /// 65,536 shapes.
     ///
     /// Decisions mean what they do for [`clears_motion`](Self::clears_motion).
     ///

@@ -92,7 +92,9 @@ impl BvhSearch {
     /// [`prove`](Self::prove) for a motion: the proof that the robot keeps more than `margin` away at every time from 0 to 1.
     /// The speeds that the motion states are taken for granted, and printed.
     ///
-    /// `None` if some shape does not keep the margin, or by no more than about `resolution`.
+    /// `None` if some shape does not keep the margin, or by no more than about `resolution`; or if
+    /// the proof would take more than 65,536 shapes or 16 MiB. A motion that needs many shapes has
+    /// a long proof, of 0.2 to 2 kB a shape.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};

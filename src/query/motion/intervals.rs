@@ -32,7 +32,7 @@ pub(super) fn clear(
         }
         intervals.extend(rests(times, still).into_iter().flatten());
     }
-    Ok(progress.undecided.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
+    Ok(progress.undecided().map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
 }
 
 /// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the motion that there are more:

@@ -13,16 +13,14 @@
 
 use super::motion_search::{Interval, MotionSearch};
 use super::moves::Moves;
-use super::moving::Moving;
+use super::moving::{Left, Moving};
 use super::pace::Pace;
+use super::progress::MOST_SHAPES;
 use super::waiting::Waiting;
 use crate::answer::{MotionClearance, ProximityError};
 use crate::pieces::{Found, Look, Near, Outer, Piece, PlacedTube, Question, TubeInMesh, Verdict, refine};
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
-
-/// After so many shapes the bounds are what they are: a limit on the time that a query takes.
-const MOST_SHAPES: u64 = 1 << 16;
 
 /// After so many pieces none is halved any more in a shape.
 const MOST_PIECES: u32 = 1 << 16;
@@ -50,12 +48,8 @@ impl<M: Motion> MotionSearch<'_, M> {
                     if approach.is_answered() {
                         approach.settle(0.0);
                     }
-                    let wanted = approach.wanted();
-                    let is_left = if approach.is_answered() {
-                        [true; 2]
-                    } else {
-                        approach.moving.leave_by_courses(tube, wanted)
-                    };
+                    let is_left =
+                        if approach.is_answered() { [true; 2] } else { approach.leave_by_courses(tube) };
                     Ok((approach.nearest, approach.pace.still, is_left))
                 })?;
             let interval = interval.comes_no_nearer(nearest);
@@ -170,6 +164,18 @@ impl<'a, 'b, M: Motion> Approach<'a, 'b, M> {
 
     fn settle(&mut self, lower: Real) {
         self.known.lower = self.known.lower.min(lower);
+    }
+
+    /// Asks by courses which of the failed pieces come no nearer than `wanted`, and settles these
+    /// at that. A piece failed beside a `wanted` of its own, which has fallen since if a nearer
+    /// shape was found.
+    fn leave_by_courses(&mut self, tube: &mut TubeInMesh) -> [bool; 2] {
+        let wanted = self.wanted();
+        let Left { sides, is_any_settled } = self.moving.leave_by_courses(tube, wanted);
+        if is_any_settled {
+            self.settle(wanted);
+        }
+        sides
     }
 
     /// Takes note of a piece that has to be looked at at other times.

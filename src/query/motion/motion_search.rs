@@ -12,22 +12,28 @@
 //! the middle by where it goes (`side`), against all triangles that are near enough, each in a direction of its own (`own_directions`). What
 //! keeps the margin on one side is not looked at there again; where all do, that side is settled.
 //!
+//! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was
+//! not in vain.
+//!
+//! **A limit.** A question ends after `MOST_SHAPES` shapes: `progress`.
+//!
 //! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is the piece's speed and that of
 //! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
 //!
 //! **Flat ends.** Those that may become round during the interval (`robot::tube::lasting`) are round here: a ball holds the
-//! disc, now and later. The intervals become shorter until the end lasts, or the moment is found at which it becomes
+//! disc, now and later. So are those of a link that may lose its direction. The intervals become
+//! shorter until the end lasts, or the moment is found at which it becomes
 //! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::failure::Failure;
 use super::moment::{Moment, Seen, Wanted};
-use super::moving::Moving;
+use super::moving::{Moving, SmallRooms};
 use super::own_directions::OwnDirections;
 use super::pace::{Pace, middle, rests};
 use super::present::Present;
-use super::progress::{PATIENCE, Progress};
+use super::progress::{MOST_SHAPES, PATIENCE, Progress};
 use super::waiting::Waiting;
-use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
+use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
 use crate::pieces::{Divided, Found, Piece, PlacedTube, TubeInMesh, refine};
 use crate::robot::Motion;
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
@@ -51,6 +57,8 @@ pub(crate) struct MotionMemory {
     /// Where the vertices go, if the mesh moves.
     mesh: MovingMesh,
     directions: OwnDirections,
+    /// Forgotten with each question: answers do not depend on earlier ones.
+    small_rooms: SmallRooms,
 }
 
 /// An interval of time and what has to be looked at in it.
@@ -146,15 +154,16 @@ impl<M: Motion> MotionSearch<'_, M> {
             }
             self.memory.intervals.extend(interval.halves(still, is_left, &failed).into_iter().flatten());
         }
-        Ok(progress.undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
+        Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
     /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
     /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
-    /// larger intervals first, and with patience.
+    /// larger intervals first, and with patience. After [`MOST_SHAPES`] shapes the answer begins
+    /// where the rest does.
     pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
-        let (mut clear_until, mut most) = (1.0, u64::MAX);
+        let (mut clear_until, mut most) = (1.0, MOST_SHAPES);
         self.begin();
         // The last one comes first.
         self.memory.intervals.make_contiguous().reverse();
@@ -165,7 +174,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             if seen.is_undecided && undecided.is_none() {
                 undecided = Some(interval.times);
-                most = self.shapes + PATIENCE;
+                most = most.min(self.shapes + PATIENCE);
             }
             if let Some(found) = seen.contact {
                 let t = interval.middle();
@@ -186,10 +195,15 @@ impl<M: Motion> MotionSearch<'_, M> {
             let halves = interval.halves(still, is_left, &failed);
             self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
+        let left = self.memory.intervals.iter().map(|interval| interval.times);
+        let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
         let Some((t, found)) = contact else {
-            return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
+            let near = undecided.map(|interval| (interval, UndecidedReason::Near));
+            let first = near.or(left.map(|interval| (interval, UndecidedReason::Work)));
+            return Ok(first.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
         };
-        let clear_until = undecided.map_or(clear_until, |interval| interval[0].min(clear_until));
+        let unknown = undecided.into_iter().chain(left).map(|interval| interval[0]);
+        let clear_until = unknown.fold(clear_until, Real::min);
         Ok(MotionAnswer::contact(clear_until, self.shape_in_contact(t, &found)))
     }
 
@@ -207,8 +221,9 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Begins with each part of the motion's time.
     pub(super) fn begin(&mut self) {
-        let MotionMemory { present, intervals, failed, .. } = &mut *self.memory;
+        let MotionMemory { present, intervals, failed, small_rooms, .. } = &mut *self.memory;
         present.forget();
+        *small_rooms = SmallRooms::default();
         intervals.clear();
         failed.clear();
         let legs = self.motion.legs().max(1);
@@ -231,7 +246,8 @@ impl<M: Motion> MotionSearch<'_, M> {
             refine(tube, turn.pieces, &mut moment)?;
             let Moment { mut moving, pace, seen, .. } = moment;
             let is_contact = seen.contact.is_some();
-            let is_left = if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin) };
+            let is_left =
+                if is_contact { [true; 2] } else { moving.leave_by_courses(tube, wanted.margin).sides };
             Ok((seen, pace.still, is_left))
         })?;
         Ok(Judged { seen, still, is_left, failed })
@@ -244,7 +260,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         ask: impl FnOnce(&mut TubeInMesh, &mut Turn, Moving<M>, Pace) -> Result<T, ProximityError>,
     ) -> Result<(T, Range<usize>), ProximityError> {
         let (t, motion, times) = (interval.middle(), self.motion, interval.times);
-        let MotionMemory { present, pieces, begun, failed, failures, mesh, directions, .. } =
+        let MotionMemory { present, pieces, begun, failed, failures, mesh, directions, small_rooms, .. } =
             &mut *self.memory;
         let pose = present.turn_to(motion, t)?;
         self.shapes += 1;
@@ -276,6 +292,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             last: &mut self.last,
             beside: 0.0,
             directions,
+            small_rooms,
         };
         let mut turn = Turn { pieces, begun, is_whole: interval.pieces.is_none() };
         let seen = ask(&mut tube, &mut turn, moving, pace)?;

@@ -17,7 +17,8 @@ use parry3d_f64::math::Real;
 /// Of more pieces that failed in an interval, courses are not asked: that would take longer than another shape.
 const MOST_PIECES: usize = 8;
 
-/// A piece with less room than this part of its reach seldom goes so much along the wall.
+/// A piece with less room than this part of its reach seldom goes so much along the wall: one that
+/// slides along it does.
 const LEAST_ROOM: Real = 0.1;
 
 /// The pieces of a robot that moves, in an interval of time.
@@ -39,6 +40,7 @@ pub(crate) struct Moving<'a, M> {
     /// By how much faster a point of its body may be than the centreline, the mesh's speed included.
     pub beside: Real,
     pub directions: &'a mut OwnDirections,
+    pub small_rooms: &'a mut SmallRooms,
 }
 
 impl<'m, M: Motion> Moves<TubeInMesh<'m>, Waiting> for Moving<'_, M> {
@@ -79,26 +81,41 @@ impl<'m, M: Motion> Moves<TubeInMesh<'m>, Waiting> for Moving<'_, M> {
     }
 }
 
+/// On which sides of the middle shape failed pieces are left.
+pub(crate) struct Left {
+    /// Before the shape, and after it.
+    pub sides: [bool; 2],
+    /// Whether a piece was settled on some side.
+    pub is_any_settled: bool,
+}
+
 impl<M: Motion> Moving<'_, M> {
     /// Which of the pieces that failed keep the margin before the middle shape all the same, or after it, by where they go. The
-    /// nearest one is asked first, and none after one that does not: that side has to be looked at anyway. Whether any is left
-    /// on either side.
-    pub(crate) fn leave_by_courses(&mut self, tube: &mut TubeInMesh, margin: Real) -> [bool; 2] {
+    /// nearest one is asked first, and none after one that does not: that side has to be looked at
+    /// anyway.
+    pub(crate) fn leave_by_courses(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
         let nearest = self.failures.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
-        let Some((nearest, _)) = nearest else { return [false; 2] };
+        let mut left = Left { sides: [false; 2], is_any_settled: false };
+        let Some((nearest, _)) = nearest else { return left };
         if self.failures.len() > MOST_PIECES {
-            return [true; 2];
+            left.sides = [true; 2];
+            return left;
         }
+        let slack = tube.tube.slack();
+        let room = |failure: &Failure| failure.away - margin - slack;
+        let is_small = |failure: &Failure| room(failure) <= LEAST_ROOM * failure.reach;
+        let has_small = self.failures.iter().any(is_small);
+        let asks_small =
+            has_small && self.failures.iter().all(|it| room(it) > 0.0) && self.small_rooms.is_due();
         self.failures.swap(0, nearest);
         self.failed.swap(self.first, self.first + nearest);
-        let slack = tube.tube.slack();
-        let mut is_left = [false; 2];
         for (number, failure) in self.failures.iter().enumerate() {
-            if failure.away - margin - slack <= LEAST_ROOM * failure.reach {
-                return [true; 2];
+            if is_small(failure) && !asks_small {
+                left.sides = [true; 2];
+                return left;
             }
             let part = &mut self.failed[self.first + number];
-            for (side, is_left) in is_left.iter_mut().enumerate().filter(|(_, is_left)| !**is_left) {
+            for (side, is_left) in left.sides.iter_mut().enumerate().filter(|(_, is_left)| !**is_left) {
                 let times = if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
                 let course = self.motion.course(part.section as usize, part.shares, times);
                 let keeps =
@@ -108,11 +125,43 @@ impl<M: Motion> Moving<'_, M> {
                     });
                 part.is_left[side] = !keeps;
                 *is_left = !keeps;
+                left.is_any_settled |= keeps;
             }
-            if is_left == [true; 2] {
+            if left.sides == [true; 2] {
                 break;
             }
         }
-        is_left
+        if asks_small {
+            self.small_rooms.note(left.sides != [true; 2]);
+        }
+        left
+    }
+}
+
+/// How often pieces with little room are asked about their courses: seldom where it was in vain.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SmallRooms {
+    /// How many shapes are passed over after the last one that was asked.
+    pause: u32,
+    /// How many of these are still to come.
+    left: u32,
+}
+
+/// The longest pause. A course costs up to as much as a shape: so it costs an eighth more at most
+/// where it is always in vain.
+const LONGEST_PAUSE: u32 = 15;
+
+impl SmallRooms {
+    /// Whether the next shape is asked.
+    fn is_due(&mut self) -> bool {
+        let is_due = self.left == 0;
+        self.left = self.left.saturating_sub(1);
+        is_due
+    }
+
+    /// Takes note of what one that was asked has shown.
+    fn note(&mut self, is_settled: bool) {
+        self.pause = if is_settled { 0 } else { (2 * self.pause + 1).min(LONGEST_PAUSE) };
+        self.left = self.pause;
     }
 }

@@ -16,6 +16,8 @@ pub(super) struct MovingPair<'a, A, B> {
     pub times: [Real; 2],
     /// How fast the two pieces are that are looked at.
     pub speeds: [Real; 2],
+    /// How many pairs of pieces may still be looked at, in these shapes and all others.
+    pub left: &'a mut u32,
 }
 
 impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_, A, B> {
@@ -27,6 +29,7 @@ impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_,
         _: &[Outer; 2],
         tubes: &TwoTubes<'t>,
     ) -> Result<Real, ProximityError> {
+        *self.left = self.left.saturating_sub(1);
         let [first, second] = tubes.stretches(pair);
         let (a, b) = self.motions;
         let fast = [Fast::of(a, self.times, &first), Fast::of(b, self.times, &second)];
@@ -36,6 +39,10 @@ impl<'t, A: Motion, B: Motion> Moves<TwoTubes<'t>, PiecePair> for MovingPair<'_,
             *speed = centreline + rim;
         }
         Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+    }
+
+    fn gives_up(&self) -> bool {
+        *self.left == 0
     }
 
     fn fastest(&self, near: &Near<TwoTubes<'t>, PiecePair>, _: Real) -> (usize, Real) {

@@ -22,9 +22,10 @@ use std::collections::VecDeque;
 /// A direction that turns faster than this, in rad, would have time divided into a million intervals at once.
 const FASTEST_TURN: Real = (1_u64 << 18) as Real;
 
-/// So many pairs of pieces are looked at in all shapes together, 2^20. Where the margin is as wide as a bend, there may be no end of
-/// pairs of which nobody knows whether they are asked about.
-const MOST_PAIRS: u32 = 1 << 20;
+/// So many pairs of pieces are looked at in all shapes together, 2^18: about a second. Where the
+/// margin is as wide as a bend, there may be no end of pairs of which nobody knows whether they are
+/// asked about.
+const MOST_PAIRS: u32 = 1 << 18;
 
 /// Memory of a query, used again by the next.
 #[derive(Clone, Debug, Default)]

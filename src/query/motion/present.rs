@@ -1,7 +1,7 @@
 //! The shape in which a robot is looked at.
 
-use super::pace::half;
-use crate::robot::{Motion, RobotError, Sections, Tube};
+use super::pace::{half, middle};
+use crate::robot::{Motion, MotionDrift, RobotError, Sections, Tube};
 use parry3d_f64::math::{Pose, Real};
 
 /// The present shape of a robot that moves, in memory that is used again.
@@ -38,11 +38,6 @@ impl Present {
     /// Tells which flat ends stay flat between two times, of which this is the middle shape. By how much those move that may not
     /// is returned.
     pub(super) fn hold_faces<M: Motion>(&mut self, motion: &M, times: [Real; 2]) -> Real {
-        let half = half(times);
-        self.tube.hold_faces(|section, end| {
-            // A speed that is none holds nothing; it is refused where it is asked for.
-            let speed = motion.speed(section, [end as Real; 2], times).point;
-            half * if speed >= 0.0 { speed } else { Real::INFINITY }
-        })
+        self.tube.hold_faces(&MotionDrift { motion, times, t: middle(times), half: half(times) })
     }
 }

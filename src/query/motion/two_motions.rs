@@ -8,6 +8,7 @@
 
 use super::intervals;
 use super::moment::{Moment, Seen, Wanted};
+use super::moves::Moves;
 use super::moving_pair::MovingPair;
 use super::pace::{Pace, check_pace, half, middle};
 use super::present::Present;
@@ -17,6 +18,9 @@ use crate::pieces::{Beginning, Divided, FoundBetween, PiecePair, PlacedTube, Two
 use crate::robot::{Motion, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
+
+/// So many pairs of pieces are looked at in all shapes together, 2^20.
+const MOST_PAIRS: u32 = 1 << 20;
 
 /// Memory of a query, used again by the next.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +47,8 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
             present.forget();
         }
         intervals::begin(&mut intervals, [self.motions.0.legs(), self.motions.1.legs()]);
-        let answer = intervals::clear(&mut intervals, |times| self.judge(times, wanted));
+        let mut left = MOST_PAIRS;
+        let answer = intervals::clear(&mut intervals, |times| self.judge(times, wanted, &mut left));
         self.memory.intervals = intervals;
         answer
     }
@@ -54,6 +59,7 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
         &mut self,
         times: [Real; 2],
         wanted: Wanted,
+        left: &mut u32,
     ) -> Result<(Seen<FoundBetween>, Real), ProximityError> {
         let (motions, names) = (self.motions, self.names);
         let MotionsMemory { present: [first, second], beginning, pairs, .. } = &mut *self.memory;
@@ -72,11 +78,14 @@ impl<A: Motion, B: Motion> TwoMotions<'_, A, B> {
             check_pace(faster.speed, resolution, || (faster.fastest, faster.speed))?;
         }
         let pace = Pace::new(times, first.opening.max(second.opening));
-        let moving = MovingPair { motions, names, times, speeds: [0.0; 2] };
+        let moving = MovingPair { motions, names, times, speeds: [0.0; 2], left };
         let mut moment = Moment { moving, pace, wanted, seen: Seen::nothing() };
         refine(&mut tubes, pairs, &mut moment)?;
-        let still = if is_all { moment.pace.still } else { 0.0 };
-        Ok((moment.seen, still))
+        let Moment { moving, pace, mut seen, .. } = moment;
+        if moving.gives_up() && seen.contact.is_none() {
+            (seen.is_undecided, seen.gives_up) = (true, true);
+        }
+        Ok((seen, if is_all { pace.still } else { 0.0 }))
     }
 }
 

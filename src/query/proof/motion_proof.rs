@@ -2,19 +2,23 @@
 //! until the interval ends.
 
 use super::parting::Parting;
-use super::text::Parted;
+use super::text::{Kind, Parted, size_of};
 use super::tube_shape::tube_shape;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pieces::PlacedTube;
-use crate::robot::{Motion, Sections, Tube, check_speed};
+use crate::robot::{Motion, MotionDrift, Sections, Tube, check_speed};
 use parry3d_f64::math::Real;
 
 /// More shapes are in no proof.
 const MOST_SHAPES: usize = 1 << 16;
 
+/// A longer text is no proof, in bytes: 16 MiB.
+const MOST_BYTES: usize = 1 << 24;
+
 /// Shapes, each with the steps that part it from the mesh while its interval lasts, in the order of time; none where a shape
-/// comes as near as the margin, or so near that moving by `resolution` matters. `reach` is the mesh's largest coordinate.
+/// comes as near as the margin, or so near that moving by `resolution` matters, or where they are
+/// more than a proof holds. `reach` is the mesh's largest coordinate.
 pub(crate) fn motion_proof(
     parting: &mut Parting,
     reach: Real,
@@ -23,7 +27,8 @@ pub(crate) fn motion_proof(
     resolution: Real,
 ) -> Result<Option<Vec<Parted>>, ProximityError> {
     let (mut tube, mut sections) = (Tube::empty(), Sections::default());
-    let (mut proven, mut waiting, mut shapes) = (Vec::new(), vec![[0.0, 1.0]], 0);
+    let (mut proven, mut waiting) = (Vec::new(), vec![[0.0, 1.0]]);
+    let (mut shapes, mut bytes) = (0, 0);
     while let Some(times @ [from, to]) = waiting.pop() {
         let t = 0.5 * from + 0.5 * to;
         let half = 0.5 * (to - from);
@@ -31,13 +36,14 @@ pub(crate) fn motion_proof(
         let pose = motion.shape(t, &mut tube)?;
         sections.check(t, &tube)?;
         shapes += 1;
-        let placed = PlacedTube::new(&tube, &pose, reach)?;
+        tube.hold_faces(&MotionDrift { motion, times, t, half });
+        let placed = PlacedTube::new(&tube, &pose, reach)?.moving();
         let fastest = (0..placed.sections().len()).map(|section| {
             let speed = motion.speed(section, [0.0, 1.0], times).point;
             check_speed(section, speed)
         });
         let fastest = fastest.collect::<Result<Vec<_>, _>>()?.into_iter().fold(0.0, Real::max);
-        let moves = half * fastest;
+        let mut moves = half * fastest;
         // What bends takes less of the room than what moves.
         let over = (0.25 * moves).max(0.25 * resolution).max(placed.slack());
         let (mut shape, places) = tube_shape(&placed, over, true);
@@ -47,10 +53,22 @@ pub(crate) fn motion_proof(
             let speed = motion.speed(section, placed.shares(place), times);
             let rounded = 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
             piece.speed = check_speed(section, speed.point)? * rounded;
-            piece.turn = check_speed(section, speed.turn)? * rounded;
+            // Balls need no turn: that of a link that loses its length is infinite.
+            let is_unbounded = piece.flat == [false; 2] && speed.turn == Real::INFINITY;
+            let turn = if is_unbounded { Real::MAX } else { speed.turn };
+            piece.turn = (check_speed(section, turn)? * rounded).min(Real::MAX);
+            if piece.flat != [false; 2] {
+                // The rims move as they turn, also where the centreline rests.
+                moves = moves.max(half * (piece.speed + piece.radius * piece.turn));
+            }
         }
         if let Some(steps) = parting.steps(&shape.bodies(margin)) {
-            proven.push((shape, steps));
+            let parted = (shape, steps);
+            bytes += size_of(Kind::Motion, &parted);
+            if bytes > MOST_BYTES {
+                return Ok(None);
+            }
+            proven.push(parted);
             continue;
         }
         let is_fine = moves <= resolution.max(placed.slack()) || !(from < t && t < to);

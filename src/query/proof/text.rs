@@ -6,7 +6,7 @@ use crate::answer::Proof;
 use crate::mesh::Mesh;
 use parry3d_f64::math::{Real, Vector};
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// A shape, and the steps that part it from the mesh.
 pub(crate) type Parted = (Shape, Vec<Step>);
@@ -34,44 +34,68 @@ pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Parte
     let mut write = |line: std::fmt::Arguments| text.write_fmt(line).unwrap_or_default();
     write(format_args!("proof of clearance 1\nmesh {vertices} {triangles} {}\n", digest(mesh)));
     write(format_args!("margin {margin:?}\n{name} {}\n", shapes.len()));
-    for (shape, steps) in shapes {
-        write(format_args!("shape"));
-        if kind == Kind::Motion {
-            let [from, to] = shape.times;
-            write(format_args!(" {from:?} {to:?}"));
-        }
-        write(format_args!(" {}\n", shape.pieces.len()));
-        for Vector { x, y, z } in &shape.points {
-            write(format_args!("{x:?} {y:?} {z:?}\n"));
-        }
-        for piece in &shape.pieces {
-            let Piece { radius, flat, curvature, length, off, speed, turn } = piece;
-            let [start, end] = flat.map(|flat| if flat { 'f' } else { 'r' });
-            write(format_args!("{radius:?} {start}{end}"));
-            if kind != Kind::Chain {
-                write(format_args!(" {curvature:?} {length:?} {off:?}"));
-            }
-            if kind == Kind::Motion {
-                write(format_args!(" {speed:?} {turn:?}"));
-            }
-            write(format_args!("\n"));
-        }
-        write(format_args!("steps {}\n", steps.len()));
-        for (number, step) in (1..).zip(steps) {
-            match step {
-                Step::Triangles => write(format_args!("t")),
-                Step::Pieces => write(format_args!("p")),
-                Step::Plane([x, y, z]) => {
-                    planes += 1;
-                    write(format_args!("{x},{y},{z}"));
-                }
-            }
-            let is_last = number % ON_A_LINE == 0 || number == steps.len();
-            write(format_args!("{}", if is_last { '\n' } else { ' ' }));
-        }
+    for parted in shapes {
+        planes += write_shape(kind, parted, &mut text).unwrap_or_default();
     }
-    write(format_args!("end\n"));
+    text.push_str("end\n");
     Proof::new(text, planes, shapes.len())
+}
+
+/// How long the text of a shape is, in bytes.
+pub(crate) fn size_of(kind: Kind, parted: &Parted) -> usize {
+    let mut size = Size(0);
+    write_shape(kind, parted, &mut size).unwrap_or_default();
+    size.0
+}
+
+/// Counts what is written.
+struct Size(usize);
+
+impl Write for Size {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0 += text.len();
+        Ok(())
+    }
+}
+
+/// A shape and its steps, of which so many are planes.
+fn write_shape(kind: Kind, (shape, steps): &Parted, text: &mut impl Write) -> Result<usize, fmt::Error> {
+    let mut planes = 0;
+    write!(text, "shape")?;
+    if kind == Kind::Motion {
+        let [from, to] = shape.times;
+        write!(text, " {from:?} {to:?}")?;
+    }
+    writeln!(text, " {}", shape.pieces.len())?;
+    for Vector { x, y, z } in &shape.points {
+        writeln!(text, "{x:?} {y:?} {z:?}")?;
+    }
+    for piece in &shape.pieces {
+        let Piece { radius, flat, curvature, length, off, speed, turn } = piece;
+        let [start, end] = flat.map(|flat| if flat { 'f' } else { 'r' });
+        write!(text, "{radius:?} {start}{end}")?;
+        if kind != Kind::Chain {
+            write!(text, " {curvature:?} {length:?} {off:?}")?;
+        }
+        if kind == Kind::Motion {
+            write!(text, " {speed:?} {turn:?}")?;
+        }
+        writeln!(text)?;
+    }
+    writeln!(text, "steps {}", steps.len())?;
+    for (number, step) in (1..).zip(steps) {
+        match step {
+            Step::Triangles => write!(text, "t")?,
+            Step::Pieces => write!(text, "p")?,
+            Step::Plane([x, y, z]) => {
+                planes += 1;
+                write!(text, "{x},{y},{z}")?;
+            }
+        }
+        let is_last = number % ON_A_LINE == 0 || number == steps.len();
+        write!(text, "{}", if is_last { '\n' } else { ' ' })?;
+    }
+    Ok(planes)
 }
 
 /// SHA-256 over all coordinates, then the corners of all triangles, little-endian.

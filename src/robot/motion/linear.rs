@@ -3,18 +3,35 @@
 //! The point at the share u of a link from a(t) to b(t) has the velocity (1 - u) a' + u b', whose length is a convex
 //! function of u: between two shares it is at most the larger of that at the two.
 //!
-//! The link's direction n = d / |d|, d = b - a, turns at |n'| = |d x d'| / |d|^2. As d(t) = d0 + t w with a constant w,
-//! d x w = d0 x w does not change, and n turns fastest where |d| is least: |d|^2 is a parabola in t, and least at
-//! t = -<d0, w> / |w|^2 or at the end of the interval next to that.
+//! # The turn of a link
+//! **Definitions.** d(t) leads from the link's start to its end, d0 and d1 at the times 0 and 1, w
+//! = d1 - d0 and n = d / |d|. L is a lower bound on |d(t)| during the interval.
 //!
-//! A link that may lose its length, and with it the direction of its faces, is marked: queries take its flat ends for
-//! round, which holds both.
+//! **Claim.** n turns no faster than |d0 x d1| / L^2. **Proof.** |n'| = |d x w| / |d|^2, and
+//! d x w = d0 x w = d0 x d1 at all times.
+//!
+//! **Claim.** |d(t)| >= min(m . d(t0), m . d(t1)) in the interval from t0 to t1, for any unit
+//! vector m. **Proof.**
+//! |d| >= m . d, which is linear in t. For m we take the direction of d where |d| is least, at t = -<d0, w> / |w|^2 or at the
+//! nearer end of the interval.
+//!
+//! **Rounding.** A difference of two points is off by u for each of its coordinates, so d0, d1 and
+//! d(t) are off by u relative to |d0| and |d1|, wherever the link is, and d0 x d1 by less than 8 u
+//! |d0| |d1|. The vertices of a shape are off by e = 9 u reach each, where no coordinate is larger
+//! than reach. So the direction of a computed link is off by 2 e / |d| and less than 32 u reach /
+//! |d|. A link that is at least as long as its radius moves its rims by less than 32 u reach for
+//! it, which the slack of a placed tube includes. The faces of a shorter one are tilted by it
+//! (`tilt_faces`).
+//!
+//! # A link that loses its length
+//! It is marked: during an interval in which its length may vanish, queries take its flat ends for
+//! round, which holds both (`lasting`).
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::chain::{check, without_length};
 use crate::robot::modified_cylinder::has_direction;
-use crate::robot::{RobotError, Tube};
+use crate::robot::{RobotError, Tube, direction};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The motion of a chain each of whose vertices moves straight and evenly from one place to another.
@@ -44,6 +61,8 @@ pub struct LinearMotion {
     segments: Vec<u32>,
     /// None for capsules; else the links whose direction may get lost.
     fading: Option<Vec<usize>>,
+    /// The largest coordinate.
+    reach: Real,
 }
 
 impl LinearMotion {
@@ -100,20 +119,21 @@ impl LinearMotion {
         let segments: Vec<_> = (0..radii.len()).filter(has_length).collect();
         let Some(&first) = segments.first() else { return Err(without_length(from, radii, "segment_radii")) };
         let vertices = || std::iter::once(first).chain(segments.iter().map(|k| k + 1));
+        let (from, to): (Vec<_>, Vec<_>) = vertices().map(|k| (from[k], to[k])).unzip();
+        let reach = from.iter().chain(&to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
         Ok(Self {
-            from: vertices().map(|k| from[k]).collect(),
-            to: vertices().map(|k| to[k]).collect(),
             radii: segments.iter().map(|&k| radii[k]).collect(),
             segments: segments.iter().map(|&k| k as u32).collect(),
             fading: None,
+            from,
+            to,
+            reach,
         })
     }
 
-    /// From the start of a link to its end, at t = 0, and how fast that changes.
+    /// From the start of a link to its end, at t = 0 and at t = 1.
     fn link(&self, link: usize) -> [Vector; 2] {
-        let start = self.to[link] - self.from[link];
-        let end = self.to[link + 1] - self.from[link + 1];
-        [self.from[link + 1] - self.from[link], end - start]
+        [&self.from, &self.to].map(|points| points[link + 1] - points[link])
     }
 
     /// How fast a vertex moves.
@@ -123,18 +143,34 @@ impl LinearMotion {
 
     /// What rounding can do to a coordinate of a vertex on its way, and to a few such.
     fn rounding(&self) -> Real {
-        let reach =
-            |points: &[Vector]| points.iter().fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
-        16.0 * Real::UNIT_ROUNDOFF * reach(&self.from).max(reach(&self.to))
+        16.0 * Real::UNIT_ROUNDOFF * self.reach
     }
 
     /// The links whose direction may get lost.
     fn fading_links(&self) -> Vec<usize> {
-        // `has_direction` asks for far less, where rounding is not all that there is.
-        let needed = |link: usize| 2.0 * self.rounding() + 1e-100 * self.radii[link];
-        (0..self.radii.len())
-            .filter(|&link| least_length(self.link(link), [0.0, 1.0]) <= needed(link))
-            .collect()
+        let has_direction = |&link: &usize| {
+            least_length(self.link(link), [0.0, 1.0]) > 2.0 * self.rounding() + self.needed(link)
+        };
+        (0..self.radii.len()).filter(|link| !has_direction(link)).collect()
+    }
+
+    /// A link has a direction if it is longer than this. (`has_direction` asks for far less.)
+    fn needed(&self, link: usize) -> Real {
+        1e-100 * self.radii[link]
+    }
+
+    /// How fast a link turns at most.
+    fn turn(&self, link: usize, times: [Real; 2]) -> Real {
+        let [first, last] = self.link(link);
+        // Less than 32 roundings each.
+        let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
+        let sizes = first.length() * last.length();
+        let cross = first.cross(last).length() + 8.0 * Real::UNIT_ROUNDOFF * sizes;
+        if cross == 0.0 {
+            return 0.0;
+        }
+        let least = least_length([first, last], times);
+        if least > self.needed(link) { cross / least / least * up } else { Real::INFINITY }
     }
 }
 
@@ -142,8 +178,14 @@ impl Motion for LinearMotion {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         let points = self.from.iter().zip(&self.to).map(|(&from, &to)| from + (to - from) * t);
         tube.set_links(points, &self.radii, &self.segments, self.fading.is_some());
-        for &link in self.fading.iter().flatten() {
-            tube.mark_fading(link);
+        if let Some(fading) = &self.fading {
+            for (link, radius) in self.radii.iter().enumerate() {
+                let length = tube.length_of(link);
+                if length < *radius {
+                    tube.tilt_faces(link, 2.0 * self.rounding() / length);
+                }
+            }
+            fading.iter().for_each(|&link| tube.mark_fading(link));
         }
         Ok(Pose::IDENTITY)
     }
@@ -156,14 +198,8 @@ impl Motion for LinearMotion {
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let [start, end] = [self.velocity(section), self.velocity(section + 1)];
         let speed = |share: Real| (start + (end - start) * share).length();
-        let [along, change] = self.link(section);
-        let rounding = self.rounding();
-        // Each of the two vectors is off by up to `rounding`, and so is the length.
-        let cross =
-            along.cross(change).length() + 4.0 * rounding * (along.length() + change.length() + rounding);
-        let least = (least_length([along, change], times) - 2.0 * rounding).max(0.0);
-        let turn = if cross > 0.0 { cross / (least * least) * up } else { 0.0 };
-        Speed { point: speed(shares[0]).max(speed(shares[1])) * up + rounding, turn }
+        let point = speed(shares[0]).max(speed(shares[1])) * up + self.rounding();
+        Speed { point, turn: self.turn(section, times) }
     }
 
     /// A point at a share of a link moves straight and evenly, as the ends of the link do.
@@ -179,10 +215,18 @@ impl Motion for LinearMotion {
     }
 }
 
-/// The least length that a vector has between two times: at time 0, and its change until time 1.
-fn least_length([along, change]: [Vector; 2], times: [Real; 2]) -> Real {
-    let fastest = -along.dot(change) / change.length_squared();
+/// A lower bound on the length of a vector between two times, which changes evenly from the first
+/// to the last one.
+fn least_length([first, last]: [Vector; 2], times: [Real; 2]) -> Real {
+    let at = |t: Real| first * (1.0 - t) + last * t;
+    let change = last - first;
+    let fastest = -first.dot(change) / change.length_squared();
     // Without a change the quotient is NaN, and any time will do.
     let time = if fastest > times[0] { fastest.min(times[1]) } else { times[0] };
-    (along + change * time).length()
+    let direction = direction(at(time));
+    // Both vectors are off by u, and so are weights, products, sums and the direction: less than 16
+    // u in all.
+    let rounding = |t: Real| 16.0 * Real::UNIT_ROUNDOFF * (first.length() * (1.0 - t) + last.length() * t);
+    let least = times.map(|t| direction.dot(at(t)) - rounding(t));
+    least[0].min(least[1]).max(0.0)
 }

@@ -4,6 +4,7 @@ mod bending;
 mod course;
 #[cfg(test)]
 mod course_tests;
+mod drift;
 mod linear;
 mod motion_path;
 mod moving_base;
@@ -18,6 +19,7 @@ mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_course, bending_speed};
 pub use course::Course;
+pub(crate) use drift::MotionDrift;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;

@@ -86,11 +86,14 @@ impl Sampled {
             let Some(section) = tube.sections().get(place.section) else { continue };
             let [from, to] = place.shares;
             let here = tube.at_share(section, from);
+            // The direction of a link is that between its two ends, which are rounded.
+            let is_link = section.last - section.first == 1;
+            let turned = if is_link { self.rounding / (section.end - section.start) } else { 0.0 };
             let mut sample = Sample {
                 point: *pose * here.point,
                 error: here.off + tube.error(),
                 direction: pose.rotation * here.direction,
-                tilt: here.tilt + 32.0 * Real::UNIT_ROUNDOFF,
+                tilt: here.tilt + turned + 32.0 * Real::UNIT_ROUNDOFF,
                 shrink: 1.0,
             };
             if from < to {

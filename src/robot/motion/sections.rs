@@ -18,9 +18,11 @@ impl Sections {
     /// The shape at `t` has other sections.
     pub(crate) fn check(&mut self, t: Real, tube: &Tube) -> Result<(), RobotError> {
         let found = tube.sections().iter().map(|section| {
-            // A face whose direction gets lost is taken for round, whatever it is in other shapes; without a length it has none.
+            // A face whose direction gets lost may be round in other shapes; without a length it
+            // has none.
             let lasts = |end: usize| match section.faces[end].map(|face| face.lasting) {
                 Some(Lasting::Never) => None,
+                _ if section.fades => None,
                 None if section.start == section.end => None,
                 lasting => Some(lasting == Some(Lasting::Always)),
             };

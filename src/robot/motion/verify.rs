@@ -5,6 +5,12 @@
 //! 4 and more steps apart, and with the first shape. The ways that were stated for the steps between them add up, and what is
 //! unknown of the two shapes counts once.
 //!
+//! **Ranges of shares.** A bound holds for every place of the range that it is stated for. So each
+//! place is compared with the bounds of many ranges that hold it, and the least of them counts: the
+//! place alone, from the base to it, from it to the tip, the dyadic ranges at three levels, the
+//! whole section, and one range that is drawn for each step. A bound that looks at one end of its
+//! range only is too low for some of these.
+//!
 //! A course is compared with three shapes: those at both ends of its time, and the one at its middle, where what moves at a constant
 //! acceleration is farthest off.
 
@@ -21,8 +27,13 @@ use parry3d_f64::math::Real;
 /// steps apart, and for each shape and the first. A bound that is too low only for a moment, or only between two places, shows
 /// if the steps are fine enough. Steps cannot be too fine.
 ///
+/// A speed is asked for ranges of shares, and holds for every place of its range. So the motion is
+/// asked for several ranges that hold a place s: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves,
+/// quarters and eighths of the section, and one range that is drawn for each step, always the same
+/// ones. The least of these bounds counts, and is what the error names.
+///
 /// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at its middle, between steps and
-/// between shapes that are 2, 4, 8 and more steps apart: at each place alone, and at each as a part of the whole section.
+/// between shapes that are 2, 4, 8 and more steps apart, for the same ranges.
 ///
 /// Some of what moves may be an error of the shapes, which does not count against the motion:
 ///
@@ -58,6 +69,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
     let steps = steps.max(1);
     let (mut tube, mut sections, mut here) = (Tube::empty(), Sections::default(), Sampled::default());
     let (mut all, mut stated) = (Vec::new(), Vec::new());
+    let mut ranges = Ranges::default();
     // The first shape; then the last one of every step, of every second one, of every fourth and so on.
     let mut kept = Vec::<Sampled>::new();
     for step in 0..=steps {
@@ -70,18 +82,19 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
         }
         here.take(t, &tube, &pose, &all);
         if step > 0 {
+            ranges.draw();
             let times = [Real::from(step - 1) / Real::from(steps), t];
-            stated.clear();
-            stated.extend(all.iter().map(|place| way_and_angle(motion, place, times)));
+            ranges.ways_and_angles(motion, &all, times, &mut stated);
             kept.iter_mut().for_each(|before| before.add(&stated));
             // Those of every 2^k steps, if this is one, and the first.
             let met = 2 + step.trailing_zeros() as usize;
             for before in kept.iter().take(met) {
-                check(before, &here, &all, motion)?;
+                ranges.ways_and_angles(motion, &all, [before.t, t], &mut stated);
+                check(before, &here, &all, &stated)?;
             }
             for steps in 1..met {
                 let middle = (steps > 1).then(|| &kept[steps - 1]);
-                check_courses([&kept[steps], &here], middle, &all, motion)?;
+                check_courses([&kept[steps], &here], middle, &all, motion, &ranges)?;
             }
         }
         let due = if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
@@ -94,11 +107,89 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
     Ok(())
 }
 
-/// How far a place may move, and by how much it may turn, between two times.
-fn way_and_angle(motion: &impl Motion, place: &SampledPlace, times: [Real; 2]) -> [Real; 2] {
-    let speed = motion.speed(place.section, place.shares, times);
-    let apart = times[1] - times[0];
-    [speed.point * apart, speed.turn * apart]
+/// The ranges of shares that a motion is asked for.
+#[derive(Default)]
+struct Ranges {
+    /// How many steps were drawn for.
+    drawn: u32,
+    /// A drawn range reaches this part of the way from a place to either end of the section.
+    parts: [Real; 2],
+}
+
+/// The section in 1, 2, 4 and 8 parts.
+const LEVELS: u32 = 4;
+
+impl Ranges {
+    /// Draws the range of the next step: the same one for the same step.
+    fn draw(&mut self) {
+        self.drawn = self.drawn.wrapping_add(1);
+        self.parts = [0, 1].map(|end| {
+            // The multipliers of SplitMix64, Steele et al. 2014.
+            let mut bits = (2 * u64::from(self.drawn) + end).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((bits ^ (bits >> 31)) >> 32) as Real / 2.0_f64.powi(32)
+        });
+    }
+
+    /// Those that belong to a place: it alone, all before it, all behind it, and what was drawn. Of
+    /// a chord, which lies between two such places, it alone.
+    fn of_place(&self, [from, to]: [Real; 2]) -> impl Iterator<Item = [Real; 2]> + use<> {
+        let [before, behind] = self.parts;
+        let drawn = [(from * (1.0 - before)).min(from), (to + (1.0 - to) * behind).clamp(to, 1.0)];
+        let around = [[0.0, to], [from, 1.0], drawn].into_iter().filter(move |_| from == to);
+        std::iter::once([from, to]).chain(around)
+    }
+
+    /// How far each place may move, and by how much it may turn, between two times: the least that
+    /// is stated for a range of shares that holds it.
+    fn ways_and_angles(
+        &self,
+        motion: &impl Motion,
+        places: &[SampledPlace],
+        times: [Real; 2],
+        out: &mut Vec<[Real; 2]>,
+    ) {
+        let apart = times[1] - times[0];
+        let stated = |section: usize, shares: [Real; 2]| {
+            let speed = motion.speed(section, shares, times);
+            [speed.point * apart, speed.turn * apart]
+        };
+        out.clear();
+        let mut dyadic = Vec::new();
+        let mut present = None;
+        for &SampledPlace { section, shares } in places {
+            if present != Some(section) {
+                present = Some(section);
+                dyadic.clear();
+                dyadic.extend(dyadic_ranges().map(|range| (range, stated(section, range))));
+            }
+            let own = self.of_place(shares).map(|range| stated(section, range));
+            let around = dyadic.iter().filter(|(range, _)| holds(*range, shares)).map(|(_, stated)| *stated);
+            let least = own
+                .chain(around)
+                .fold([Real::INFINITY; 2], |least, stated| [0, 1].map(|k| smaller(least[k], stated[k])));
+            out.push(least);
+        }
+    }
+}
+
+/// The smaller one; NaN if either is.
+fn smaller(a: Real, b: Real) -> Real {
+    if a <= b || a.is_nan() { a } else { b }
+}
+
+/// The parts of a section, level by level.
+fn dyadic_ranges() -> impl Iterator<Item = [Real; 2]> {
+    (0..LEVELS).flat_map(|level| {
+        let count = 1_u32 << level;
+        (0..count).map(move |part| [part, part + 1].map(|end| Real::from(end) / Real::from(count)))
+    })
+}
+
+/// Whether a range holds another one.
+fn holds(range: [Real; 2], shares: [Real; 2]) -> bool {
+    range[0] <= shares[0] && shares[1] <= range[1]
 }
 
 /// # Errors
@@ -107,13 +198,13 @@ fn check(
     before: &Sampled,
     here: &Sampled,
     places: &[SampledPlace],
-    motion: &impl Motion,
+    stated: &[[Real; 2]],
 ) -> Result<(), RobotError> {
     let times = [before.t, here.t];
     let (t, apart) = (0.5 * (times[0] + times[1]), times[1] - times[0]);
-    for (number, place) in places.iter().enumerate() {
+    for (number, (place, &whole)) in places.iter().zip(stated).enumerate() {
         let Some(Moved { way, angle }) = before.moved(here, number) else { continue };
-        let (whole, steps) = (way_and_angle(motion, place, times), before.stated(number));
+        let steps = before.stated(number);
         // Sums of fewer than 2^32 terms above 0, each of which has a few roundings.
         let up = 1.0 + 2.0_f64.powi(34) * Real::UNIT_ROUNDOFF;
         let &SampledPlace { section, shares: [share, _] } = place;
@@ -144,14 +235,28 @@ fn check_courses(
     middle: Option<&Sampled>,
     places: &[SampledPlace],
     motion: &impl Motion,
+    ranges: &Ranges,
 ) -> Result<(), RobotError> {
     let times = [before.t, here.t];
+    let mut dyadic = Vec::new();
+    let mut present = None;
     for (number, place) in places.iter().enumerate() {
         let &SampledPlace { section, shares: [share, end] } = place;
-        let whole = (share == end).then_some([0.0, 1.0]);
-        for shares in [Some([share; 2]), whole].into_iter().flatten() {
-            let Some(course) = motion.course(section, shares, times) else { continue };
-            let way = course.way(if shares[0] < shares[1] { share } else { 0.0 });
+        if share < end {
+            // A chord begins at a place that is asked about itself.
+            continue;
+        }
+        if present != Some(section) {
+            present = Some(section);
+            dyadic.clear();
+            dyadic.extend(dyadic_ranges().map(|range| (range, motion.course(section, range, times))));
+        }
+        let own = ranges.of_place([share; 2]).map(|range| (range, motion.course(section, range, times)));
+        let around = dyadic.iter().copied().filter(|(range, _)| holds(*range, [share; 2]));
+        for (shares, course) in own.chain(around) {
+            let Some(course) = course else { continue };
+            let length = shares[1] - shares[0];
+            let way = course.way(if length > 0.0 { (share - shares[0]) / length } else { 0.0 });
             let left = |from: &Sampled, to: &Sampled| {
                 let share = (to.t - from.t) / (times[1] - times[0]);
                 let (found, off) = from.way(to, number)?;

@@ -136,6 +136,7 @@ impl Tube {
                 is_even: true,
                 stretch: 1.0,
                 faces: [face(0), face(1)],
+                fades: false,
             });
             points.extend(ends);
             arcs.extend([start, end]);

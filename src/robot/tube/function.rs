@@ -79,6 +79,7 @@ impl Tube {
                 stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
                 // As if both were flat; the round ones are taken away below.
                 faces: [face(0, start)?, face(1, end)?],
+                fades: false,
             });
             start = end;
         }

@@ -26,7 +26,7 @@ mod verify;
 
 pub use function::TubeSection;
 pub(super) use function::check_sections;
-pub(crate) use lasting::Lasting;
+pub(crate) use lasting::{Drift, Lasting};
 pub(crate) use section::{Face, Section};
 pub(crate) use turns::{TooSharp, TubeTurns};
 

@@ -29,6 +29,9 @@ pub(crate) struct Section {
     pub stretch: Real,
     /// The flat ends. The others are round.
     pub faces: [Option<Face>; 2],
+    /// Whether the direction of the flat ends may get lost in other shapes: bodies take them for
+    /// round then.
+    pub fades: bool,
 }
 
 /// A flat end of a section.
@@ -59,6 +62,7 @@ impl Section {
             is_even: true,
             stretch: 1.0,
             faces: [None; 2],
+            fades: false,
         }
     }
 

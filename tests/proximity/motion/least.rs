@@ -6,15 +6,25 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionClearance, ProximityError};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    BendingMotion, BendingSection, Chain, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
     RobotError, Speed, Tube,
 };
 use std::cell::Cell;
 
 /// A motion that counts its shapes.
-struct Counted<'a, M>(&'a M, Cell<u64>);
+pub(super) struct Counted<'a, M: ?Sized>(&'a M, Cell<u64>);
 
-impl<M: Motion> Motion for Counted<'_, M> {
+impl<'a, M: ?Sized> Counted<'a, M> {
+    pub(super) fn new(motion: &'a M) -> Self {
+        Self(motion, Cell::new(0))
+    }
+
+    pub(super) fn count(&self) -> u64 {
+        self.1.get()
+    }
+}
+
+impl<M: Motion + ?Sized> Motion for Counted<'_, M> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         self.1.set(self.1.get() + 1);
         self.0.shape(t, tube)
@@ -22,6 +32,10 @@ impl<M: Motion> Motion for Counted<'_, M> {
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         self.0.speed(section, shares, times)
+    }
+
+    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        self.0.course(section, shares, times)
     }
 
     fn legs(&self) -> usize {
@@ -40,7 +54,7 @@ struct Judged {
 
 /// Compares the bounds of a motion with its shapes in so many steps.
 fn judge(search: &mut BvhSearch, motion: &impl Motion, steps: usize, tolerance: Real, judged: &mut Judged) {
-    let counted = Counted(motion, Cell::new(0));
+    let counted = Counted::new(motion);
     let least: MotionClearance = search.clearance_of_motion(&counted, tolerance).unwrap();
     let shape = |t: Real| {
         let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
@@ -65,7 +79,7 @@ fn judge(search: &mut BvhSearch, motion: &impl Motion, steps: usize, tolerance: 
     judged.touching += usize::from(least.upper <= 0.0);
     judged.within += usize::from(least.upper < 1.0);
     judged.of += 1;
-    judged.shapes += counted.1.get();
+    judged.shapes += counted.count();
 }
 
 #[test]
@@ -224,6 +238,61 @@ fn touching_and_sliding_motions_are_bounded() {
     assert!(least.upper <= 1e-3 && least.lower == 0.0 && least.resolved, "{least:?}");
 }
 
+/// Walls of one point each.
+fn points(places: &[Vector]) -> BvhSearch {
+    let vertices: Vec<_> = places.iter().flat_map(|place| [*place; 3]).collect();
+    let triangles: Vec<_> = (0..places.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    BvhSearch::from_triangles(&vertices, &triangles).unwrap()
+}
+
+/// A piece that has failed beside what was wanted then is settled at what is wanted later, when a
+/// nearer one is found.
+#[test]
+fn what_displacements_settle_bounds_the_answer() {
+    // As it was found.
+    let from = [0.0, 100.0, 200.0, 300.0].map(|z| Vector::Z * z);
+    let mut to = from;
+    to[0].x = 5.0;
+    to[1].x = 5.0;
+    let motion = LinearMotion::capsules(&from, &to, &[0.0; 3]).unwrap();
+    let mut search = points(&[Vector::new(12.5, 0.0, 50.0), Vector::new(8.0, 0.0, 250.0)]);
+    for tolerance in [0.9, 1.0, 2.0] {
+        let least = search.clearance_of_motion(&motion, tolerance).unwrap();
+        assert!(least.lower <= 7.5 && 7.5 <= least.upper && least.resolved, "{tolerance}: {least:?}");
+    }
+    // Chains of which one part moves towards its wall, and another part rests beside one a little
+    // farther away.
+    let (mut random, mut nearer) = (Random::new(51), 0);
+    for round in 0..400 {
+        let unit = [1.0, 1e-3, 1e-6][round % 3];
+        let links = 3 + random.below(4) as usize;
+        let moving = random.below(links as u32 - 2) as usize;
+        let radius = [0.0, 0.5][random.below(2) as usize];
+        let (way, gap) = (random.between(1.0, 6.0), random.between(0.5, 10.0));
+        let tolerance = random.between(0.1, 2.0);
+        let pose = if round % 2 == 0 { Pose::IDENTITY } else { random.pose(5.0) };
+        let place = |x: Real, z: Real| pose * Vector::new(x, 0.0, z) * unit;
+        let from: Vec<_> = (0..=links).map(|k| place(0.0, 100.0 * k as Real)).collect();
+        let mut to = from.clone();
+        for (k, to) in to.iter_mut().enumerate().skip(moving).take(2) {
+            *to = place(way, 100.0 * k as Real);
+        }
+        let rests = moving + 2;
+        let beside = gap + tolerance * random.unit();
+        let walls = [
+            place(way + radius + gap, 100.0 * moving as Real + 50.0),
+            place(radius + beside, 100.0 * rests as Real + 50.0),
+        ];
+        let motion = LinearMotion::capsules(&from, &to, &vec![radius * unit; links]).unwrap();
+        let least = points(&walls).clearance_of_motion(&motion, tolerance * unit).unwrap();
+        let (truth, rounding) = (gap * unit, 1e-11 * unit);
+        assert!(least.lower <= truth + rounding, "{round}: {truth}, {least:?}");
+        assert!(truth <= least.upper + rounding && least.resolved, "{round}: {truth}, {least:?}");
+        nearer += usize::from(least.lower > truth - 0.5 * tolerance * unit);
+    }
+    assert!(nearer > 20, "{nearer}");
+}
+
 /// Of a path only what may come nearest is looked at closely.
 #[test]
 fn a_path_looks_closely_where_it_comes_nearest() {
@@ -234,12 +303,12 @@ fn a_path_looks_closely_where_it_comes_nearest() {
         .windows(2)
         .map(|ends| LinearMotion::chain(&link(0.0, ends[0]), &link(0.1, ends[1]), &[0.5]).unwrap());
     let path = MotionPath::new(legs.collect()).unwrap();
-    let counted = Counted(&path, Cell::new(0));
+    let counted = Counted::new(&path);
     let least = search.clearance_of_motion(&counted, 1e-3).unwrap();
     let lowest = heights.iter().copied().fold(Real::INFINITY, Real::min) - 0.5;
     assert!(least.lower <= lowest && lowest <= least.upper && least.resolved, "{lowest}: {least:?}");
     // One for each, and a few more where it is low.
-    assert!(counted.1.get() < 200 + 400, "{}", counted.1.get());
+    assert!(counted.count() < 200 + 400, "{}", counted.count());
     let (leg, t) = path.leg(least.t);
     let height = heights[leg] + (heights[leg + 1] - heights[leg]) * t;
     assert!((height - 0.5 - least.upper).abs() < 1e-9);
@@ -291,13 +360,13 @@ fn an_insertion_costs_little_more_than_its_shapes() {
         let least = chains.iter().map(|chain| search.minimum(chain, &base).unwrap().distance);
         let least = least.fold(Real::INFINITY, Real::min);
         let steps = begin.elapsed();
-        let counted = Counted(&path, Cell::new(0));
+        let counted = Counted::new(&path);
         let begin = Instant::now();
         let found = search.clearance_of_motion(&counted, 0.01).unwrap();
         let proof = begin.elapsed();
         println!(
             "{least:.4}; {found:?}; {} shapes; {:.2} times",
-            counted.1.get(),
+            counted.count(),
             proof.as_secs_f64() / steps.as_secs_f64()
         );
         assert!(found.resolved && found.lower <= least + 0.02);

@@ -5,7 +5,8 @@ use super::speeds::Understated;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingMotion, BendingSection, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
+    BendingMotion, BendingSection, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
+    verify_motion,
 };
 
 /// How a tube is given.
@@ -151,6 +152,89 @@ fn a_way_there_and_back_is_missed() {
     }
 }
 
+/// A needle that turns about its base, and states of a range of shares what holds of a part of it
+/// only.
+struct Turning<F> {
+    /// From a range of shares to the share whose speed is stated.
+    stated: F,
+    is_course: bool,
+}
+
+const TURN: Real = 1.0;
+
+impl<F: Fn([Real; 2]) -> Real> Turning<F> {
+    fn point(share: Real, t: Real) -> Vector {
+        let (sin, cos) = (TURN * t).sin_cos();
+        Vector::new(sin, 0.0, cos) * (30.0 * share)
+    }
+}
+
+impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let points: Vec<_> = (0..=10).map(|k| Self::point(Real::from(k) / 10.0, t)).collect();
+        tube.set_samples(&points, &[0.5; 10], None)?;
+        Ok(Pose::IDENTITY)
+    }
+
+    fn speed(&self, _: usize, shares: [Real; 2], _: [Real; 2]) -> Speed {
+        let share = if self.is_course { shares[1] } else { (self.stated)(shares) };
+        Speed { point: 30.0 * TURN * share, turn: TURN }
+    }
+
+    fn course(&self, _: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+        if !self.is_course {
+            return None;
+        }
+        let [here, there] = times.map(|t| shares.map(|share| Self::point(share, t)));
+        let turn = TURN * (times[1] - times[0]);
+        // The acceleration is TURN^2 30 share.
+        let off = 0.125 * 30.0 * (self.stated)(shares) * turn * turn * (1.0 + 1e-9) + 1e-12;
+        Some(Course { ways: [there[0] - here[0], there[1] - here[1]], off })
+    }
+}
+
+/// What is stated of a range must hold for all of it: a bound that looks at one of its ends, at its
+/// middle or at its length is too low for a place alone, or for the whole section, or for neither.
+#[test]
+fn a_bound_for_a_part_of_a_range_is_missed() {
+    let understated: [(&str, fn([Real; 2]) -> Real); 6] = [
+        ("the nearer end", |shares| shares[0]),
+        ("the middle", |shares| 0.5 * (shares[0] + shares[1])),
+        ("the length", |shares| shares[1] - shares[0]),
+        ("the nearer end, but for the whole", |shares| if shares == [0.0, 1.0] { 1.0 } else { shares[0] }),
+        (
+            "the nearer end, of short ranges",
+            |shares| {
+                if shares[1] - shares[0] < 0.2 { shares[0] } else { shares[1] }
+            },
+        ),
+        ("the middle, of ranges off the grid", |shares| {
+            let is_on_grid = |share: Real| (8.0 * share).fract() == 0.0;
+            if shares.into_iter().any(is_on_grid) { shares[1] } else { 0.5 * (shares[0] + shares[1]) }
+        }),
+    ];
+    for is_course in [false, true] {
+        for steps in STEPS {
+            let right = Turning { stated: |shares: [Real; 2]| shares[1], is_course };
+            assert_eq!(verify_motion(&right, steps), Ok(()), "{is_course} {steps}");
+            for (name, stated) in understated {
+                // A single step has no shape at its middle, where a course would be left, and draws
+                // one range only.
+                if steps == 1 && (is_course || name.ends_with("grid")) {
+                    continue;
+                }
+                let found = verify_motion(&Turning { stated, is_course }, steps);
+                let is_found = match found {
+                    Err(RobotError::FasterThanStated { .. }) => !is_course,
+                    Err(RobotError::FartherOffThanStated { .. }) => is_course,
+                    _ => false,
+                };
+                assert!(is_found, "{name}, {steps} steps, {is_course}: {found:?}");
+            }
+        }
+    }
+}
+
 /// Rounding and what samples leave open are never held against a motion that states what it does.
 #[test]
 fn honest_motions_pass() {
@@ -198,6 +282,10 @@ fn honest_motions_pass() {
         let (from, to) = (points(size), points(size));
         verify_motion(&LinearMotion::chain(&from, &to, &radii).unwrap(), steps).unwrap();
         verify_motion(&LinearMotion::capsules(&from, &to, &radii).unwrap(), steps).unwrap();
+        // A chain that does not turn.
+        let shift = random.point() * size;
+        let moved: Vec<_> = from.iter().map(|&point| point + shift).collect();
+        verify_motion(&LinearMotion::chain(&from, &moved, &radii).unwrap(), steps).unwrap();
         let mut bent = || -> Vec<_> {
             (0..3)
                 .map(|_| BendingSection {

@@ -3,10 +3,12 @@
 mod chains;
 mod courses;
 mod edges;
+mod fading;
 mod first_contact;
 mod jumps;
 mod least;
 mod left_out;
+mod limits;
 mod moving_base;
 mod moving_mesh;
 mod narrow;

@@ -37,6 +37,7 @@ from ._answers import (
     SceneContacts,
     Side,
     Tightest,
+    UndecidedReason,
 )
 from ._errors import ContinuumError
 from ._native import (
@@ -90,6 +91,7 @@ __all__ = [
     "SceneContacts",
     "Side",
     "Tightest",
+    "UndecidedReason",
     "__version__",
     "between",
     "clears_between",

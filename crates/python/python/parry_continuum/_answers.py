@@ -25,6 +25,7 @@ BoolOrBools = Any
 StrOrStrs = Any
 SideOrSides = Any
 DecisionOrDecisions = Any
+ReasonOrReasons = Any
 
 
 class Side(IntEnum):
@@ -41,6 +42,17 @@ class Decision(IntEnum):
     CONTACT = -1
     UNDECIDED = 0
     CLEAR = 1
+
+
+class UndecidedReason(IntEnum):
+    """Why it stays open whether a motion keeps a margin."""
+
+    NONE = 0
+    """It is decided."""
+    NEAR = 1
+    """A shape comes within the resolution of the margin, or the end of a link becomes flat or round where that decides."""
+    WORK = 2
+    """The question has reached its limit of work: a coarser resolution helps, or a motion in several parts."""
 
 
 class Minimum(NamedTuple):
@@ -148,6 +160,8 @@ class MotionAnswer(NamedTuple):
     """How far along that shape's centreline from the base."""
     triangle: IntOrInts
     """The triangle there."""
+    reason: ReasonOrReasons
+    """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
 class MotionClearance(NamedTuple):
@@ -280,6 +294,8 @@ class RobotMotionAnswer(NamedTuple):
     """A point of the second robot's shape, (3,)."""
     arc_lengths: Floats
     """How far along each centreline from the base, (2,)."""
+    reason: ReasonOrReasons
+    """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
 class PerStructure(NamedTuple):

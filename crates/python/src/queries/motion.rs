@@ -50,8 +50,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where some shape is farther away than the margin by no more than this, or where
-    ///     an end turns from flat to round there.
+    ///     A length. The answer is undecided only where some shape is farther away than the margin by no more than this, where
+    ///     an end turns from flat to round there, or where 65,536 shapes do not decide it.
     /// caps : {"fitted", "capsules"}
     ///
     /// Returns

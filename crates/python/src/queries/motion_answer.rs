@@ -1,6 +1,6 @@
 //! The tuple `MotionAnswer`.
 
-use crate::output::{answer, array, array_or_number, decision_value, flat, members};
+use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{MotionAnswer, ShapeInContact};
 use pyo3::prelude::*;
@@ -25,6 +25,7 @@ pub(super) fn motion_answer<'py>(
         array(py, shape(&[3]), flat(points))
     };
     let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
+    let reasons = all.iter().map(|it| reason_value(it.reason)).collect();
     let intervals = all.iter().flat_map(|it| it.interval).collect();
     let values = (
         members(py, "Decision", shape(&[]), decisions)?,
@@ -36,6 +37,7 @@ pub(super) fn motion_answer<'py>(
         places(|shape| shape.segment)?,
         numbers(|shape| shape.arc_length)?,
         places(|shape| shape.triangle)?,
+        members(py, "UndecidedReason", shape(&[]), reasons)?,
     );
     answer!(py, "MotionAnswer", values)
 }

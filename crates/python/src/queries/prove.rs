@@ -166,7 +166,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if some shape does not keep the margin, or by no more than about the resolution.
+    ///     None if some shape does not keep the margin, or by no more than about the resolution; or if the proof would take
+    ///     more than 65,536 shapes or 16 MiB.
     ///
     /// Raises
     /// ------

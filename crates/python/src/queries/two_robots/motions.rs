@@ -2,7 +2,7 @@
 
 use super::{Pairs, RobotPair, Session};
 use crate::motions::{Motion, MotionPair, Moving};
-use crate::output::{answer, array, array_or_number, decision_value, flat, members};
+use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
@@ -22,8 +22,8 @@ impl RobotPair {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where the robots come within this of the margin, or where an end turns from flat to
-    ///     round there.
+    ///     A length. The answer is undecided only where the robots come within this of the margin, where an end turns from flat to
+    ///     round there, or where 65,536 shapes of each or a million pairs of pieces do not decide it.
     ///
     /// Returns
     /// -------
@@ -107,7 +107,7 @@ impl RobotPair {
 ///     A length, at least 0.
 /// resolution : float
 ///     A length. The answer is undecided only where the robot comes within this of the margin, where the margin is as wide as the
-///     tightest bend, where an end turns from flat to round, or where a million pairs of pieces do not decide it.
+///     tightest bend, where an end turns from flat to round, or where 65,536 shapes or 262,144 pairs of pieces do not decide it.
 ///
 /// Returns
 /// -------
@@ -175,6 +175,7 @@ fn answers<'py>(
         array(py, shape(&[3]), flat(points))
     };
     let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
+    let reasons = all.iter().map(|it| reason_value(it.reason)).collect();
     let intervals = all.iter().flat_map(|it| it.interval).collect();
     let lengths = all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.arc_lengths));
     let values = (
@@ -185,6 +186,7 @@ fn answers<'py>(
         points(|shapes| shapes.on_first)?,
         points(|shapes| shapes.on_second)?,
         array(py, shape(&[2]), lengths.collect())?,
+        members(py, "UndecidedReason", shape(&[]), reasons)?,
     );
     answer!(py, "RobotMotionAnswer", values)
 }
