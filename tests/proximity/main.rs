@@ -16,6 +16,7 @@ mod large;
 mod measured;
 mod motion;
 mod moved;
+mod own_minima;
 mod own_parts;
 mod own_tube;
 mod own_tube_sampled;

@@ -5,6 +5,7 @@ mod descent;
 mod local_minima;
 mod one_robot;
 mod outline;
+mod own_faces;
 mod own_tube;
 mod tubes;
 mod two_robots;
