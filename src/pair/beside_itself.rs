@@ -12,8 +12,8 @@
 //! A face counts beside a link if all of these hold.
 //!
 //! 1. `w` leaves the face outwards: `w . n >= 0` with the outward normal `n`. Otherwise the link's barrel behind the face is nearer.
-//! 2. The robot leads nowhere nearer from `y`. If `y` is at an end, the next link must not be wider: with its larger radius it is
-//!    nearer at the same place. If the next link is level, its direction `t` away from `y` must not descend: `w . t >= 0`.
+//! 2. The robot leads nowhere nearer from `y`. If `y` is at an end and the next link is no thinner, its direction `t` away from `y`
+//!    must not descend: `w . t >= 0`. A wider link that begins round is nearer at once, whatever its direction.
 //! 3. `p` is not in the adjoining link, caps included. Otherwise the adjoining link is at least as near, and decides. If several
 //!    points are equally near, all of them must be in it. The same holds at a shoulder at which the other link has `q`.
 //!
@@ -27,6 +27,13 @@
 //! **Proof.** `p` is nearest among all points of its link, which is convex and behind the face: that gives 1. If 2 fails, moving on
 //! along the robot comes nearer at once. If 3 fails, all equally near points belong to the adjoining link as well, and the adjoining
 //! link is at least as near. Its own pair with the other link is judged by the same rule. □
+//!
+//! # While the robot moves
+//! Let all points of both links move by `points` at most, together, and their directions turn by `turn`. The way `w` then errs as if
+//! the bodies were known to `points` alone, and more by `|w| turn` along a direction. If `w . t` stays above that for the link's own
+//! axis, `y` is its start at all times; if it does for the axis before as well, or the link before is wider, the robot leads nearer
+//! backwards at all times. The same holds forwards with the other sign. The point of a round shoulder moves by its centre's way and
+//! by `r` times what the direction of `w` turns: if the adjoining link holds it deeper than that and its own way, it always does.
 //!
 //! **Rounding.** `w` errs by at most `slack` ([`Tolerance::of_way`]); `w . n` and `w . t` may be so far below 0. `p` errs as much, so
 //! the adjoining link must hold it that far within its radius. Ahead of its flat ends `p` errs by rounding alone, as both are discs
@@ -64,7 +71,18 @@ impl Tolerance {
 /// Of links that are nearer than so many errors the way between surfaces has no direction: it errs by more than a sixth of itself.
 const NEAR: Real = 64.0;
 
+/// How much two links move and turn at most, together.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MovedLinks {
+    /// How far all points move.
+    pub points: Real,
+    /// How far the points of the axes do.
+    pub axes: Real,
+    pub turn: Real,
+}
+
 /// The nearest places of a face and another link, whose way has a direction in overlap too.
+#[derive(Clone, Copy)]
 struct Way {
     /// On the face.
     from: Vector,
@@ -73,6 +91,18 @@ struct Way {
     place: Vector,
     slack: Real,
     rounding: Real,
+}
+
+impl Way {
+    /// By how much it may err, while the points that it is between move.
+    fn doubt(&self, points: Real) -> Real {
+        self.slack + points + 2.0 * Tolerance(points).of_way(self.way.length() + points)
+    }
+
+    /// By how much more it may err along a direction of the robot that turns.
+    fn turning(&self, moved: &MovedLinks) -> Real {
+        (self.way.length() + moved.points) * moved.turn
+    }
 }
 
 impl JoinedLink {
@@ -94,9 +124,8 @@ impl JoinedLink {
     /// 2 S; the links' coordinates in their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference by
     /// sqrt(3) 3 u S: 64 u S is enough.
     pub(crate) fn tolerance(&self, other: &Self) -> Tolerance {
-        let reach = |link: &PlacedLink| {
-            link.start().abs().max(link.end().abs()).max_element() + link.radius()
-        };
+        let reach =
+            |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
         Tolerance(64.0 * Real::UNIT_ROUNDOFF * reach(&self.link).max(reach(&other.link)))
     }
 
@@ -158,11 +187,105 @@ impl JoinedLink {
         nearest: &NearestOfLinks,
         tolerance: Tolerance,
     ) -> bool {
-        let sides = [(self, end, other, other_end, *nearest), (other, other_end, self, end, nearest.swapped())];
+        let sides =
+            [(self, end, other, other_end, *nearest), (other, other_end, self, end, nearest.swapped())];
         sides.into_iter().all(|(one, end, two, two_end, nearest)| {
             let way = one.way_to_face(end, two, two_end, &nearest, tolerance);
             way.way.dot(one.outward(end)) >= -way.slack && !one.is_face_covered(end, &way, two, two_end)
         })
+    }
+
+    /// Whether a face beside another link may count at some time, while both move.
+    pub(crate) fn face_may_count(&self, end: usize, other: &Self, moved: &MovedLinks) -> bool {
+        let tolerance = self.tolerance(other);
+        let nearest = self.face_to_link(end, &other.link);
+        let is_round = !self.link.flat()[end] && other.link.flat() == [false; 2];
+        // Which way counts depends on the distance, so neither may. Round links are nearest where axis and centre are.
+        let of_axis = self.way(end, &other.link, &NearestOfLinks { distance: 0.0, ..nearest }, tolerance);
+        let of_bodies = if is_round { of_axis } else { self.way(end, &other.link, &nearest, tolerance) };
+        [of_bodies, of_axis].into_iter().any(|way| {
+            way.is_none_or(|way| {
+                let doubt = way.doubt(if is_round { moved.axes } else { moved.points });
+                let along = doubt + way.turning(moved);
+                way.way.dot(self.outward(end)) >= -along
+                    && !other.leads_nearer(&way, along)
+                    && !self.is_always_covered(end, &way, doubt, moved)
+            })
+        })
+    }
+
+    /// The same of two faces. Of round ones the centres are nearest at all times.
+    pub(crate) fn faces_may_count(
+        &self,
+        end: usize,
+        other: &Self,
+        other_end: usize,
+        moved: &MovedLinks,
+    ) -> bool {
+        if self.link.flat()[end] || other.link.flat()[other_end] {
+            return true;
+        }
+        let sides = [(self, end, other, other_end), (other, other_end, self, end)];
+        sides.into_iter().all(|(one, end, two, other_end)| {
+            let rounding = one.tolerance(two).0;
+            let (place, way) = (two.centre(other_end), two.centre(other_end) - one.centre(end));
+            let from = one.centre(end) + way.normalize_or_zero() * one.link.radius();
+            let way = Way { from, way, place, slack: rounding, rounding };
+            let doubt = rounding + moved.axes;
+            way.way.length() <= doubt
+                || way.way.dot(one.outward(end)) >= -doubt - way.turning(moved)
+                    && !one.is_always_covered(end, &way, doubt, moved)
+        })
+    }
+
+    /// Whether a pair that turns by pi or more may count at some time, while both move.
+    pub(crate) fn may_count_beside(&self, other: &Self, moved: &MovedLinks) -> bool {
+        let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
+        if !has_face(self) && !has_face(other) {
+            return true;
+        }
+        let (feet, _) = self.link.nearest_on_axes(&other.link);
+        let (way, tolerance) = (feet[1] - feet[0], self.tolerance(other));
+        let slack = tolerance.of_way(way.length());
+        let way = Way { from: feet[0], way, place: feet[1], slack, rounding: tolerance.0 };
+        let least = way.doubt(moved.axes) + way.turning(moved);
+        // The end at which the nearest place is at all times; none if that is not known.
+        let end_of = |joined: &Self, way: Vector| {
+            let along = way.dot(Vector::from(joined.link.axis()));
+            (along.abs() > least).then_some(usize::from(along > 0.0))
+        };
+        let sides = [(self, other, end_of(self, way.way)), (other, self, end_of(other, -way.way))];
+        let is_at_face = sides.iter().any(|(joined, _, end)| end.is_some_and(|end| joined.is_face(end)));
+        !is_at_face
+            || sides.into_iter().any(|(joined, beside, end)| {
+                let may_be_at = |face: &usize| joined.is_face(*face) && end.is_none_or(|end| end == *face);
+                [0, 1].into_iter().filter(may_be_at).any(|face| joined.face_may_count(face, beside, moved))
+            })
+    }
+
+    /// Whether the robot leads nearer from the place that a way leads to, at all times, if the way errs by `doubt` along any direction.
+    fn leads_nearer(&self, way: &Way, doubt: Real) -> bool {
+        let along = way.way.dot(Vector::from(self.link.axis()));
+        if along.abs() <= doubt {
+            return false;
+        }
+        let end = usize::from(along < 0.0);
+        let Some(next) = &self.beyond[end] else { return false };
+        let [here, there] = [self.link.radius(), next.radius()];
+        let before = way.way.dot(Vector::from(next.axis())) * along.signum();
+        !is_step(there, here) && before > doubt
+    }
+
+    /// Whether the adjoining link holds the point of a round face at all times.
+    fn is_always_covered(&self, end: usize, way: &Way, doubt: Real, moved: &MovedLinks) -> bool {
+        let Some(next) = &self.beyond[end] else { return false };
+        if self.link.flat()[end] {
+            return false;
+        }
+        // The direction of the way turns by twice what it errs by, as a share of it, at most.
+        let turned = 2.0 * doubt / way.way.length();
+        let shift = self.link.radius() * turned + 2.0 * moved.axes + way.slack;
+        turned <= 1.0 && next.holds(way.from, &Way { slack: shift, rounding: -shift, ..*way })
     }
 
     /// Whether a pair that turns by pi or more counts: where the axes are nearest at a face, by the rule for faces.
@@ -192,7 +315,13 @@ impl JoinedLink {
     }
 
     /// The way from a face to another link; none if the link's axis meets the face.
-    fn way(&self, end: usize, other: &PlacedLink, nearest: &NearestOfLinks, tolerance: Tolerance) -> Option<Way> {
+    fn way(
+        &self,
+        end: usize,
+        other: &PlacedLink,
+        nearest: &NearestOfLinks,
+        tolerance: Tolerance,
+    ) -> Option<Way> {
         let slack = tolerance.of_way(nearest.distance);
         if nearest.distance > NEAR * tolerance.0 {
             let way = nearest.on_second - nearest.on_first;
@@ -247,7 +376,8 @@ impl JoinedLink {
         let Some(end) = self.end_at(way.place, way.slack) else { return true };
         let Some(next) = &self.beyond[end] else { return true };
         let [here, there] = [self.link.radius(), next.radius()];
-        if is_step(here, there) {
+        let is_round = !next.flat()[end ^ 1];
+        if is_step(here, there) && is_round {
             return false;
         }
         let axis = Vector::from(next.axis());

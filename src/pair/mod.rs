@@ -27,7 +27,7 @@ mod search_link;
 mod segments_together;
 mod two_links;
 
-pub(crate) use beside_itself::{JoinedLink, Tolerance};
+pub(crate) use beside_itself::{JoinedLink, MovedLinks, Tolerance};
 pub(crate) use best::Best;
 pub(crate) use checks::rigid_pose;
 pub(crate) use contact::{contact, contacts};

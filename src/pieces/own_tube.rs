@@ -68,7 +68,8 @@ use super::placed_tube::PlacedTube;
 use super::refine::Part;
 use super::two_tubes::{FoundBetween, Stretch, TwoTubes, found_from, half_way};
 use crate::answer::ProximityError;
-use crate::pair::{JoinedLink, NearestOfLinks, PlacedLink};
+use crate::distance::Scalar;
+use crate::pair::{JoinedLink, MovedLinks, NearestOfLinks, PlacedLink};
 use crate::robot::{Face, Section, Tube, TubeTurns, is_step};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -324,11 +325,51 @@ impl<'a> OwnTube<'a> {
         if self.moves.is_none() && self.is_exact() {
             return self.counts_exactly(pair);
         }
-        let Some(k) = pair.faces.iter().position(Option::is_some) else { return true };
+        let Some(k) = pair.faces.iter().position(Option::is_some) else {
+            return !self.is_exact() || self.may_count_while_moving(pair);
+        };
         self.may_be_before(pair, k)
             && self.may_be_before(pair, 1 - k)
             && self.ways_leave(pair)
             && !self.leads_on(pair, k)
+            && (!self.is_exact() || self.may_count_while_moving(pair))
+    }
+
+    /// Whether two links, a face and a link, or two faces may count at some time.
+    fn may_count_while_moving(&self, pair: &OwnPair) -> bool {
+        let Some(moves) = self.moves else { return true };
+        let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
+        let sections = self.tube().sections();
+        // Of the links and of their neighbours.
+        let of = |number: u32| {
+            let around = number.saturating_sub(1)..=(number + 1).min(sections.len() as u32 - 1);
+            around.fold(MovedLinks::default(), |most, number| {
+                let Moved { points, turn } = moves.of(number);
+                let axes = (points - sections[number as usize].radius * turn).max(0.0);
+                // The difference errs by 2 u of the points.
+                let axes = axes + 4.0 * Real::UNIT_ROUNDOFF * points;
+                MovedLinks {
+                    points: most.points.max(points),
+                    axes: most.axes.max(axes),
+                    turn: most.turn.max(turn),
+                }
+            })
+        };
+        let [first, second] = pair.pieces.map(|piece| of(piece.section));
+        let moved = &MovedLinks {
+            points: first.points + second.points,
+            axes: first.axes + second.axes,
+            turn: first.turn + second.turn,
+        };
+        if moved.points == 0.0 && moved.turn == 0.0 {
+            return self.counts_exactly(pair);
+        }
+        match pair.faces {
+            [None, None] => one.may_count_beside(&two, moved),
+            [Some(end), None] => one.face_may_count(end, &two, moved),
+            [None, Some(end)] => two.face_may_count(end, &one, moved),
+            [Some(end), Some(other)] => one.faces_may_count(end, &two, other, moved),
+        }
     }
 
     /// Whether all parts are links whose places are known but for rounding.
@@ -360,7 +401,8 @@ impl<'a> OwnTube<'a> {
             let flat = section.faces.map(|face| face.is_some());
             PlacedLink::between(ends[0], ends[1], section.radius, flat)
         };
-        let beyond = [number.checked_sub(1).and_then(|before| sections.get(before)), sections.get(number + 1)];
+        let beyond =
+            [number.checked_sub(1).and_then(|before| sections.get(before)), sections.get(number + 1)];
         JoinedLink { link: link(&sections[number]), beyond: beyond.map(|section| section.map(link)) }
     }
 
@@ -425,7 +467,7 @@ impl<'a> OwnTube<'a> {
         if is_step(next.radius, here.radius) {
             return false;
         }
-        if !self.turns.has_joints() || is_step(here.radius, next.radius) {
+        if !self.turns.has_joints() {
             return true;
         }
         let ends = [next.first, next.last].map(|tick| self.tube().point(next, tick));

@@ -178,7 +178,8 @@ impl<'a> OneRobot<'a> {
     pub fn minimum(&self, memory: &mut OwnMemory) -> Option<RobotProximity> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
-        let remembered = remembered.filter(|&links| turns.asked_from[links[0]] <= links[1] && self.counts(links));
+        let remembered =
+            remembered.filter(|&links| turns.asked_from[links[0]] <= links[1] && self.counts(links));
         let mut best = remembered.map(|links| measure_pair([&self.robot; 2], links));
         let mut refused = 0;
         descent.run([&self.robot; 2], Limit::at_best(&best), asked_from(turns), |found| {

@@ -214,8 +214,7 @@ impl OwnFaces {
         }
         let from_one = two.seen_from(one, way, away, self.rounding);
         let from_two = one.seen_from(two, -way, away, self.rounding);
-        let may_count =
-            one.has_face() && from_one.may_be_local || two.has_face() && from_two.may_be_local;
+        let may_count = one.has_face() && from_one.may_be_local || two.has_face() && from_two.may_be_local;
         let at_shoulders =
             one.all[1] && from_two.forwards == Some(false) || two.all[0] && from_one.forwards == Some(true);
         in_band &= may_count || band == Band::All && !at_shoulders;
@@ -377,7 +376,12 @@ mod tests {
         ("sharp zigzag", |_, link| Vector::new(if link % 2 == 0 { 0.5 } else { -0.5 }, 0.0, 1.0)),
     ];
 
-    fn work(shape: Shape, radius: impl Fn(Real, usize) -> Real, is_flat: bool, count: usize) -> (usize, bool) {
+    fn work(
+        shape: Shape,
+        radius: impl Fn(Real, usize) -> Real,
+        is_flat: bool,
+        count: usize,
+    ) -> (usize, bool) {
         let (mut at, mut points) = (Vector::ZERO, vec![Vector::ZERO]);
         for link in 0..count {
             at += shape(link as Real / count as Real, link).normalize() * (100.0 / count as Real);
@@ -387,11 +391,8 @@ mod tests {
         let radii: Vec<_> = (0..count)
             .map(|link| radius(link as Real / count as Real, link) * 50.0 / count as Real)
             .collect();
-        let robot = if is_flat {
-            Chain::from_centreline(&points, &radii)
-        } else {
-            Chain::capsules(&points, &radii)
-        };
+        let robot =
+            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
         let robot = robot.expect("points that differ");
         let mut memory = OwnMemory::default();
         let found = OneRobot::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
