@@ -1,43 +1,56 @@
-//! Two links of one robot that share no joint: whether the place where they are nearest is a local minimum of the distance.
+//! Two links of one robot that share no joint: whether the place where they are nearest is a local
+//! minimum of the distance.
 //!
 //! # Definitions
-//! - An end of a link is **level** with the next link if their radii are equal up to rounding ([`is_step`]), and otherwise the
-//!   next link is **thinner** or **wider**.
-//! - A **shoulder** is an end beyond which the robot is thinner. A **face** is a shoulder, or a flat end of the robot.
+//! - An end of a link is **level** with the next link if their radii are equal up to rounding
+//!   ([`is_step`]), and otherwise the next link is **thinner** or **wider**.
+//! - A **shoulder** is an end beyond which the robot is thinner. A **face** is a shoulder, or a
+//!   flat end of the robot.
 //! - The **adjoining** link is the one beyond an end.
-//! - `p` is the point of a face that is nearest to the other link, `q` that link's point, `y` its place on the axis, and `w` the
-//!   way from `p` to `q`. Where the links overlap `q` is `y`, so that `w` has a direction there too.
+//! - `p` is the point of a face that is nearest to the other link, `q` that link's point, `y` its
+//!   place on the axis, and `w` the way from `p` to `q`. Where the links overlap `q` is `y`, so
+//!   that `w` has a direction there too.
 //!
 //! # The rule
 //! A face counts beside a link if all of these hold.
 //!
-//! 1. `w` leaves the face outwards: `w . n >= 0` with the outward normal `n`. Otherwise the link's barrel behind the face is nearer.
-//! 2. The robot leads nowhere nearer from `y`. If `y` is at an end and the next link is no thinner, its direction `t` away from `y`
-//!    must not descend: `w . t >= 0`. A wider link that begins round is nearer at once, whatever its direction.
-//! 3. `p` is not in the adjoining link, caps included. Otherwise the adjoining link is at least as near, and decides. If several
-//!    points are equally near, all of them must be in it. The same holds at a shoulder at which the other link has `q`.
+//! 1. `w` leaves the face outwards: `w . n >= 0` with the outward normal `n`. Otherwise the link's
+//!    barrel behind the face is nearer.
+//! 2. The robot leads nowhere nearer from `y`. If `y` is at an end and the next link is no thinner,
+//!    its direction `t` away from `y` must not descend: `w . t >= 0`. A wider link that begins
+//!    round is nearer at once, whatever its direction.
+//! 3. `p` is not in the adjoining link, caps included. Otherwise the adjoining link is at least as
+//!    near, and decides. If several points are equally near, all of them must be in it. The same
+//!    holds at a shoulder at which the other link has `q`.
 //!
-//! If the other link's axis meets the face, `w` is 0. The face counts: there is no rule to say which way is nearer.
+//! If the other link's axis meets the face, `w` is 0. The face counts: there is no rule to say
+//! which way is nearer.
 //!
 //! Two faces that look at one another count if 1 and 3 hold for both.
 //!
 //! # Why nothing is missed
-//! **Claim.** A local minimum of the distance between two links, at a face of the one, satisfies the rule.
+//! **Claim.** A local minimum of the distance between two links, at a face of the one, satisfies
+//! the rule.
 //!
-//! **Proof.** `p` is nearest among all points of its link, which is convex and behind the face: that gives 1. If 2 fails, moving on
-//! along the robot comes nearer at once. If 3 fails, all equally near points belong to the adjoining link as well, and the adjoining
-//! link is at least as near. Its own pair with the other link is judged by the same rule. □
+//! **Proof.** `p` is nearest among all points of its link, which is convex and behind the face:
+//! that gives 1. If 2 fails, moving on along the robot comes nearer at once. If 3 fails, all
+//! equally near points belong to the adjoining link as well, and the adjoining link is at least as
+//! near. Its own pair with the other link is judged by the same rule. □
 //!
 //! # While the robot moves
-//! Let all points of both links move by `points` at most, together, and their directions turn by `turn`. The way `w` then errs as if
-//! the bodies were known to `points` alone, and more by `|w| turn` along a direction. If `w . t` stays above that for the link's own
-//! axis, `y` is its start at all times; if it does for the axis before as well, or the link before is wider, the robot leads nearer
-//! backwards at all times. The same holds forwards with the other sign. The point of a round shoulder moves by its centre's way and
-//! by `r` times what the direction of `w` turns: if the adjoining link holds it deeper than that and its own way, it always does.
+//! Let all points of both links move by `points` at most, together, and their directions turn by
+//! `turn`. The way `w` then errs as if the bodies were known to `points` alone, and more by `|w|
+//! turn` along a direction. If `w . t` stays above that for the link's own axis, `y` is its start
+//! at all times; if it does for the axis before as well, and the link before is no thinner, the robot
+//! leads nearer backwards at all times. The same holds forwards with the other sign. The point of a
+//! round shoulder moves by its centre's way and by `r` times what the direction of `w` turns: if
+//! the adjoining link holds it deeper than that and its own way, it always does.
 //!
-//! **Rounding.** `w` errs by at most `slack` ([`Tolerance::of_way`]); `w . n` and `w . t` may be so far below 0. `p` errs as much, so
-//! the adjoining link must hold it that far within its radius. Ahead of its flat ends `p` errs by rounding alone, as both are discs
-//! of known planes: there it may be so far outside. The way between links nearer than [`NEAR`] errors is measured to the axis.
+//! **Rounding.** `w` errs by at most `slack` ([`Tolerance::of_way`]); `w . n` and `w . t` may be so
+//! far below 0. `p` errs as much, so the adjoining link must hold it that far within its radius.
+//! Ahead of its flat ends `p` errs by rounding alone, as both are discs of known planes: there it
+//! may be so far outside. The way between links nearer than [`NEAR`] errors is measured to the
+//! axis.
 
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
@@ -59,16 +72,18 @@ pub(crate) struct Tolerance(pub Real);
 impl Tolerance {
     /// By how much the way between two convex bodies may err in any direction, if it is so long.
     ///
-    /// The measured points belong to the two bodies and are at most e farther apart than the nearest two, at the distance d. So the
-    /// way w between them lies in the bodies' difference, a convex set, whose point nearest to 0 is the shortest way w*. There
-    /// w . w* >= |w*|^2, and |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
+    /// The measured points belong to the two bodies and are at most e farther apart than the
+    /// nearest two, at the distance d. So the way w between them lies in the bodies' difference, a
+    /// convex set, whose point nearest to 0 is the shortest way w*. There w . w* >= |w*|^2, and |w
+    /// - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
     pub fn of_way(self, distance: Real) -> Real {
         // Two roots, so that no product leaves the range of numbers.
         self.0.sqrt() * (2.0 * distance + self.0).sqrt()
     }
 }
 
-/// Of links that are nearer than so many errors the way between surfaces has no direction: it errs by more than a sixth of itself.
+/// Of links that are nearer than so many errors the way between surfaces has no direction: it errs
+/// by more than a sixth of itself.
 const NEAR: Real = 64.0;
 
 /// How much two links move and turn at most, together.
@@ -118,11 +133,13 @@ impl JoinedLink {
         }
     }
 
-    /// By how much the distance of two links of one robot may be measured wrong, and the way between them be longer than the shortest.
+    /// By how much the distance of two links of one robot may be measured wrong, and the way
+    /// between them be longer than the shortest.
     ///
-    /// Let S be the largest coordinate of both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most
-    /// 2 S; the links' coordinates in their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference by
-    /// sqrt(3) 3 u S: 64 u S is enough.
+    /// Let S be the largest coordinate of both links and their radius. The narrow phase errs by 16
+    /// u of the pair's extent of at most 2 S; the links' coordinates in their pair's frame by
+    /// sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: 64 u S
+    /// is enough.
     pub(crate) fn tolerance(&self, other: &Self) -> Tolerance {
         let reach =
             |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
@@ -200,7 +217,8 @@ impl JoinedLink {
         let tolerance = self.tolerance(other);
         let nearest = self.face_to_link(end, &other.link);
         let is_round = !self.link.flat()[end] && other.link.flat() == [false; 2];
-        // Which way counts depends on the distance, so neither may. Round links are nearest where axis and centre are.
+        // Which way counts depends on the distance, so neither may. Round links are nearest where
+        // axis and centre are.
         let of_axis = self.way(end, &other.link, &NearestOfLinks { distance: 0.0, ..nearest }, tolerance);
         let of_bodies = if is_round { of_axis } else { self.way(end, &other.link, &nearest, tolerance) };
         [of_bodies, of_axis].into_iter().any(|way| {
@@ -263,7 +281,8 @@ impl JoinedLink {
             })
     }
 
-    /// Whether the robot leads nearer from the place that a way leads to, at all times, if the way errs by `doubt` along any direction.
+    /// Whether the robot leads nearer from the place that a way leads to, at all times, if the way
+    /// errs by `doubt` along any direction.
     fn leads_nearer(&self, way: &Way, doubt: Real) -> bool {
         let along = way.way.dot(Vector::from(self.link.axis()));
         if along.abs() <= doubt {
@@ -288,7 +307,8 @@ impl JoinedLink {
         turned <= 1.0 && next.holds(way.from, &Way { slack: shift, rounding: -shift, ..*way })
     }
 
-    /// Whether a pair that turns by pi or more counts: where the axes are nearest at a face, by the rule for faces.
+    /// Whether a pair that turns by pi or more counts: where the axes are nearest at a face, by the
+    /// rule for faces.
     pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let [one, two] = [(self, feet[0]), (other, feet[1])].map(|(joined, foot)| {
@@ -422,7 +442,8 @@ impl JoinedLink {
         ends.into_iter().all(|point| next.holds(point, way))
     }
 
-    /// Whether the adjoining link holds all points of a flat face ahead of which is a parallel disc around `middle`.
+    /// Whether the adjoining link holds all points of a flat face ahead of which is a parallel disc
+    /// around `middle`.
     fn is_area_covered(&self, end: usize, way: &Way, middle: Vector, radius: Real) -> bool {
         let Some(next) = &self.beyond[end] else { return false };
         let (normal, centre) = (self.outward(end), self.centre(end));
@@ -430,7 +451,8 @@ impl JoinedLink {
         let aside = aside - normal * aside.dot(normal);
         let size = aside.length();
         let outwards = if size > 0.0 { aside / size } else { normal.any_orthonormal_vector() };
-        // The two points on the line through both centres are farthest from the adjoining axis, or farther than all.
+        // The two points on the line through both centres are farthest from the adjoining axis, or
+        // farther than all.
         let [far, back] = [size + radius, radius - size].map(|reach| reach.min(self.link.radius()));
         [far, -back].into_iter().all(|reach| next.holds(centre + outwards * reach, way))
     }
@@ -456,7 +478,8 @@ impl JoinedLink {
         if !is_flat || !other.link.flat()[other_end] {
             return true;
         }
-        // Two discs: parallel ones are as near over an area, and those that cross meet along a chord.
+        // Two discs: parallel ones are as near over an area, and those that cross meet along a
+        // chord.
         let [normal, facing] = [self.outward(end), other.outward(other_end)];
         let (centre, radius) = (other.centre(other_end), self.link.radius());
         let line = normal.cross(facing);

@@ -3,9 +3,12 @@
 //! The rule is that of a chain (`query::robots::one_robot`, whose proofs hold for any centreline with a direction: the angles of
 //! the joints are the integral of the curvature). Neighbours are near for no other reason than that they are neighbours;
 //! places that are a local minimum of the distance have a turn of at least pi between them, or pi / 2 where one of them is a
-//! face (the base, the tip, the wider side of a step) that the other is in front of. Two faces that look at one another, the end of a
-//! section and the start of a later one, are asked about at any turn. From a place beside a face the robot must lead nowhere nearer:
-//! a piece is left out if it does so from all of its places ([`OwnTube::leads_on`]). Of links `pair::JoinedLink` decides, as of a chain. A place of the tube is the ball of its radius around its centreline, which the tube holds as it
+//! face (the base, the tip, the wider side of a step) that the other is in front of. Two faces that
+//! look at one another, the end of a section and the start of a later one, are asked about at any
+//! turn. From a place beside a face the robot must lead nowhere nearer: a piece is left out if it
+//! does so from all of its places ([`OwnTube::leads_on`]). Of links `pair::JoinedLink` decides, as
+//! of a chain. A place of the tube is the ball of its radius around its centreline, which the tube
+//! holds as it
 //! bends by less than 1 / radius; where that would stick out of a face nearby, it is the disc.
 //!
 //! So the least distance of all such pairs is what is bounded here. How far a curve turns is known between two bounds
@@ -377,7 +380,8 @@ impl<'a> OwnTube<'a> {
         self.turns.has_joints() && self.tube().tube.error() == 0.0
     }
 
-    /// Whether two links of a chain, or their faces, count in this shape: the same decision as of a chain.
+    /// Whether two links of a chain, or their faces, count in this shape: the same decision as of a
+    /// chain.
     fn counts_exactly(&self, pair: &OwnPair) -> bool {
         let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
         let tolerance = one.tolerance(&two);
@@ -408,11 +412,13 @@ impl<'a> OwnTube<'a> {
 
     /// Whether the robot leads nearer to a face from all places of the other piece, at all times.
     ///
-    /// Let c be the face's centre, r its radius and n its normal, y a place of the piece, t the direction there, m that of the piece's
-    /// chord, and e the largest angle between t and m. A point p of the face is at most r from c and perpendicular to n. So
-    /// (y - p) . t >= (y - c) . m - |y - c| e - r (|n x m| + e), and it is no more than the same with the other signs. If that is above
-    /// 0 the robot leads nearer backwards, and if it is below 0, forwards, unless it ends there or is thinner beyond. Errors, and what
-    /// may move and turn, are counted in addition.
+    /// Let c be the face's centre, r its radius and n its normal, y a place of the piece, t the
+    /// direction there, m that of the piece's chord, and e the largest angle between t and m. A
+    /// point p of the face is at most r from c and perpendicular to n. So (y - p) . t >= (y - c) .
+    /// m - |y - c| e - r (|n x m| + e), and it is no more than the same with the other signs. If
+    /// that is above 0 the robot leads nearer backwards, and if it is below 0, forwards, unless it
+    /// ends there or is thinner beyond. Errors, and what may move and turn, are counted in
+    /// addition.
     fn leads_on(&self, pair: &OwnPair, k: usize) -> bool {
         let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
         let Some(end) = pair.faces[k] else { return false };
@@ -441,7 +447,8 @@ impl<'a> OwnTube<'a> {
                 let sine = face.outward.cross(chord_direction).length() + face.tilt + tilt + turn;
                 at_face.radius * sine.min(1.0)
             }
-            // The ball around a round shoulder is seen as its centre is. It may become flat while it moves.
+            // The ball around a round shoulder is seen as its centre is. It may become flat while
+            // it moves.
             (false, _) if self.moves.is_none() => 0.0,
             _ => at_face.radius,
         };
@@ -458,7 +465,8 @@ impl<'a> OwnTube<'a> {
         }
     }
 
-    /// Whether the robot goes on beyond an end of a section, no thinner, and in a direction that leads on too.
+    /// Whether the robot goes on beyond an end of a section, no thinner, and in a direction that
+    /// leads on too.
     fn goes_on(&self, section: u32, end: usize, leads_on: impl Fn(Vector) -> bool) -> bool {
         let sections = self.tube().sections();
         let here = &sections[section as usize];

@@ -1,11 +1,14 @@
-//! Self contact by its definition: local minima of the distance between two parts that are not neighbours.
+//! Self contact by its definition: local minima of the distance between two parts that are not
+//! neighbours.
 //!
 //! Two oracles know nothing of turns.
 //!
-//! - [`Robot::minima`] looks at each pair of links that share no joint. The place where two convex links are nearest counts if the
-//!   robot leads nowhere nearer from there, and if the adjoining link does not hold the point.
-//! - [`Robot::pass`] knows nothing of places either. It cuts all links into pieces and compares the least distance of one run of
-//!   pieces to another with the distances at the ends of the two runs. If it is less, a local minimum is within.
+//! - [`Robot::minima`] looks at each pair of links that share no joint. The place where two convex
+//!   links are nearest counts if the robot leads nowhere nearer from there, and if the adjoining
+//!   link does not hold the point.
+//! - [`Robot::pass`] knows nothing of places either. It cuts all links into pieces and compares the
+//!   least distance of one run of pieces to another with the distances at the ends of the two runs.
+//!   If it is less, a local minimum is within.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
@@ -39,7 +42,8 @@ enum Beyond {
     Wider,
 }
 
-/// The least distance of the local minima that there surely are, and of those that there may be; infinite without one.
+/// The least distance of the local minima that there surely are, and of those that there may be;
+/// infinite without one.
 #[derive(Clone, Copy, Debug)]
 struct Minima {
     sure: f64,
@@ -168,7 +172,8 @@ impl Robot {
         self.bodies[link].flat[end] && matches!(self.beyond(link, end), Beyond::Nothing | Beyond::Thinner)
     }
 
-    /// Whether the robot leads nowhere nearer from a place on an axis, from where `way` leads to the other part.
+    /// Whether the robot leads nowhere nearer from a place on an axis, from where `way` leads to
+    /// the other part.
     fn stays(&self, link: usize, place: Vector, way: Vector) -> Holds {
         let Some(end) = self.bodies[link].end_at(place) else { return Holds::YES };
         match self.beyond(link, end) {
@@ -305,9 +310,10 @@ impl Robot {
         minima
     }
 
-    /// The least distance of a run of pieces from the base on to one from the tip on that is less than all distances from the last
-    /// piece of the first run to the second run, and from the first piece of the second run to the first run. Those whose nearest
-    /// points the links between hold are left out.
+    /// The least distance of a run of pieces from the base on to one from the tip on that is less
+    /// than all distances from the last piece of the first run to the second run, and from the
+    /// first piece of the second run to the first run. Those whose nearest points the links between
+    /// hold are left out.
     fn pass(&self) -> f64 {
         let mut pieces = Vec::new();
         for body in &self.bodies {

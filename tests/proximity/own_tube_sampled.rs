@@ -1,6 +1,6 @@
 //! A tube beside itself, against all pairs of its discs and faces, sampled and then sought between the samples. What is asked about is
-//! told by the arcs' own curvature, and what is in front of a face by points of the discs. Beside a face only local minima have to
-//! be found; what else is in front of it may be.
+//! told by the arcs' own curvature, and what is in front of a face by points of the discs. Beside a
+//! face only local minima have to be found; what else is in front of it may be.
 
 use super::own_tube::winding;
 use super::tube::all_ways;
@@ -125,7 +125,8 @@ impl<'a> Sampled<'a> {
         Disc { centre, normal, turned: self.arcs.turned(s), ..near }
     }
 
-    /// Whether the tube leads nearer to a face from the place of a disc, near a sample at this arc length.
+    /// Whether the tube leads nearer to a face from the place of a disc, near a sample at this arc
+    /// length.
     fn leads_nearer(&self, face: &Disc, sample: usize, s: f64) -> bool {
         let here = self.disc(sample, s);
         let (apart, signed) = (face.apart(&here), face.signed(&here));

@@ -22,26 +22,31 @@
 //! points away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no
 //! more than 3/2 pi, which leaves pi / 2 for the joints.
 //!
-//! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like a face. Of a link alone the
-//! place nearest to y may be its end for no other reason than that the robot is thinner beyond: going on along the centreline
-//! is no descent then, so that the corner at c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
+//! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like
+//! a face. Of a link alone the place nearest to y may be its end for no other reason than that the
+//! robot is thinner beyond: going on along the centreline is no descent then, so that the corner at
+//! c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
 //! the joints. At a round base or tip the centreline does not go on, and the first rule has it.
 //!
-//! **Two faces that look at one another**, at any turn: the end of a link and the start of a later one. (Of other faces one is
-//! at the end of its link towards which the other's way leads anyway, so that the turn of pi / 2 is left.)
+//! **Two faces that look at one another**, at any turn: the end of a link and the start of a later
+//! one. (Of other faces one is at the end of its link towards which the other's way leads anyway,
+//! so that the turn of pi / 2 is left.)
 //!
-//! The turn only spares work. Whether a face counts beside a link, or another face, `pair::JoinedLink` decides. It decides of two
-//! links with a turn of pi as well, if they are nearest at a face of one.
+//! The turn only spares work. Whether a face counts beside a link, or another face,
+//! `pair::JoinedLink` decides. It decides of two links with a turn of pi as well, if they are
+//! nearest at a face of one.
 //!
 //! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two
 //! links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near
 //! whom, and the robot is refused.
 //!
-//! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`] of it, which is what the ball around
-//! a face is asked for first: it is smaller than the face's link, and so known better than what is measured.
+//! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`]
+//! of it, which is what the ball around a face is asked for first: it is smaller than the face's
+//! link, and so known better than what is measured.
 //!
-//! **Work.** [`Descent`] looks at the pairs with a turn of pi, [`OwnFaces`] at all others. If faces refuse [`MOST_REFUSED`] pairs of
-//! the former, nothing bounds the search, and [`OwnFaces`] looks at all pairs: it knows where the robot leads.
+//! **Work.** [`Descent`] looks at the pairs with a turn of pi, [`OwnFaces`] at all others. If faces
+//! refuse [`MOST_REFUSED`] pairs of the former, nothing bounds the search, and [`OwnFaces`] looks
+//! at all pairs: it knows where the robot leads.
 //!
 //! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is
 //! compared instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2
@@ -136,7 +141,8 @@ impl Turns {
         Ok(())
     }
 
-    /// Finds from which link on each is asked for, at a turn of which half has this cosine: no earlier than for the link before.
+    /// Finds from which link on each is asked for, at a turn of which half has this cosine: no
+    /// earlier than for the link before.
     ///
     /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less than pi, from here or from
     /// the link before, and one joint more; or that of two joints. A joint turns by less than pi.
@@ -235,7 +241,8 @@ impl<'a> OneRobot<'a> {
         JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
     }
 
-    /// Shows `keep` what counts beside faces, at most `bound` away, as long as it returns what is the bound from then on.
+    /// Shows `keep` what counts beside faces, at most `bound` away, as long as it returns what is
+    /// the bound from then on.
     /// Returns whether it always did.
     fn beside_faces(
         &self,

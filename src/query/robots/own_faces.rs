@@ -1,37 +1,46 @@
 //! Which links a robot's faces are near: two runs of links at once, the nearer two first.
 //!
 //! # Definitions
-//! - A **face** is the robot's base or tip, where it is flat, or the wider side of a step ([`JoinedLink`]).
-//! - A pair of links `i < j` that share no joint is **in the band** if the turn between them is at least pi / 2, and less than pi
-//!   unless all turns are asked for. Their faces count by the rule of [`JoinedLink::face_counts`].
-//! - Two faces **look at one another** if the earlier one is the end of its link and the later one the start of its link. They are
-//!   asked for at any turn.
-//! - A **node** holds a run of links: a ball around their axes, their largest radius, and a cone that holds the directions of these
-//!   links and of one more on either side.
+//! - A **face** is the robot's base or tip, where it is flat, or the wider side of a step
+//!   ([`JoinedLink`]).
+//! - A pair of links `i < j` that share no joint is **in the band** if the turn between them is at
+//!   least pi / 2, and less than pi unless all turns are asked for. Their faces count by the rule
+//!   of [`JoinedLink::face_counts`].
+//! - Two faces **look at one another** if the earlier one is the end of its link and the later one
+//!   the start of its link. They are asked for at any turn.
+//! - A **node** holds a run of links: a ball around their axes, their largest radius, and a cone
+//!   that holds the directions of these links and of one more on either side.
 //!
 //! # Which pairs of nodes are skipped
 //! 1. Neither node has a face; or no pair is in the band, and no two faces look at one another.
 //! 2. The balls, each wider by its largest radius, are farther apart than the bound.
-//! 3. The robot leads on everywhere. Let `w` be the way from a face of one node to a place of the other, and `t` any direction of the
-//!    latter's cone. If all `w . t > 0`, the robot leads nearer backwards from every place, unless it stops there: no link of the
-//!    node may be the robot's first one, or have a thinner one before it. If all `w . t < 0`, it leads nearer forwards in the same way.
+//! 3. The robot leads on everywhere. Let `w` be the way from a face of one node to a place of the
+//!    other, and `t` any direction of the latter's cone. If all `w . t > 0`, the robot leads nearer
+//!    backwards from every place, unless it stops there: no link of the node may be the robot's
+//!    first one, or have a thinner one before it. If all `w . t < 0`, it leads nearer forwards in
+//!    the same way.
 //!
-//! **Claim.** If 3 holds for the faces of either node beside the other, no pair of the two nodes counts whose faces are asked for.
-//! **Proof.** At a place inside of a link `w . t` is 0 if it is nearest, and rule 2 of [`JoinedLink`] fails at an end. □
+//! **Claim.** If 3 holds for the faces of either node beside the other, no pair of the two nodes
+//! counts whose faces are asked for.
+//! **Proof.** At a place inside of a link `w . t` is 0 if it is nearest, and rule 2 of
+//! [`JoinedLink`] fails at an end. □
 //!
-//! If all turns are asked for, links count without a face too. They are skipped only if all places are at shoulders of which 3 holds:
-//! all links of one node have a shoulder at the end towards which the way leads.
+//! If all turns are asked for, links count without a face too. They are skipped only if all places
+//! are at shoulders of which 3 holds: all links of one node have a shoulder at the end towards
+//! which the way leads.
 //!
-//! A shoulder that the way comes to counts neither if the adjoining link holds its point (`least_covered`). The same tells of two
-//! faces that look at one another.
+//! A shoulder that the way comes to counts neither if the adjoining link holds its point
+//! (`least_covered`). The same tells of two faces that look at one another.
 //!
-//! **Bounds.** Let `C` and `D` be the centres of the balls, `a` and `b` their radii, `m` the axis of the cone, `e` the largest
-//! distance of a direction from `m`, `n` any normal of the face. A point of a flat face is `f` from its centre and perpendicular to
-//! `n`. So `w . t >= (D - C) . m - a - b - |D - C| e - f |t x n|`, and the same from above with the other signs. `|t x n|` is at most
-//! `|m x m'|` and the two largest distances from the axes.
+//! **Bounds.** Let `C` and `D` be the centres of the balls, `a` and `b` their radii, `m` the axis
+//! of the cone, `e` the largest distance of a direction from `m`, `n` any normal of the face. A
+//! point of a flat face is `f` from its centre and perpendicular to `n`. So `w . t >= (D - C) . m -
+//! a - b - |D - C| e - f |t x n|`, and the same from above with the other signs. `|t x n|` is at
+//! most `|m x m'|` and the two largest distances from the axes.
 //!
-//! **Rounding.** Unit vectors err by 4 u, sums of few lengths by few u of the reach: 64 u of the largest coordinate cover all. What
-//! [`JoinedLink`] takes for a local minimum, since the way may err, is shown too.
+//! **Rounding.** Unit vectors err by 4 u, sums of few lengths by few u of the reach: 64 u of the
+//! largest coordinate cover all. What [`JoinedLink`] takes for a local minimum, since the way may
+//! err, is shown too.
 
 use super::one_robot::Turns;
 use crate::distance::Scalar;
@@ -60,8 +69,8 @@ struct Node {
     stops: [bool; 2],
     /// Whether all links are wider than the next one at their start, and at their end.
     all: [bool; 2],
-    /// The largest cosine that a way out at a start, and at an end, may have with the adjoining axis, and the adjoining link not hold
-    /// the point of the shoulder there (`least_covered`).
+    /// The largest cosine that a way out at a start, and at an end, may have with the adjoining
+    /// axis, and the adjoining link not hold the point of the shoulder there (`least_covered`).
     covered: [Real; 2],
     /// The least radius of those adjoining links.
     adjoining: Real,
@@ -71,7 +80,8 @@ struct Node {
 struct Seen {
     /// Whether places of it may be local minima.
     may_be_local: bool,
-    /// Whether the way to all of its places leads forwards, or backwards; none if that is not known.
+    /// Whether the way to all of its places leads forwards, or backwards; none if that is not
+    /// known.
     forwards: Option<bool>,
     /// Whether all shoulders that the way comes to are in the adjoining links.
     is_covered: bool,
@@ -139,8 +149,9 @@ impl OwnFaces {
         self.nodes[place] = Node::around(&self.nodes[place + 1], &self.nodes[second]);
     }
 
-    /// Shows `visit` pairs of links, the lower first, with whether they are in the band and whether faces look at one another, as
-    /// long as it returns a bound: pairs that are farther apart may be left out. Returns whether it always did.
+    /// Shows `visit` pairs of links, the lower first, with whether they are in the band and whether
+    /// faces look at one another, as long as it returns a bound: pairs that are farther apart may
+    /// be left out. Returns whether it always did.
     pub fn run(
         &mut self,
         turns: &Turns,
@@ -189,7 +200,8 @@ impl OwnFaces {
         [place + 1, place + 2 * (self.nodes[place].count / 2)]
     }
 
-    /// Whether pairs of two nodes may count that are in the band, and faces that look at one another.
+    /// Whether pairs of two nodes may count that are in the band, and faces that look at one
+    /// another.
     fn asks(&self, turns: &Turns, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
         let last = two.first + two.count - 1;
         if last < one.first + 2 {
@@ -304,7 +316,8 @@ impl Node {
         self.some != [false; 2]
     }
 
-    /// How the node lies as seen from the faces of another, from whose centre `way` leads to this one's.
+    /// How the node lies as seen from the faces of another, from whose centre `way` leads to this
+    /// one's.
     fn seen_from(&self, other: &Self, way: Vector, away: Real, rounding: Tolerance) -> Seen {
         let sine = self.direction.cross(other.direction).length() + self.spread + other.spread;
         let aside = other.flat * sine.min(1.0);
@@ -323,11 +336,13 @@ impl Node {
     }
 }
 
-/// The least cosine between the adjoining axis and a way out of a round shoulder with which the adjoining link holds the point of
-/// the shoulder; more than 1 if there is none. The link holds the points with larger cosines as well.
+/// The least cosine between the adjoining axis and a way out of a round shoulder with which the
+/// adjoining link holds the point of the shoulder; more than 1 if there is none. The link holds the
+/// points with larger cosines as well.
 ///
-/// Let r be the shoulder's radius, a that of the adjoining link and l its length. The point r v is r sqrt(1 - c^2) from its axis, where c
-/// is the cosine: that is at most a. If r > l, it may be beyond the axis: there it is r^2 - 2 r l c + l^2 <= a^2 from its end, squared.
+/// Let r be the shoulder's radius, a that of the adjoining link and l its length. The point r v is
+/// r sqrt(1 - c^2) from its axis, where c is the cosine: that is at most a. If r > l, it may be
+/// beyond the axis: there it is r^2 - 2 r l c + l^2 <= a^2 from its end, squared.
 fn least_covered(radius: Real, next: &ModifiedCylinder, far_end: usize) -> Real {
     // In radii of the shoulder.
     let (thin, length) = ((1.0 - THINNER) * next.radius() / radius, next.length() / radius);
@@ -399,7 +414,8 @@ mod tests {
         (memory.faces().looked_at, found.is_some())
     }
 
-    /// Twice as many steps are looked at in little more than twice as many pairs of nodes, whatever the shape.
+    /// Twice as many steps are looked at in little more than twice as many pairs of nodes, whatever
+    /// the shape.
     #[test]
     fn the_work_grows_as_n_log_n() {
         for (name, shape) in SHAPES {

@@ -346,7 +346,8 @@ fn arc(turn: Real, count: usize) -> Vec<Vector> {
     points
 }
 
-/// A taper, ribs, or rounding on a constant radius: the robot is thinner or as thick beyond most joints, and overlaps its neighbours.
+/// A taper, ribs, or rounding on a constant radius: the robot is thinner or as thick beyond most
+/// joints, and overlaps its neighbours.
 #[test]
 fn steps_in_radius_do_not_meet_their_own_neighbourhood_while_they_bend() {
     let (mut random, mut pair, mut overlapping) = (Random::new(72), RobotPair::new(), 0);
