@@ -256,7 +256,7 @@ impl<'a> OneRobot<'a> {
             return true;
         }
         let mut now = bound;
-        faces.run(turns, band, bound, |links, [in_band, look]| {
+        faces.run(&self.robot, turns, band, bound, |links, [in_band, look]| {
             let joined = links.map(|link| self.joined(link));
             let [one, two] = &joined;
             let tolerance = one.tolerance(two);

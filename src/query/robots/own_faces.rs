@@ -49,7 +49,7 @@ use crate::robot::{ModifiedCylinder, is_step};
 use parry3d_f64::math::{Real, Vector};
 
 /// Links one after another.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Node {
     first: usize,
     count: usize,
@@ -90,9 +90,14 @@ struct Seen {
 /// By this share adjoining links are taken for thinner, so that the way may err by as much.
 const THINNER: Real = 1.0 / 256.0;
 
+/// Beside no more links with a face than these, each link is looked at alone: that costs less than
+/// the nodes of some dozen links.
+const FEW: usize = 4;
+
 /// What a search keeps from one to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnFaces {
+    with_faces: Vec<usize>,
     /// Each node before those that it holds, the first half's first.
     nodes: Vec<Node>,
     stack: Vec<[usize; 2]>,
@@ -118,21 +123,58 @@ impl OwnFaces {
         {
             self.looked_at = 0;
         }
+        self.with_faces.clear();
         let count = robot.links().len();
-        let [mut starts, mut last_end] = [0, usize::MAX];
+        let (mut look, mut first_end) = (false, count);
         for link in 0..count {
             let [start, end] = faces(robot, link);
-            // A start that comes after an end.
-            starts += usize::from(start && link > last_end.saturating_add(1));
-            last_end = if end { last_end.min(link) } else { last_end };
+            if start || end {
+                self.with_faces.push(link);
+            }
+            look |= start && link > first_end + 1;
+            first_end = if end { first_end.min(link) } else { first_end };
         }
-        if starts == 0 && turns.quarter_from[0] >= count {
-            return false;
+        !self.with_faces.is_empty() && (look || turns.quarter_from[0] < count)
+    }
+
+    /// As [`run`](Self::run), of a robot with few faces: each link with one beside all others.
+    fn run_of_few(
+        &self,
+        robot: &PlacedRobot,
+        turns: &Turns,
+        mut bound: Real,
+        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
+    ) -> bool {
+        let links = robot.links();
+        let ball = |link: usize| {
+            let (start, along) = (links[link].start(), links[link].end() - links[link].start());
+            (start + along * 0.5, 0.5 * along.length() + links[link].radius())
+        };
+        for (number, &link) in self.with_faces.iter().enumerate() {
+            let (centre, reach) = ball(link);
+            let rounding = 64.0 * Real::UNIT_ROUNDOFF;
+            for other in 0..links.len() {
+                let pair = [link.min(other), link.max(other)];
+                let [one, two] = pair;
+                if two < one + 2 || self.with_faces[..number].contains(&other) {
+                    continue;
+                }
+                let in_band = turns.quarter_from[one] <= two && two < turns.asked_from[one];
+                let look = faces(robot, one)[1] && faces(robot, two)[0];
+                if !in_band && !look {
+                    continue;
+                }
+                let (there, extent) = ball(other);
+                let largest = centre.abs().max(there.abs()).max_element() + reach + extent;
+                if (there - centre).length() - reach - extent - rounding * largest > bound {
+                    continue;
+                }
+                match visit(pair, [in_band, look]) {
+                    Some(next) => bound = next,
+                    None => return false,
+                }
+            }
         }
-        self.add(robot, turns, 0, count);
-        let root = &self.nodes[0];
-        let largest = root.centre.abs().max_element() + root.reach + root.radius;
-        self.rounding = Tolerance(64.0 * Real::UNIT_ROUNDOFF * largest);
         true
     }
 
@@ -142,7 +184,7 @@ impl OwnFaces {
             return;
         }
         let place = self.nodes.len();
-        self.nodes.push(Node::of_link(robot, turns, first));
+        self.nodes.push(Node::default());
         self.add(robot, turns, first, count / 2);
         let second = self.nodes.len();
         self.add(robot, turns, first + count / 2, count - count / 2);
@@ -154,11 +196,19 @@ impl OwnFaces {
     /// be left out. Returns whether it always did.
     pub fn run(
         &mut self,
+        robot: &PlacedRobot,
         turns: &Turns,
         band: Band,
         mut bound: Real,
         mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
     ) -> bool {
+        if band == Band::Faces && self.with_faces.len() <= FEW {
+            return self.run_of_few(robot, turns, bound, visit);
+        }
+        self.add(robot, turns, 0, robot.links().len());
+        let root = &self.nodes[0];
+        let largest = root.centre.abs().max_element() + root.reach + root.radius;
+        self.rounding = Tolerance(64.0 * Real::UNIT_ROUNDOFF * largest);
         self.stack.clear();
         self.stack.push([0, 0]);
         while let Some(pair) = self.stack.pop() {
