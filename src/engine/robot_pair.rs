@@ -332,8 +332,13 @@ pub fn clears_between(
 /// Parts that are close only because they are neighbours do not count. Asked for are
 ///
 /// - two links with a turn of at least pi between them, which is the sum of the angles of the joints;
-/// - a flat face (the base, the tip, the wider side of a step) and a link, with a turn of at least pi / 2;
-/// - two flat faces that are turned towards one another.
+/// - a face (the base or the tip, if flat, or the wider side of a step, if round too) and a link,
+///   with a turn of at least pi / 2;
+/// - two faces that look at one another: the end of a link and the start of a later one.
+///
+/// A face counts if the way to the other part leaves it outwards, the robot leads nowhere nearer
+/// from there, and the adjoining link does not hold the nearest point of the face. So the shoulders
+/// of a taper never meet. Radii that differ by less than a share of 2^-32 are no step.
 ///
 /// No other two places can be a local minimum of the distance, however the robot is bent: a closed curve turns by at least 2
 /// pi, of which the two corners of arc and chord take pi at most (Fenchel's theorem). So a bend never collides with its own
@@ -381,8 +386,9 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// Whether a tube keeps more than `margin` to itself.
 ///
 /// Asked for are the parts that [`self_minimum`] asks for, of the curve itself: two places with a turn of at least pi between them,
-/// a flat face and what is in front of it with a turn of at least pi / 2, and two faces that are turned towards one
-/// another. So a bend never collides with its own neighbourhood.
+/// a flat face and what is in front of it with a turn of at least pi / 2, and two faces that look
+/// at one another. Pieces from all of which the robot leads nearer to the face are left out. So a
+/// bend never collides with its own neighbourhood.
 ///
 /// `Clear` and `Contact` are proven. Errors that the tube states for itself count in all distances; which parts are asked for is told by
 /// the curve as it was given. `Undecided` is the answer only

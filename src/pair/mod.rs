@@ -1,6 +1,7 @@
 //! One link in the mesh's frame and one triangle: how near they are, alone and a pack at a time.
 
 mod answered;
+mod beside_itself;
 mod best;
 mod certificate;
 mod certificate_of_links;
@@ -26,6 +27,7 @@ mod search_link;
 mod segments_together;
 mod two_links;
 
+pub(crate) use beside_itself::{JoinedLink, MovedLinks, Tolerance};
 pub(crate) use best::Best;
 pub(crate) use checks::rigid_pose;
 pub(crate) use contact::{contact, contacts};

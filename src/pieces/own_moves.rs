@@ -20,7 +20,8 @@
 //!   changes evenly along the curve, never more than pi / 2.
 //! - All T are within tau w of the curve. If L / 4 + tau w < pi / 2, m is what must not be. So U + 6 tau w >= pi (or pi / 2).
 //!
-//! So a pair is kept if it turns by that much less than is asked for. Two faces are kept at any turn, as at rest.
+//! So a pair is kept if it turns by that much less than is asked for. Two faces that look at one
+//! another are kept at any turn, as at rest.
 //!
 //! **In front of a face.** The other place q moves from the face's centre c by no more than both move, d, and the normal turns by
 //! at most tau w: (q - c) . n grows by no more than d + (|q - c| + d) tau w.

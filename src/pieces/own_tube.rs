@@ -3,8 +3,12 @@
 //! The rule is that of a chain (`query::robots::one_robot`, whose proofs hold for any centreline with a direction: the angles of
 //! the joints are the integral of the curvature). Neighbours are near for no other reason than that they are neighbours;
 //! places that are a local minimum of the distance have a turn of at least pi between them, or pi / 2 where one of them is a
-//! face (the base, the tip, the wider side of a step) that the other is in front of. Two faces that look at one another are
-//! asked about at any turn. A place of the tube is the ball of its radius around its centreline, which the tube holds as it
+//! face (the base, the tip, the wider side of a step) that the other is in front of. Two faces that
+//! look at one another, the end of a section and the start of a later one, are asked about at any
+//! turn. From a place beside a face the robot must lead nowhere nearer: a piece is left out if it
+//! does so from all of its places ([`OwnTube::leads_on`]). Of links `pair::JoinedLink` decides, as
+//! of a chain. A place of the tube is the ball of its radius around its centreline, which the tube
+//! holds as it
 //! bends by less than 1 / radius; where that would stick out of a face nearby, it is the disc.
 //!
 //! So the least distance of all such pairs is what is bounded here. How far a curve turns is known between two bounds
@@ -67,8 +71,9 @@ use super::placed_tube::PlacedTube;
 use super::refine::Part;
 use super::two_tubes::{FoundBetween, Stretch, TwoTubes, found_from, half_way};
 use crate::answer::ProximityError;
-use crate::pair::{NearestOfLinks, PlacedLink};
-use crate::robot::{Face, Tube, TubeTurns};
+use crate::distance::Scalar;
+use crate::pair::{JoinedLink, MovedLinks, NearestOfLinks, PlacedLink};
+use crate::robot::{Face, Section, Tube, TubeTurns, is_step};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -208,11 +213,11 @@ impl<'a> OwnTube<'a> {
         for i in 0..bodies.len() {
             for j in i..bodies.len() {
                 let pair = pair(&bodies[i], &bodies[j]);
-                if !self.asks(&pair) {
+                if !self.turns_enough(&pair) {
                     continue;
                 }
                 let at_least = self.both.at_least(&pair.outers);
-                if at_least <= upper {
+                if at_least <= upper && self.may_count(&pair) {
                     nearest.push(at_least, [i, j]);
                 }
             }
@@ -230,7 +235,7 @@ impl<'a> OwnTube<'a> {
             let before = number.checked_sub(1).and_then(|before| sections.get(before));
             for (end, neighbour) in [(0, before), (1, sections.get(number + 1))] {
                 let is_flat = section.faces[end].is_some();
-                if neighbour.map_or(is_flat, |neighbour| neighbour.radius < section.radius) {
+                if neighbour.map_or(is_flat, |neighbour| is_step(neighbour.radius, section.radius)) {
                     let tick = if end == 0 { section.first } else { section.last };
                     let piece = Piece { section: number as u32, from: tick, to: tick };
                     let body = self.body_of_face(&piece, end);
@@ -294,29 +299,187 @@ impl<'a> OwnTube<'a> {
         [turned(two, two.from) - turned(one, one.to), turned(two, two.to) - turned(one, one.from)]
     }
 
-    /// The turn that is asked for.
+    /// The turn that is asked for: none of two faces that look at one another.
     fn angle(pair: &OwnPair) -> Real {
         match pair.faces {
             [None, None] => PI,
-            [Some(_), Some(_)] => 0.0,
+            [Some(1), Some(0)] => 0.0,
             _ => FRAC_PI_2,
         }
     }
 
     fn asks(&self, pair: &OwnPair) -> bool {
+        self.turns_enough(pair) && self.may_count(pair)
+    }
+
+    /// Whether the turn between two parts that share no joint may be one that is asked for.
+    fn turns_enough(&self, pair: &OwnPair) -> bool {
         let [_, most] = self.turns(pair);
         let [one, two] = pair.pieces;
         // Neighbours of a chain share a joint; and of a piece and itself nothing is asked but what turns.
         let apart = two.section - one.section;
-        if (self.turns.has_joints() && apart < 2) || !self.may_turn(pair, most) {
-            return false;
-        }
-        let Some(k) = pair.faces.iter().position(Option::is_some) else { return true };
         let is_same = pair.faces == [Some(0), Some(0)] || pair.faces == [Some(1), Some(1)];
-        if is_same && apart == 0 {
+        let share_joint = self.turns.has_joints() && apart < 2;
+        !share_joint && !(is_same && apart == 0) && self.may_turn(pair, most)
+    }
+
+    /// Whether some place of two parts that turn enough may be a local minimum.
+    fn may_count(&self, pair: &OwnPair) -> bool {
+        if self.moves.is_none() && self.is_exact() {
+            return self.counts_exactly(pair);
+        }
+        let Some(k) = pair.faces.iter().position(Option::is_some) else {
+            return !self.is_exact() || self.may_count_while_moving(pair);
+        };
+        self.may_be_before(pair, k)
+            && self.may_be_before(pair, 1 - k)
+            && self.ways_leave(pair)
+            && !self.leads_on(pair, k)
+            && (!self.is_exact() || self.may_count_while_moving(pair))
+    }
+
+    /// Whether two links, a face and a link, or two faces may count at some time.
+    fn may_count_while_moving(&self, pair: &OwnPair) -> bool {
+        let Some(moves) = self.moves else { return true };
+        let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
+        let sections = self.tube().sections();
+        // Of the links and of their neighbours.
+        let of = |number: u32| {
+            let around = number.saturating_sub(1)..=(number + 1).min(sections.len() as u32 - 1);
+            around.fold(MovedLinks::default(), |most, number| {
+                let Moved { points, turn } = moves.of(number);
+                let axes = (points - sections[number as usize].radius * turn).max(0.0);
+                // The difference errs by 2 u of the points.
+                let axes = axes + 4.0 * Real::UNIT_ROUNDOFF * points;
+                MovedLinks {
+                    points: most.points.max(points),
+                    axes: most.axes.max(axes),
+                    turn: most.turn.max(turn),
+                }
+            })
+        };
+        let [first, second] = pair.pieces.map(|piece| of(piece.section));
+        let moved = &MovedLinks {
+            points: first.points + second.points,
+            axes: first.axes + second.axes,
+            turn: first.turn + second.turn,
+        };
+        if moved.points == 0.0 && moved.turn == 0.0 {
+            return self.counts_exactly(pair);
+        }
+        match pair.faces {
+            [None, None] => one.may_count_beside(&two, moved),
+            [Some(end), None] => one.face_may_count(end, &two, moved),
+            [None, Some(end)] => two.face_may_count(end, &one, moved),
+            [Some(end), Some(other)] => one.faces_may_count(end, &two, other, moved),
+        }
+    }
+
+    /// Whether all parts are links whose places are known but for rounding.
+    fn is_exact(&self) -> bool {
+        self.turns.has_joints() && self.tube().tube.error() == 0.0
+    }
+
+    /// Whether two links of a chain, or their faces, count in this shape: the same decision as of a
+    /// chain.
+    fn counts_exactly(&self, pair: &OwnPair) -> bool {
+        let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
+        let tolerance = one.tolerance(&two);
+        match pair.faces {
+            [None, None] => one.counts_beside(&two, tolerance),
+            [Some(end), None] => one.face_counts(end, &two, &one.face_to_link(end, &two.link), tolerance),
+            [None, Some(end)] => two.face_counts(end, &one, &two.face_to_link(end, &one.link), tolerance),
+            [Some(end), Some(other)] => {
+                let nearest = one.face_to_face(end, &two, other);
+                one.faces_count(end, &two, other, &nearest, tolerance)
+            }
+        }
+    }
+
+    /// A link of a chain and its neighbours.
+    fn joined(&self, section: u32) -> JoinedLink {
+        let sections = self.tube().sections();
+        let number = section as usize;
+        let link = |section: &Section| {
+            let ends = [section.first, section.last].map(|tick| self.tube().point(section, tick));
+            let flat = section.faces.map(|face| face.is_some());
+            PlacedLink::between(ends[0], ends[1], section.radius, flat)
+        };
+        let beyond =
+            [number.checked_sub(1).and_then(|before| sections.get(before)), sections.get(number + 1)];
+        JoinedLink { link: link(&sections[number]), beyond: beyond.map(|section| section.map(link)) }
+    }
+
+    /// Whether the robot leads nearer to a face from all places of the other piece, at all times.
+    ///
+    /// Let c be the face's centre, r its radius and n its normal, y a place of the piece, t the
+    /// direction there, m that of the piece's chord, and e the largest angle between t and m. A
+    /// point p of the face is at most r from c and perpendicular to n. So (y - p) . t >= (y - c) .
+    /// m - |y - c| e - r (|n x m| + e), and it is no more than the same with the other signs. If
+    /// that is above 0 the robot leads nearer backwards, and if it is below 0, forwards, unless it
+    /// ends there or is thinner beyond. Errors, and what may move and turn, are counted in
+    /// addition.
+    fn leads_on(&self, pair: &OwnPair, k: usize) -> bool {
+        let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
+        let Some(end) = pair.faces[k] else { return false };
+        if pair.faces[1 - k].is_some() {
             return false;
         }
-        self.may_be_before(pair, k) && self.may_be_before(pair, 1 - k) && self.ways_leave(pair)
+        let section = tube.section(piece.section);
+        let arcs = tube.arcs(piece);
+        let length = (arcs[1] - arcs[0]) * section.stretch;
+        let known = tube.tube.bound(section, [piece.from, piece.to]);
+        let ends = [piece.from, piece.to].map(|tick| tube.point(section, tick));
+        let chord = (ends[1] - ends[0]).length();
+        let errors = tube.tube.error() + known.off + tube.slack();
+        let bend = known.curvature * length;
+        if bend > FRAC_PI_2 || chord <= 4.0 * errors {
+            return false;
+        }
+        let chord_direction = (ends[1] - ends[0]) / chord;
+        let tilt = bend + 2.0 * errors / chord + tube.tube.turn();
+        let moved = [0, 1].map(|turning| self.moved(pair, turning));
+        let turn = moved[0].turn + moved[1].turn;
+        let at_face = tube.section(pair.pieces[k].section);
+        let centre = tube.point(at_face, pair.pieces[k].from);
+        let aside = match (at_face.faces[end].is_some(), self.face(&pair.pieces[k], end)) {
+            (true, Some(face)) => {
+                let sine = face.outward.cross(chord_direction).length() + face.tilt + tilt + turn;
+                at_face.radius * sine.min(1.0)
+            }
+            // The ball around a round shoulder is seen as its centre is. It may become flat while
+            // it moves.
+            (false, _) if self.moves.is_none() => 0.0,
+            _ => at_face.radius,
+        };
+        let away = ends.map(|end| (end - centre).length());
+        let away = away[0].max(away[1]) + length + moved[0].points;
+        let off = away * (tilt + moved[1 - k].turn) + aside + 4.0 * errors + moved[0].points;
+        let along = |place: Vector, direction: Vector| (place - centre).dot(direction);
+        if along(ends[0], chord_direction) > off {
+            piece.from > section.first || self.goes_on(piece.section, 0, |axis| along(ends[0], axis) > off)
+        } else if along(ends[1], chord_direction) < -off {
+            piece.to < section.last || self.goes_on(piece.section, 1, |axis| along(ends[1], axis) < -off)
+        } else {
+            false
+        }
+    }
+
+    /// Whether the robot goes on beyond an end of a section, no thinner, and in a direction that
+    /// leads on too.
+    fn goes_on(&self, section: u32, end: usize, leads_on: impl Fn(Vector) -> bool) -> bool {
+        let sections = self.tube().sections();
+        let here = &sections[section as usize];
+        let next = if end == 0 { section.checked_sub(1) } else { Some(section + 1) };
+        let Some(next) = next.and_then(|next| sections.get(next as usize)) else { return false };
+        if is_step(next.radius, here.radius) {
+            return false;
+        }
+        if !self.turns.has_joints() {
+            return true;
+        }
+        let ends = [next.first, next.last].map(|tick| self.tube().point(next, tick));
+        leads_on((ends[1] - ends[0]).normalize_or_zero())
     }
 
     /// Whether a pair that turns by `most` at most may turn by what is asked for.
@@ -430,7 +593,11 @@ impl<'a> OwnTube<'a> {
         });
         // What may be asked about at another time does not count in this shape.
         let counts = self.surely_turns(pair)
-            && (pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest));
+            && if self.is_exact() {
+                self.counts_exactly(pair)
+            } else {
+                pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest)
+            };
         let upper = if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
         FoundBetween { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
     }

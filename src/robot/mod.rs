@@ -41,5 +41,6 @@ pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
+pub(crate) use steps::is_step;
 pub(crate) use tube::{CurveBound, Drift, Face, Lasting, Section, TooSharp, TubeTurns};
 pub use tube::{Tube, TubeSection};

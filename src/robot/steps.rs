@@ -36,6 +36,11 @@ pub(super) fn is_same(first: Real, radius: Real) -> bool {
     (radius - first).abs() <= SAME * first
 }
 
+/// Whether a tube of the one radius goes on in a wider one of the other.
+pub(crate) fn is_step(from: Real, to: Real) -> bool {
+    to > from && !is_same(to, from)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -17,6 +17,7 @@ mod level_links;
 mod measured;
 mod motion;
 mod moved;
+mod own_minima;
 mod own_parts;
 mod own_tube;
 mod own_tube_sampled;

@@ -4,8 +4,8 @@ use continuum_testing::Random;
 use continuum_testing::narrow_phase::point_modified_cylinder;
 use parry_continuum::distance::{Vec3, segment_segment};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{RobotPair, self_clears, self_minimum};
-use parry_continuum::{Cap, Chain, ModifiedCylinder};
+use parry_continuum::proximity::{Decision, RobotPair, self_clears, self_minimum};
+use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use std::f64::consts::PI;
 
 /// A robot of one radius along a curve over `[0, 1]`.
@@ -258,4 +258,139 @@ fn a_robot_that_is_folded_is_refused() {
             assert_eq!(self_minimum(&robot).unwrap_err().kind(), "joint_too_sharp");
         }
     }
+}
+
+/// An arc in the plane of x and z, of links of length 1, that turns by so much at each joint.
+fn arc(turn: f64, count: usize) -> Vec<Vector> {
+    let mut points = vec![Vector::ZERO];
+    for k in 0..count {
+        let (sin, cos) = (turn * k as f64).sin_cos();
+        points.push(points[k] + Vector::new(sin, 0.0, cos));
+    }
+    points
+}
+
+#[test]
+fn radii_that_are_equal_up_to_rounding_are_no_steps() {
+    let mut pair = RobotPair::new();
+    let points: Vec<_> = (0..7).map(|k| Vector::Z * (0.1 * f64::from(k))).collect();
+    let radii = [0.1 + 0.2, 0.3, 0.1 + 0.2, 0.3, 0.3, 0.3];
+    assert!(radii[0] != radii[1]);
+    for chain in [Chain::from_centreline(&points, &radii), Chain::capsules(&points, &radii)] {
+        assert_eq!(pair.self_minimum(&chain.unwrap()).unwrap(), None);
+    }
+    let mut random = Random::new(8);
+    for round in 0..200 {
+        let count = 3 + random.below(20) as usize;
+        let (turn, noise) = (random.between(0.0, 1.5) / count as f64, [2e-16, 1e-12, 1e-10][round % 3]);
+        let unit = [1.0, 1e-3, 1e-6][random.below(3) as usize];
+        let radius = random.between(0.1, 5.0).min(0.4 / turn) * unit;
+        let mut points = arc(turn, count);
+        points.iter_mut().for_each(|point| *point *= unit);
+        let noisy = |_| radius * (1.0 + noise * random.between(-1.0, 1.0));
+        let radii: Vec<_> = (0..=count).map(noisy).collect();
+        let links = &radii[1..];
+        let chains = [
+            Chain::from_centreline(&points, links),
+            Chain::capsules(&points, links),
+            Chain::from_vertex_radii(&points, &radii),
+        ];
+        for chain in chains.map(Result::unwrap) {
+            assert_eq!(pair.self_minimum(&chain).unwrap(), None, "{round}");
+            assert!(pair.self_clears(&chain, 9.0).unwrap(), "{round}");
+            let tube = Tube::from(&chain);
+            let decision = pair.tube_self_clears(&tube, 0.0, 1e-3 * unit).unwrap();
+            assert_eq!(decision, Decision::Clear, "{round}");
+        }
+        if round % 10 == 0 {
+            let motion = LinearMotion::chain(&points, &points, links).unwrap();
+            assert!(pair.motion_self_clears(&motion, 0.0, 1e-3 * unit).unwrap().is_clear(), "{round}");
+        }
+    }
+}
+
+/// Two shoulders of a taper look the same way, and what they overlap is the robot itself.
+#[test]
+fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
+    let mut pair = RobotPair::new();
+    let points: Vec<_> = (0..5).map(|k| Vector::Z * (0.5 * f64::from(k))).collect();
+    let straight = Chain::capsules(&points, &[1.0, 0.99, 0.98, 0.97]).unwrap();
+    assert_eq!(pair.self_minimum(&straight).unwrap(), None);
+    let mut random = Random::new(9);
+    let (mut overlapping, mut bent) = (0, 0);
+    for round in 0..600 {
+        let count = 4 + random.below(30) as usize;
+        // Up to half a turn, as tight as the joints allow.
+        let turn = random.between(0.1, PI) / count as f64;
+        let radius = [0.5, 0.7, 0.8, 0.99][random.below(4) as usize] * 0.5 / (0.5 * turn).tan();
+        let ratio: f64 = 1.0 - [1e-8, 1e-3, 0.01, 0.1][random.below(4) as usize];
+        let mut radii: Vec<_> = (0..count).map(|k| radius * ratio.powi(k as i32)).collect();
+        if round % 2 == 0 {
+            radii.reverse();
+        }
+        let points = arc(turn, count);
+        let is_flat = round % 4 < 2;
+        let chain =
+            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let chain = chain.unwrap();
+        assert!(pair.self_clears(&chain, 0.0).unwrap(), "{round}: {:?}", pair.self_minimum(&chain));
+        let decision = pair.tube_self_clears(&Tube::from(&chain), 0.0, 1e-3).unwrap();
+        assert_eq!(decision, Decision::Clear, "{round}");
+        if round % 20 < 4 {
+            let motion = if is_flat {
+                LinearMotion::chain(&points, &points, &radii)
+            } else {
+                LinearMotion::capsules(&points, &points, &radii)
+            };
+            assert!(pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap().is_clear(), "{round}");
+        }
+        overlapping += usize::from(radius > 1.0);
+        bent += usize::from(turn * count as f64 > 0.5 * PI);
+    }
+    assert!(overlapping > 100 && bent > 200, "{overlapping} {bent}");
+}
+
+/// A thick link, and a thin part that leaves it, turns round and comes back to its wide end.
+#[test]
+fn a_thin_part_that_bends_back_to_a_thick_end_meets_it() {
+    let (mut random, mut pair) = (Random::new(10), RobotPair::new());
+    let (mut round_ends, mut corners) = (0, 0);
+    for round in 0..400 {
+        let (wide, thin) = (random.between(2.0, 6.0), random.between(0.05, 1.0));
+        let is_flat = random.below(2) == 0;
+        // The tip ends at this place of the end, or a little ahead of it.
+        let beside = random.between(thin, 0.9 * wide - thin);
+        let depth = if is_flat { 0.0 } else { (wide * wide - beside * beside).sqrt() };
+        let gap = [0.0, 1e-3, 0.5][random.below(3) as usize];
+        let out = depth + 4.0 * wide;
+        let angle = random.between(0.0, 6.0);
+        let side = Vector::new(angle.cos(), angle.sin(), 0.0);
+        let aside = random.direction() * 0.2 * thin;
+        let points = [
+            Vector::Z * -10.0,
+            Vector::ZERO,
+            Vector::Z * out,
+            side * beside + Vector::Z * (out + 0.5 * thin) + aside,
+            // Towards the ball's centre, or down to the face.
+            if is_flat {
+                side * beside + Vector::Z * (gap + 1e-9)
+            } else {
+                (side * beside + Vector::Z * depth) * ((wide + gap + 1e-9) / wide)
+            },
+        ];
+        let pose = random.pose(3.0);
+        let points = points.map(|point| pose * point);
+        let radii = [wide, thin, thin, thin];
+        let chain =
+            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let Ok(found) = pair.self_minimum(&chain.unwrap()) else { continue };
+        let found = found.unwrap_or_else(|| panic!("{round}: the tip meets the end"));
+        assert!(found.distance <= gap + 2e-9, "{round}: {found:?} {gap}");
+        if beside > 2.0 * thin + gap + 1e-3 {
+            assert_eq!(found.links, [0, 3], "{round}");
+        }
+        round_ends += usize::from(!is_flat);
+        corners += usize::from(gap == 0.0);
+    }
+    assert!(round_ends > 50 && corners > 30, "{round_ends} {corners}");
 }

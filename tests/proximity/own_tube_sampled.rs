@@ -1,5 +1,6 @@
 //! A tube beside itself, against all pairs of its discs and faces, sampled and then sought between the samples. What is asked about is
-//! told by the arcs' own curvature, and what is in front of a face by points of the discs.
+//! told by the arcs' own curvature, and what is in front of a face by points of the discs. Beside a
+//! face only local minima have to be found; what else is in front of it may be.
 
 use super::own_tube::winding;
 use super::tube::all_ways;
@@ -43,6 +44,14 @@ impl Disc {
         (found.distance, at(found.point2) - at(found.point1))
     }
 
+    /// How far the surface around another disc's centre is from this disc, negative within.
+    fn signed(&self, other: &Self) -> f64 {
+        let offset = other.centre - self.centre;
+        let ahead = offset.dot(self.normal);
+        let across = (offset - self.normal * ahead).length();
+        ahead.hypot((across - self.radius).max(0.0)) - other.radius
+    }
+
     /// How far another disc is from this one, a face, as far as it is in front of it: where the normal points.
     fn front_apart(&self, other: &Self) -> f64 {
         let (distance, way) = self.closest(other);
@@ -69,8 +78,15 @@ struct Sampled<'a> {
     arcs: &'a Arcs,
     /// Arc length, the number of the stretch, and the disc.
     discs: Vec<(f64, usize, Disc)>,
-    /// The discs of faces, led outwards, and their arc lengths.
-    faces: Vec<(f64, Disc)>,
+    /// The discs of faces, led outwards, and whether each is at the end of its stretch.
+    faces: Vec<(bool, Disc)>,
+}
+
+/// The least distance of all pairs that must be found, and of those that may be.
+#[derive(Clone, Copy, Debug)]
+struct Truth {
+    minima: f64,
+    all: f64,
 }
 
 impl<'a> Sampled<'a> {
@@ -85,13 +101,13 @@ impl<'a> Sampled<'a> {
                 discs.push((s, number, Disc { centre, normal, radius: part.radius, turned }));
             }
             let radius_of = |other: usize| arcs.stretches.get(other).map_or(0.0, |other| other.radius);
-            let [(start, _, first), (end, _, last)] =
+            let [(_, _, first), (_, _, last)] =
                 [discs[discs.len() - 1 - grid as usize], discs[discs.len() - 1]];
             if radius_of(number.wrapping_sub(1)) < part.radius {
-                faces.push((start, Disc { normal: -first.normal, ..first }));
+                faces.push((false, Disc { normal: -first.normal, ..first }));
             }
             if radius_of(number + 1) < part.radius {
-                faces.push((end, last));
+                faces.push((true, last));
             }
             from += part.length;
         }
@@ -109,8 +125,28 @@ impl<'a> Sampled<'a> {
         Disc { centre, normal, turned: self.arcs.turned(s), ..near }
     }
 
-    /// The least distance of all pairs that are asked about, from above.
-    fn nearest(&self) -> f64 {
+    /// Whether the tube leads nearer to a face from the place of a disc, near a sample at this arc
+    /// length.
+    fn leads_nearer(&self, face: &Disc, sample: usize, s: f64) -> bool {
+        let here = self.disc(sample, s);
+        let (apart, signed) = (face.apart(&here), face.signed(&here));
+        // Beyond the ends of a stretch its neighbours go on.
+        [-1e-4, 1e-4].into_iter().any(|step| {
+            let s = s + step;
+            let next = self
+                .discs
+                .windows(2)
+                .position(|pair| pair[0].0 <= s && s <= pair[1].0 && pair[0].1 == pair[1].1);
+            next.is_some_and(|next| {
+                let there = self.disc(next, s);
+                let is_nearer = face.apart(&there) < apart - 1e-10 || apart == 0.0;
+                is_nearer && face.signed(&there) < signed - 1e-10
+            })
+        })
+    }
+
+    /// The least distances of all pairs that are asked about, from above.
+    fn nearest(&self) -> Truth {
         let step = |k: usize| {
             let next = self.discs.get(k + 1).filter(|next| next.1 == self.discs[k].1);
             next.map_or_else(|| self.discs[k].0 - self.discs[k - 1].0, |next| next.0 - self.discs[k].0)
@@ -130,7 +166,7 @@ impl<'a> Sampled<'a> {
                 let (one, two) = (self.disc(i, s), self.disc(j, t));
                 if two.turned - one.turned < PI - ROUNDING { f64::INFINITY } else { one.apart(&two) }
             };
-            let found = descend([self.discs[i].0, self.discs[j].0], [step(i), step(j)], apart);
+            let (found, _) = descend([self.discs[i].0, self.discs[j].0], [step(i), step(j)], apart);
             least = least.min(found);
         }
         let mut starts = Vec::new();
@@ -142,6 +178,7 @@ impl<'a> Sampled<'a> {
                 starts.push((face.front_apart(disc), [number, *n], (number, k)));
             }
         }
+        let mut minima = least;
         for (number, k) in best(starts) {
             let (_, face) = &self.faces[number];
             let apart = |[s]: [f64; 1]| {
@@ -149,17 +186,25 @@ impl<'a> Sampled<'a> {
                 let is_asked = (disc.turned - face.turned).abs() >= FRAC_PI_2 - ROUNDING;
                 if is_asked { face.front_apart(&disc) } else { f64::INFINITY }
             };
-            least = least.min(descend([self.discs[k].0], [step(k)], apart));
+            let (found, [s]) = descend([self.discs[k].0], [step(k)], apart);
+            least = least.min(found);
+            // What is nearest may be behind the face.
+            let is_behind = found > face.apart(&self.disc(k, s)) + ROUNDING;
+            if !is_behind && !self.leads_nearer(face, k, s) {
+                minima = minima.min(found);
+            }
         }
-        for (number, (_, one)) in self.faces.iter().enumerate() {
-            for (_, two) in &self.faces[number + 1..] {
+        for (number, (at_end, one)) in self.faces.iter().enumerate() {
+            for (ends, two) in &self.faces[number + 1..] {
                 let (distance, way) = one.closest(two);
                 if way.dot(one.normal) >= -ROUNDING && way.dot(two.normal) <= ROUNDING {
                     least = least.min(distance);
+                    // Others are found beside the link at the end of which they are.
+                    minima = if *at_end && !ends { minima.min(distance) } else { minima };
                 }
             }
         }
-        least
+        Truth { minima, all: least }
     }
 }
 
@@ -176,7 +221,11 @@ fn best<T>(mut all: Vec<(f64, [usize; 2], T)>) -> impl Iterator<Item = T> {
 }
 
 /// The least of a function near a place: steps to all sides and between them, halved where none leads down.
-fn descend<const N: usize>(mut place: [f64; N], mut steps: [f64; N], f: impl Fn([f64; N]) -> f64) -> f64 {
+fn descend<const N: usize>(
+    mut place: [f64; N],
+    mut steps: [f64; N],
+    f: impl Fn([f64; N]) -> f64,
+) -> (f64, [f64; N]) {
     let mut least = f(place);
     for _ in 0..60 {
         let from = place;
@@ -196,7 +245,7 @@ fn descend<const N: usize>(mut place: [f64; N], mut steps: [f64; N], f: impl Fn(
             break;
         }
     }
-    least
+    (least, place)
 }
 
 /// What a run of problems has seen.
@@ -221,7 +270,9 @@ fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name:
     let (curvature, radius) = (most(|part| part.curvature), most(|part| part.radius));
     let width = (1.0 / curvature - radius).min(2.0 / curvature - 2.0 * radius);
     let mut margins = margins.to_vec();
-    margins.extend([-0.1, -2e-3, 0.0, 2e-3, 0.1].map(|off| truth + off));
+    for truth in [truth.minima, truth.all] {
+        margins.extend([-0.1, -2e-3, 0.0, 2e-3, 0.1].map(|off| truth + off));
+    }
     for (way, tube) in all_ways(&arcs).iter().enumerate() {
         for &margin in &margins {
             if !(0.0..1e9).contains(&margin) {
@@ -232,26 +283,27 @@ fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name:
                 Err(ProximityError::ToleranceTooFine { .. }) if way > 0 => Decision::Undecided,
                 Err(error) => panic!("{name}: {error}"),
             };
-            let told = || format!("{name}, way {way}: margin {margin} of {truth}, width {width}");
+            let told = || format!("{name}, way {way}: margin {margin} of {truth:?}, width {width}");
             match decision {
                 Decision::Clear => {
-                    assert!(truth > margin - ROUNDING, "{}", told());
+                    assert!(truth.minima > margin - ROUNDING, "{}", told());
                     seen.clear += 1;
                 }
                 Decision::Contact => {
-                    assert!(truth <= margin + 1e-6, "{}", told());
+                    assert!(truth.all <= margin + 1e-6, "{}", told());
                     seen.contact += 1;
                 }
                 _ if margin > width - 2.0 * RESOLUTION => seen.wide += 1,
                 _ => {
-                    let is_near = (truth - margin).abs() <= RESOLUTION + 1e-6;
+                    let near = RESOLUTION + 1e-6;
+                    let is_near = truth.all <= margin + near && margin - near <= truth.minima;
                     assert!(way > 0 || is_near, "undecided: {}", told());
                     seen.undecided += 1;
                 }
             }
         }
     }
-    match truth {
+    match truth.minima {
         0.0 => seen.touching += 1,
         f64::INFINITY => seen.none += 1,
         _ => seen.free += 1,

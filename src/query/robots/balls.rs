@@ -93,14 +93,6 @@ impl Balls {
         }
     }
 
-    /// Whether two links that have been placed may be no farther apart than a limit in the frame.
-    pub fn may_be_within(&self, links: [usize; 2], limit: Real) -> bool {
-        let [one, other] = links.map(|link| Ball::of(&self.from(link), |row| row[0]));
-        let apart = limit as f32 + SLACK + one.radius + other.radius;
-        let reach = apart + one.half_length + other.half_length;
-        (other.centre - one.centre).norm_squared() <= reach * reach
-    }
-
     /// A link that has been placed.
     pub fn link(&self, link: usize) -> Option<&PlacedEnds> {
         self.links.get(link)?.as_ref()

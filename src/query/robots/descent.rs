@@ -184,14 +184,6 @@ impl Descent {
         self.run_from(leaf, robots, Limit::of(Real::INFINITY), |_| 0, |found| visit(found.answer()));
     }
 
-    /// Whether two links of a robot beside itself may be at most `bound` apart, after [`run`](Self::run): told by the
-    /// balls around them.
-    pub fn may_be_within(&mut self, robot: &PlacedRobot, links: [usize; 2], bound: Real) -> bool {
-        let Self { frame, balls: [balls, _], .. } = self;
-        links.into_iter().for_each(|link| balls.place(robot, frame, link..link + 1));
-        balls.may_be_within(links, frame.length(bound))
-    }
-
     /// From a place in the first robot's tree, and all of the second's.
     fn run_from(
         &mut self,

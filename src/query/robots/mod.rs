@@ -6,6 +6,7 @@ mod heights;
 mod local_minima;
 mod one_robot;
 mod outline;
+mod own_faces;
 mod own_tube;
 mod tubes;
 mod two_robots;

@@ -22,28 +22,31 @@
 //! points away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no
 //! more than 3/2 pi, which leaves pi / 2 for the joints.
 //!
-//! **A round cap at the wider side of a step** is a ball around c, and asked for like a face. Of a link alone the place
-//! nearest to y may be its end for no other reason than that the robot is thinner beyond: going on along the centreline is
-//! no descent then, so that the corner at c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
+//! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like
+//! a face. Of a link alone the place nearest to y may be its end for no other reason than that the
+//! robot is thinner beyond: going on along the centreline is no descent then, so that the corner at
+//! c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
 //! the joints. At a round base or tip the centreline does not go on, and the first rule has it.
 //!
-//! **Two such ends** at any turn: two steps of a straight robot may face one another. What such a pair has found counts if
-//! the way between the two leaves both on their outer sides, or if they meet.
+//! **Two faces that look at one another**, at any turn: the end of a link and the start of a later
+//! one. (Of other faces one is at the end of its link towards which the other's way leads anyway,
+//! so that the turn of pi / 2 is left.)
+//!
+//! The turn only spares work. Whether a face counts beside a link, or another face,
+//! `pair::JoinedLink` decides. It decides of two links with a turn of pi as well, if they are
+//! nearest at a face of one.
 //!
 //! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two
 //! links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near
 //! whom, and the robot is refused.
 //!
-//! **Rounding of the way.** The two points that are found belong to the two parts and are at most e farther apart than the
-//! nearest two, at the distance d. So the way w between them lies in the parts' difference, a convex set, whose point
-//! nearest to 0 is the shortest way w*. There w . w* >= |w*|^2, and |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2
-//! d + e): of a pair that touches the way is noise, and of one that is nearly parallel it errs by far more than e. Let S be
-//! the largest coordinate of both links and their radius. The narrow phase errs by 16 u of the pair's extent of at most 2
-//! S; the links' coordinates in their pair's frame by sqrt(3) 4 u S, the points in the robot's frame and their difference
-//! by sqrt(3) 3 u S: e = 64 u S is enough. A way that leaves a face by no more than sqrt(e (2 d + e)) on its inner side
-//! counts as one that leaves it outside. And what is measured to be within a bound is in truth within e of it, which is
-//! what the ball around a face is asked for first: it is smaller than the face's link, and so known better than what is
-//! measured.
+//! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`]
+//! of it, which is what the ball around a face is asked for first: it is smaller than the face's
+//! link, and so known better than what is measured.
+//!
+//! **Work.** [`Descent`] looks at the pairs with a turn of pi, [`OwnFaces`] at all others. If faces
+//! refuse [`MOST_REFUSED`] pairs of the former, nothing bounds the search, and [`OwnFaces`] looks
+//! at all pairs: it knows where the robot leads.
 //!
 //! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is
 //! compared instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2
@@ -53,19 +56,23 @@
 //! twice that and 3 u. [`Turns`] asks for cosines up to 128 n u above the one that counts.
 
 use super::descent::{Descent, Limit, measure_pair};
+use super::own_faces::{Band, OwnFaces, faces};
 use crate::answer::{ProximityError, RobotProximity};
 use crate::distance::Scalar;
-use crate::pair::{NearestOfLinks, PlacedLink, PlacedRobot};
+use crate::pair::{JoinedLink, NearestOfLinks, PlacedLink, PlacedRobot};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::FRAC_1_SQRT_2;
+
+/// Beyond so many pairs that were measured for nothing, the nodes of [`OwnFaces`] are cheaper.
+const MOST_REFUSED: usize = 64;
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OwnMemory {
     descent: Descent,
     turns: Turns,
-    faces: Vec<Face>,
+    faces: OwnFaces,
     /// The links that were nearest.
     nearest: Option<[usize; 2]>,
 }
@@ -74,16 +81,25 @@ impl OwnMemory {
     pub fn forget(&mut self) {
         self.nearest = None;
     }
+
+    #[cfg(test)]
+    pub(super) fn faces(&self) -> &OwnFaces {
+        &self.faces
+    }
 }
 
 /// How far a chain's centreline turns.
 #[derive(Clone, Debug, Default)]
-struct Turns {
+pub(super) struct Turns {
     /// Half of what the joints up to each link turn by, together: its cosine and its sine.
     before: Vec<[Real; 2]>,
     slack: Real,
     /// Of each link the first one behind a turn of at least pi that shares no joint with it; beyond the last if none is.
-    asked_from: Vec<usize>,
+    pub asked_from: Vec<usize>,
+    /// The same of a turn of at least pi / 2.
+    pub quarter_from: Vec<usize>,
+    /// The direction of each link.
+    pub directions: Vec<Vector>,
 }
 
 impl Turns {
@@ -97,6 +113,8 @@ impl Turns {
         };
         let (mut last, mut turned) = (of_link(&links[0]), [1.0, 0.0]);
         self.before.push(turned);
+        self.directions.clear();
+        self.directions.push(last.0);
         for (joint, link) in links[1..].iter().enumerate() {
             let next = of_link(link);
             // Of half of the joint's angle.
@@ -111,26 +129,32 @@ impl Turns {
             let [real, imaginary] = turned;
             turned = [real * cosine - imaginary * sine, real * sine + imaginary * cosine];
             self.before.push(turned);
+            self.directions.push(next.0);
             last = next;
         }
         self.slack = 128.0 * links.len() as Real * Real::UNIT_ROUNDOFF;
-        self.find_asked();
+        let (mut half, mut quarter) =
+            (std::mem::take(&mut self.asked_from), std::mem::take(&mut self.quarter_from));
+        self.find_asked(0.0, &mut half);
+        self.find_asked(FRAC_1_SQRT_2, &mut quarter);
+        (self.asked_from, self.quarter_from) = (half, quarter);
         Ok(())
     }
 
-    /// Finds from which link on each is asked for: no earlier than for the link before.
+    /// Finds from which link on each is asked for, at a turn of which half has this cosine: no
+    /// earlier than for the link before.
     ///
     /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less than pi, from here or from
     /// the link before, and one joint more; or that of two joints. A joint turns by less than pi.
-    fn find_asked(&mut self) {
-        self.asked_from.clear();
+    fn find_asked(&self, half_cosine: Real, asked_from: &mut Vec<usize>) {
+        asked_from.clear();
         let mut from = 0;
         for link in 0..self.before.len() {
             from = from.max(link + 2);
-            while from < self.before.len() && !self.reach(0.0, link, from) {
+            while from < self.before.len() && !self.reach(half_cosine, link, from) {
                 from += 1;
             }
-            self.asked_from.push(from);
+            asked_from.push(from);
         }
     }
 
@@ -139,79 +163,6 @@ impl Turns {
     fn reach(&self, half_cosine: Real, first: usize, second: usize) -> bool {
         let ([c1, s1], [c2, s2]) = (self.before[first], self.before[second]);
         c1 * c2 + s1 * s2 <= half_cosine + self.slack
-    }
-
-    /// The links with a turn of at least pi / 2 to or from a link, and less than pi, that share no joint with it.
-    fn quarter_turned(&self, link: usize) -> impl Iterator<Item = usize> {
-        let is_quarter = |first, second| self.reach(FRAC_1_SQRT_2, first, second);
-        let before =
-            (0..link.saturating_sub(1)).rev().take_while(move |&first| self.asked_from[first] > link);
-        let after = link + 2..self.asked_from[link].max(link + 2);
-        before
-            .filter(move |&first| is_quarter(first, link))
-            .chain(after.filter(move |&second| is_quarter(link, second)))
-    }
-}
-
-/// A flat face of a robot, or the round cap at the wider side of a step: one end of a link.
-#[derive(Clone, Copy, Debug)]
-struct Face {
-    link: usize,
-    end: usize,
-    is_flat: bool,
-}
-
-impl Face {
-    /// All faces of a chain: its ends, where they are flat, and the wider sides of its steps.
-    fn all(links: &[ModifiedCylinder], faces: &mut Vec<Self>) {
-        faces.clear();
-        for (number, link) in links.iter().enumerate() {
-            let before = number.checked_sub(1).and_then(|before| links.get(before));
-            for (end, neighbour) in [(0, before), (1, links.get(number + 1))] {
-                let is_flat = link.flat()[end];
-                if neighbour.map_or(is_flat, |neighbour| neighbour.radius() < link.radius()) {
-                    faces.push(Self { link: number, end, is_flat });
-                }
-            }
-        }
-    }
-
-    /// The normal, out of the robot.
-    fn outward(&self, robot: &PlacedRobot) -> Vector {
-        let axis = robot.links()[self.link].axis();
-        if self.end == 0 { -axis } else { axis }
-    }
-
-    /// Whether a way to a point leaves it on its outer side, up to rounding.
-    fn sees(&self, robot: &PlacedRobot, way: Vector, slack: Real) -> bool {
-        way.dot(self.outward(robot)) >= -slack
-    }
-
-    /// The ball around its centre, which is all of it that is asked for if it is round.
-    fn ball(&self, robot: &PlacedRobot) -> PlacedLink {
-        let link = robot.link(self.link);
-        let centre = [link.start(), link.end()][self.end];
-        PlacedLink::between(centre, centre, link.radius(), [false; 2])
-    }
-
-    fn nearest_to_link(&self, robot: &PlacedRobot, other: &PlacedLink) -> NearestOfLinks {
-        if self.is_flat {
-            robot.link(self.link).face_to_link(self.end, other)
-        } else {
-            self.ball(robot).measure_link(other)
-        }
-    }
-
-    fn nearest_to_face(&self, robot: &PlacedRobot, other: &Self) -> NearestOfLinks {
-        if !other.is_flat {
-            return self.nearest_to_link(robot, &other.ball(robot));
-        }
-        let (link, facing) = (robot.link(self.link), robot.link(other.link));
-        if self.is_flat {
-            link.face_to_face([self.end, other.end], &facing)
-        } else {
-            facing.face_to_link(other.end, &self.ball(robot)).swapped()
-        }
     }
 }
 
@@ -226,22 +177,28 @@ impl<'a> OneRobot<'a> {
     pub fn new(robot: &'a Chain, memory: &mut OwnMemory) -> Result<Self, ProximityError> {
         let robot = PlacedRobot::new(robot, &Pose::IDENTITY)?;
         memory.turns.measure(robot.links())?;
-        Face::all(robot.links(), &mut memory.faces);
         Ok(Self { robot })
     }
 
-    /// The nearest of all pairs that are asked for.
+    /// The nearest of all pairs that count.
     pub fn minimum(&self, memory: &mut OwnMemory) -> Option<RobotProximity> {
         let OwnMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
-        let remembered = remembered.filter(|links| turns.asked_from[links[0]] <= links[1]);
+        let remembered =
+            remembered.filter(|&links| turns.asked_from[links[0]] <= links[1] && self.counts(links));
         let mut best = remembered.map(|links| measure_pair([&self.robot; 2], links));
+        let mut refused = 0;
         descent.run([&self.robot; 2], Limit::at_best(&best), asked_from(turns), |found| {
-            Limit::at(best.insert(found))
+            if self.counts(found.links.map(|link| link as usize)) {
+                return Limit::at(best.insert(found));
+            }
+            refused += 1;
+            if refused < MOST_REFUSED { Limit::at_best(&best) } else { Limit::NOTHING }
         });
         // Last, since faces cost most: what is near already spares most of them.
+        let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
         let bound = best.map_or(Real::INFINITY, |best| best.distance);
-        self.between_faces(descent, turns, faces, bound, |found| {
+        self.beside_faces(turns, faces, band, bound, |found| {
             let links = found.links.map(|link| link as usize);
             if Limit::at_best(&best).admits(found.distance, links) {
                 best = Some(found);
@@ -252,70 +209,95 @@ impl<'a> OneRobot<'a> {
         best
     }
 
-    /// Whether all pairs that are asked for are farther apart than `margin`.
+    /// Whether all pairs that count are farther apart than `margin`.
     pub fn clears(&self, margin: Real, memory: &mut OwnMemory) -> bool {
         let OwnMemory { descent, turns, faces, .. } = memory;
-        let mut is_clear = true;
-        descent.run([&self.robot; 2], Limit::of(margin), asked_from(turns), |_| {
-            is_clear = false;
-            Limit::NOTHING
+        let (mut is_clear, mut refused) = (true, 0);
+        descent.run([&self.robot; 2], Limit::of(margin), asked_from(turns), |found| {
+            is_clear = !self.counts(found.links.map(|link| link as usize));
+            refused += usize::from(is_clear);
+            if is_clear && refused < MOST_REFUSED { Limit::of(margin) } else { Limit::NOTHING }
         });
+        let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
         let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
-        is_clear && self.between_faces(descent, turns, faces, margin, keep)
+        is_clear && self.beside_faces(turns, faces, band, margin, keep)
     }
 
-    /// Shows `keep` what every face is near, at most `bound` away, as long as it returns what is the bound from then on.
+    /// Whether two links with a turn of pi between them count.
+    fn counts(&self, links: [usize; 2]) -> bool {
+        let has_face = |link: &usize| faces(&self.robot, *link) != [false; 2];
+        if !links.iter().any(has_face) {
+            return true;
+        }
+        let [one, two] = links.map(|link| self.joined(link));
+        one.counts_beside(&two, one.tolerance(&two))
+    }
+
+    /// A link and its neighbours.
+    fn joined(&self, link: usize) -> JoinedLink {
+        let last = self.robot.links().len() - 1;
+        let before = link.checked_sub(1).map(|before| self.robot.link(before));
+        let behind = (link < last).then(|| self.robot.link(link + 1));
+        JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
+    }
+
+    /// Shows `keep` what counts beside faces, at most `bound` away, as long as it returns what is
+    /// the bound from then on.
     /// Returns whether it always did.
-    fn between_faces(
+    fn beside_faces(
         &self,
-        descent: &mut Descent,
         turns: &Turns,
-        faces: &[Face],
-        mut bound: Real,
+        faces: &mut OwnFaces,
+        band: Band,
+        bound: Real,
         mut keep: impl FnMut(RobotProximity) -> Option<Real>,
     ) -> bool {
-        for (number, face) in faces.iter().enumerate() {
-            // Those of the links that are asked for at a turn of pi anyway are left to that.
-            let of_links = turns.quarter_turned(face.link).map(|link| (link, None));
-            let of_faces = faces[number + 1..].iter().map(|facing| (facing.link, Some(facing)));
-            for (link, facing) in of_links.chain(of_faces.filter(|(link, _)| link.abs_diff(face.link) >= 2)) {
-                if !descent.may_be_within(&self.robot, [face.link, link], bound) {
-                    continue;
-                }
-                let (on_face, other) = (self.robot.link(face.link), self.robot.link(link));
-                let error = error([&on_face, &other]);
-                // The ball around a face holds it, and spares most others.
-                if !face.ball(&self.robot).may_be_within(bound + error, &other) {
-                    continue;
-                }
-                let nearest = match facing {
-                    Some(facing) => face.nearest_to_face(&self.robot, facing),
-                    None => face.nearest_to_link(&self.robot, &other),
-                };
-                let (way, slack) = way(&nearest, error);
-                let meets = facing.is_none_or(|facing| facing.sees(&self.robot, -way, slack));
-                if meets && face.sees(&self.robot, way, slack) {
-                    let found = in_order([face.link, link], [&on_face, &other], &nearest);
-                    let Some(next) = keep(found) else { return false };
-                    bound = next;
+        if !faces.begin(&self.robot, turns) {
+            return true;
+        }
+        let mut now = bound;
+        faces.run(&self.robot, turns, band, bound, |links, [in_band, look]| {
+            let joined = links.map(|link| self.joined(link));
+            let [one, two] = &joined;
+            let tolerance = one.tolerance(two);
+            if look && one.is_face(1) && two.is_face(0) {
+                let may = one.ball(1).may_be_within(now + tolerance.0, &two.ball(0));
+                if may {
+                    let nearest = one.face_to_face(1, two, 0);
+                    if one.faces_count(1, two, 0, &nearest, tolerance) {
+                        now = keep(nearest.answer(links, [&one.link, &two.link]))?;
+                    }
                 }
             }
-        }
-        true
+            if !in_band || links[1] < turns.quarter_from[links[0]] {
+                return Some(now);
+            }
+            if links[1] >= turns.asked_from[links[0]] {
+                if band == Band::All
+                    && let Some(nearest) = one.link.measure_link_within(now, &two.link)
+                    && self.counts(links)
+                {
+                    now = keep(nearest.answer(links, [&one.link, &two.link]))?;
+                }
+                return Some(now);
+            }
+            for (on_face, other) in [(0, 1), (1, 0)] {
+                let [face, beside] = [&joined[on_face], &joined[other]];
+                for end in [0, 1] {
+                    // The ball around a face holds it, and spares most others.
+                    if !face.is_face(end) || !face.ball(end).may_be_within(now + tolerance.0, &beside.link) {
+                        continue;
+                    }
+                    let nearest = face.face_to_link(end, &beside.link);
+                    if face.face_counts(end, beside, &nearest, tolerance) {
+                        let places = [links[on_face], links[other]];
+                        now = keep(in_order(places, [&face.link, &beside.link], &nearest))?;
+                    }
+                }
+            }
+            Some(now)
+        })
     }
-}
-
-/// By how much the distance of two links may be measured wrong, and the way between them be longer than the shortest.
-fn error(links: [&PlacedLink; 2]) -> Real {
-    let reach = |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
-    64.0 * Real::UNIT_ROUNDOFF * reach(links[0]).max(reach(links[1]))
-}
-
-/// The way from the first of two links to the second, and by how much it may err in any direction.
-fn way(nearest: &NearestOfLinks, error: Real) -> (Vector, Real) {
-    // Two roots, so that no product leaves the range of numbers.
-    let slack = error.sqrt() * (2.0 * nearest.distance + error).sqrt();
-    (nearest.on_second - nearest.on_first, slack)
 }
 
 /// From which link on each is asked for.
@@ -361,12 +343,8 @@ mod tests {
                     (link + half).min(points.len() - 1).max(link + 2),
                     "{corners}"
                 );
-                let quarter: Vec<_> = turns.quarter_turned(link).filter(|&other| other > link).collect();
                 let from = link + (corners as usize).div_ceil(4).max(2);
-                assert_eq!(
-                    quarter,
-                    (from..link + half).filter(|&other| other < points.len() - 1).collect::<Vec<_>>()
-                );
+                assert_eq!(turns.quarter_from[link], from.min(points.len() - 1).max(link + 2), "{corners}");
             }
         }
     }
@@ -398,13 +376,9 @@ mod tests {
                 let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
                 assert_eq!(turns.asked_from[link], expected, "round {round}");
                 asked += usize::from(expected < ways.len());
-                let mut quarter: Vec<_> = turns.quarter_turned(link).collect();
-                quarter.sort_unstable();
-                let between = |one: usize, two: usize| angles[one.min(two)..one.max(two)].iter().sum::<f64>();
-                let is_quarter = |&other: &usize| {
-                    other.abs_diff(link) > 1 && (0.5 * PI..PI).contains(&between(link, other))
-                };
-                assert_eq!(quarter, (0..ways.len()).filter(is_quarter).collect::<Vec<_>>(), "round {round}");
+                let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= 0.5 * PI;
+                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                assert_eq!(turns.quarter_from[link], expected, "round {round}");
             }
         }
         assert!(asked > 5000 && sharp > 100, "{asked} {sharp}");

@@ -337,6 +337,43 @@ fn what_may_come_to_be_asked_about_is_no_contact() {
     }
 }
 
+/// Links of length 1 that turn by so much at each joint.
+fn arc(turn: Real, count: usize) -> Vec<Vector> {
+    let mut points = vec![Vector::ZERO];
+    for k in 0..count {
+        let (sin, cos) = (turn * k as Real).sin_cos();
+        points.push(points[k] + Vector::new(sin, 0.0, cos));
+    }
+    points
+}
+
+/// A taper, ribs, or rounding on a constant radius: the robot is thinner or as thick beyond most
+/// joints, and overlaps its neighbours.
+#[test]
+fn steps_in_radius_do_not_meet_their_own_neighbourhood_while_they_bend() {
+    let (mut random, mut pair, mut overlapping) = (Random::new(72), RobotPair::new(), 0);
+    for round in 0..60 {
+        let count = 4 + random.below(6) as usize;
+        let turns = [0.0, random.between(0.1, 2.6)].map(|turn| turn / count as Real);
+        let radius = random.between(0.2, 0.7) * 0.5 / (0.5 * turns[1]).tan();
+        let thinner = [1e-12, 0.01, 0.1][random.below(3) as usize];
+        let is_ribbed = round % 3 == 0;
+        let of_link = |k: usize| if is_ribbed { (k % 2) as Real } else { k as Real };
+        let radii: Vec<_> =
+            (0..count).map(|k| radius * (1.0 - thinner * of_link(k) / count as Real)).collect();
+        let [from, to] = turns.map(|turn| arc(turn, count));
+        let motion = if is_ribbed || round % 2 == 0 {
+            LinearMotion::capsules(&from, &to, &radii)
+        } else {
+            LinearMotion::chain(&from, &to, &radii)
+        };
+        let found = pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap();
+        assert!(found.is_clear(), "{round}: {turns:?} {radii:?} {found:?}");
+        overlapping += usize::from(radius > 1.0);
+    }
+    assert!(overlapping > 10, "{overlapping}");
+}
+
 /// A hairpin at rest, that states any speed, and has any joints.
 struct Any {
     speed: Speed,

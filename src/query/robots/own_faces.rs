@@ -1,0 +1,485 @@
+//! Which links a robot's faces are near: two runs of links at once, the nearer two first.
+//!
+//! # Definitions
+//! - A **face** is the robot's base or tip, where it is flat, or the wider side of a step
+//!   ([`JoinedLink`]).
+//! - A pair of links `i < j` that share no joint is **in the band** if the turn between them is at
+//!   least pi / 2, and less than pi unless all turns are asked for. Their faces count by the rule
+//!   of [`JoinedLink::face_counts`].
+//! - Two faces **look at one another** if the earlier one is the end of its link and the later one
+//!   the start of its link. They are asked for at any turn.
+//! - A **node** holds a run of links: a ball around their axes, their largest radius, and a cone
+//!   that holds the directions of these links and of one more on either side.
+//!
+//! # Which pairs of nodes are skipped
+//! 1. Neither node has a face; or no pair is in the band, and no two faces look at one another.
+//! 2. The balls, each wider by its largest radius, are farther apart than the bound.
+//! 3. The robot leads on everywhere. Let `w` be the way from a face of one node to a place of the
+//!    other, and `t` any direction of the latter's cone. If all `w . t > 0`, the robot leads nearer
+//!    backwards from every place, unless it stops there: no link of the node may be the robot's
+//!    first one, or have a thinner one before it. If all `w . t < 0`, it leads nearer forwards in
+//!    the same way.
+//!
+//! **Claim.** If 3 holds for the faces of either node beside the other, no pair of the two nodes
+//! counts whose faces are asked for.
+//! **Proof.** At a place inside of a link `w . t` is 0 if it is nearest, and rule 2 of
+//! [`JoinedLink`] fails at an end. □
+//!
+//! If all turns are asked for, links count without a face too. They are skipped only if all places
+//! are at shoulders of which 3 holds: all links of one node have a shoulder at the end towards
+//! which the way leads.
+//!
+//! A shoulder that the way comes to counts neither if the adjoining link holds its point
+//! (`least_covered`). The same tells of two faces that look at one another.
+//!
+//! **Bounds.** Let `C` and `D` be the centres of the balls, `a` and `b` their radii, `m` the axis
+//! of the cone, `e` the largest distance of a direction from `m`, `n` any normal of the face. A
+//! point of a flat face is `f` from its centre and perpendicular to `n`. So `w . t >= (D - C) . m -
+//! a - b - |D - C| e - f |t x n|`, and the same from above with the other signs. `|t x n|` is at
+//! most `|m x m'|` and the two largest distances from the axes.
+//!
+//! **Rounding.** Unit vectors err by 4 u, sums of few lengths by few u of the reach: 64 u of the
+//! largest coordinate cover all. What [`JoinedLink`] takes for a local minimum, since the way may
+//! err, is shown too.
+
+use super::one_robot::Turns;
+use crate::distance::Scalar;
+use crate::pair::{PlacedRobot, Tolerance};
+use crate::robot::{ModifiedCylinder, is_step};
+use parry3d_f64::math::{Real, Vector};
+
+/// Links one after another.
+#[derive(Clone, Copy, Debug, Default)]
+struct Node {
+    first: usize,
+    count: usize,
+    centre: Vector,
+    /// All points of the axes are so far from the centre at most.
+    reach: Real,
+    /// The largest radius.
+    radius: Real,
+    /// The largest radius of a flat face.
+    flat: Real,
+    direction: Vector,
+    /// All directions are so far from that one at most.
+    spread: Real,
+    /// Whether some link has a face at its start, and at its end.
+    some: [bool; 2],
+    /// Whether the robot is thinner, or no more, before some link, and behind some.
+    stops: [bool; 2],
+    /// Whether all links are wider than the next one at their start, and at their end.
+    all: [bool; 2],
+    /// The largest cosine that a way out at a start, and at an end, may have with the adjoining
+    /// axis, and the adjoining link not hold the point of the shoulder there (`least_covered`).
+    covered: [Real; 2],
+    /// The least radius of those adjoining links.
+    adjoining: Real,
+}
+
+/// How a node lies as seen from another.
+struct Seen {
+    /// Whether places of it may be local minima.
+    may_be_local: bool,
+    /// Whether the way to all of its places leads forwards, or backwards; none if that is not
+    /// known.
+    forwards: Option<bool>,
+    /// Whether all shoulders that the way comes to are in the adjoining links.
+    is_covered: bool,
+}
+
+/// By this share adjoining links are taken for thinner, so that the way may err by as much.
+const THINNER: Real = 1.0 / 256.0;
+
+/// Beside no more links with a face than these, each link is looked at alone: that costs less than
+/// the nodes of some dozen links.
+const FEW: usize = 4;
+
+/// What a search keeps from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OwnFaces {
+    with_faces: Vec<usize>,
+    /// Each node before those that it holds, the first half's first.
+    nodes: Vec<Node>,
+    stack: Vec<[usize; 2]>,
+    rounding: Tolerance,
+    #[cfg(test)]
+    looked_at: usize,
+}
+
+/// Which pairs are shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Band {
+    /// Those with a face, of which the turn is less than pi.
+    Faces,
+    /// All whose turn is at least pi / 2.
+    All,
+}
+
+impl OwnFaces {
+    /// Makes ready for a robot. Returns whether there is any pair to look at.
+    pub fn begin(&mut self, robot: &PlacedRobot, turns: &Turns) -> bool {
+        self.nodes.clear();
+        #[cfg(test)]
+        {
+            self.looked_at = 0;
+        }
+        self.with_faces.clear();
+        let count = robot.links().len();
+        let (mut look, mut first_end) = (false, count);
+        for link in 0..count {
+            let [start, end] = faces(robot, link);
+            if start || end {
+                self.with_faces.push(link);
+            }
+            look |= start && link > first_end + 1;
+            first_end = if end { first_end.min(link) } else { first_end };
+        }
+        !self.with_faces.is_empty() && (look || turns.quarter_from[0] < count)
+    }
+
+    /// As [`run`](Self::run), of a robot with few faces: each link with one beside all others.
+    fn run_of_few(
+        &self,
+        robot: &PlacedRobot,
+        turns: &Turns,
+        mut bound: Real,
+        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
+    ) -> bool {
+        let links = robot.links();
+        let ball = |link: usize| {
+            let (start, along) = (links[link].start(), links[link].end() - links[link].start());
+            (start + along * 0.5, 0.5 * along.length() + links[link].radius())
+        };
+        for (number, &link) in self.with_faces.iter().enumerate() {
+            let (centre, reach) = ball(link);
+            let rounding = 64.0 * Real::UNIT_ROUNDOFF;
+            for other in 0..links.len() {
+                let pair = [link.min(other), link.max(other)];
+                let [one, two] = pair;
+                if two < one + 2 || self.with_faces[..number].contains(&other) {
+                    continue;
+                }
+                let in_band = turns.quarter_from[one] <= two && two < turns.asked_from[one];
+                let look = faces(robot, one)[1] && faces(robot, two)[0];
+                if !in_band && !look {
+                    continue;
+                }
+                let (there, extent) = ball(other);
+                let largest = centre.abs().max(there.abs()).max_element() + reach + extent;
+                if (there - centre).length() - reach - extent - rounding * largest > bound {
+                    continue;
+                }
+                match visit(pair, [in_band, look]) {
+                    Some(next) => bound = next,
+                    None => return false,
+                }
+            }
+        }
+        true
+    }
+
+    fn add(&mut self, robot: &PlacedRobot, turns: &Turns, first: usize, count: usize) {
+        if count == 1 {
+            self.nodes.push(Node::of_link(robot, turns, first));
+            return;
+        }
+        let place = self.nodes.len();
+        self.nodes.push(Node::default());
+        self.add(robot, turns, first, count / 2);
+        let second = self.nodes.len();
+        self.add(robot, turns, first + count / 2, count - count / 2);
+        self.nodes[place] = Node::around(&self.nodes[place + 1], &self.nodes[second]);
+    }
+
+    /// Shows `visit` pairs of links, the lower first, with whether they are in the band and whether
+    /// faces look at one another, as long as it returns a bound: pairs that are farther apart may
+    /// be left out. Returns whether it always did.
+    pub fn run(
+        &mut self,
+        robot: &PlacedRobot,
+        turns: &Turns,
+        band: Band,
+        mut bound: Real,
+        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
+    ) -> bool {
+        if band == Band::Faces && self.with_faces.len() <= FEW {
+            return self.run_of_few(robot, turns, bound, visit);
+        }
+        self.add(robot, turns, 0, robot.links().len());
+        let root = &self.nodes[0];
+        let largest = root.centre.abs().max_element() + root.reach + root.radius;
+        self.rounding = Tolerance(64.0 * Real::UNIT_ROUNDOFF * largest);
+        self.stack.clear();
+        self.stack.push([0, 0]);
+        while let Some(pair) = self.stack.pop() {
+            let [one, two] = pair.map(|place| &self.nodes[place]);
+            let kinds = self.asks(turns, band, bound, one, two);
+            #[cfg(test)]
+            {
+                self.looked_at += 1;
+            }
+            if kinds == [false; 2] {
+                continue;
+            }
+            if one.count == 1 && two.count == 1 {
+                match visit([one.first, two.first], kinds) {
+                    Some(next) => bound = next,
+                    None => return false,
+                }
+                continue;
+            }
+            if pair[0] == pair[1] {
+                let [low, high] = self.halves(pair[0]);
+                self.stack.extend([[low, low], [high, high], [low, high]]);
+                continue;
+            }
+            let of_first = one.count > two.count || one.count == two.count && one.reach > two.reach;
+            let halves = self.halves(pair[usize::from(!of_first)]);
+            let pairs = halves.map(|half| if of_first { [half, pair[1]] } else { [pair[0], half] });
+            let apart = pairs.map(|pair| {
+                let [one, two] = pair.map(|place| &self.nodes[place]);
+                (one.centre - two.centre).length() - one.reach - two.reach
+            });
+            self.stack.extend(if apart[0] <= apart[1] { [pairs[1], pairs[0]] } else { pairs });
+        }
+        true
+    }
+
+    fn halves(&self, place: usize) -> [usize; 2] {
+        // A tree over n links has 2 n - 1 nodes.
+        [place + 1, place + 2 * (self.nodes[place].count / 2)]
+    }
+
+    /// Whether pairs of two nodes may count that are in the band, and faces that look at one
+    /// another.
+    fn asks(&self, turns: &Turns, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
+        let last = two.first + two.count - 1;
+        if last < one.first + 2 {
+            return [false; 2];
+        }
+        let mut in_band = last >= turns.quarter_from[one.first];
+        if band == Band::Faces {
+            let has_face = one.has_face() || two.has_face();
+            in_band &= has_face && two.first < turns.asked_from[one.first + one.count - 1];
+        }
+        let look = one.some[1] && two.some[0];
+        if !in_band && !look {
+            return [false; 2];
+        }
+        let way = two.centre - one.centre;
+        let away = way.length();
+        if away - one.reach - two.reach - one.radius - two.radius - self.rounding.0 > bound {
+            return [false; 2];
+        }
+        if one.first == two.first {
+            return [in_band, look];
+        }
+        let from_one = two.seen_from(one, way, away, self.rounding);
+        let from_two = one.seen_from(two, -way, away, self.rounding);
+        let may_count = one.has_face() && from_one.may_be_local || two.has_face() && from_two.may_be_local;
+        let at_shoulders =
+            one.all[1] && from_two.forwards == Some(false) || two.all[0] && from_one.forwards == Some(true);
+        in_band &= may_count || band == Band::All && !at_shoulders;
+        let is_covered = from_one.forwards == Some(true) && from_one.is_covered
+            || from_two.forwards == Some(false) && from_two.is_covered;
+        [in_band, look && !is_covered]
+    }
+}
+
+impl Node {
+    fn of_link(robot: &PlacedRobot, turns: &Turns, link: usize) -> Self {
+        let links = robot.links();
+        let (placed, direction) = (&links[link], turns.directions[link]);
+        let [start, end] = [placed.start(), placed.end()];
+        let beside = [link.checked_sub(1), Some(link + 1).filter(|&next| next < links.len())];
+        let spread = |neighbour: Option<usize>| {
+            neighbour.map_or(0.0, |neighbour| (turns.directions[neighbour] - direction).length())
+        };
+        let is_wider = |neighbour: Option<usize>| {
+            neighbour.is_some_and(|neighbour| is_step(links[neighbour].radius(), placed.radius()))
+        };
+        let some = faces(robot, link);
+        let flat = placed.flat();
+        let has_flat = (0..2).any(|end| some[end] && flat[end]);
+        let (mut covered, mut adjoining) = ([Real::NEG_INFINITY; 2], Real::INFINITY);
+        for end in [0, 1] {
+            covered[end] = match beside[end] {
+                Some(next) if is_wider(Some(next)) && !flat[end] => {
+                    adjoining = adjoining.min(links[next].radius());
+                    least_covered(placed.radius(), &links[next], end)
+                }
+                Some(next) if !is_wider(Some(next)) => Real::NEG_INFINITY,
+                _ => Real::INFINITY,
+            };
+        }
+        Self {
+            first: link,
+            count: 1,
+            centre: start + (end - start) * 0.5,
+            reach: 0.5 * (end - start).length(),
+            radius: placed.radius(),
+            flat: if has_flat { placed.radius() } else { 0.0 },
+            direction,
+            spread: spread(beside[0]).max(spread(beside[1])) + 16.0 * Real::UNIT_ROUNDOFF,
+            some,
+            stops: beside.map(|neighbour| neighbour.is_none() || is_wider(neighbour)),
+            all: beside.map(is_wider),
+            covered,
+            adjoining,
+        }
+    }
+
+    fn around(one: &Self, two: &Self) -> Self {
+        let upwards = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
+        let way = two.centre - one.centre;
+        let away = way.length();
+        // The ball around both balls.
+        let (centre, reach) = if away + two.reach <= one.reach {
+            (one.centre, one.reach)
+        } else if away + one.reach <= two.reach {
+            (two.centre, two.reach)
+        } else {
+            let reach = 0.5 * (away + one.reach + two.reach);
+            (one.centre + way * ((reach - one.reach) / away), reach)
+        };
+        let direction = (one.direction + two.direction).normalize_or_zero();
+        let spread = |node: &Self| (node.direction - direction).length() + node.spread;
+        let either = |of: fn(&Self) -> [bool; 2]| [0, 1].map(|end: usize| of(one)[end] || of(two)[end]);
+        Self {
+            first: one.first,
+            count: one.count + two.count,
+            centre,
+            reach: reach * upwards,
+            radius: one.radius.max(two.radius),
+            flat: one.flat.max(two.flat),
+            direction,
+            spread: spread(one).max(spread(two)) * upwards,
+            some: either(|node| node.some),
+            stops: either(|node| node.stops),
+            all: [0, 1].map(|end: usize| one.all[end] && two.all[end]),
+            covered: [0, 1].map(|end: usize| one.covered[end].max(two.covered[end])),
+            adjoining: one.adjoining.min(two.adjoining),
+        }
+    }
+
+    fn has_face(&self) -> bool {
+        self.some != [false; 2]
+    }
+
+    /// How the node lies as seen from the faces of another, from whose centre `way` leads to this
+    /// one's.
+    fn seen_from(&self, other: &Self, way: Vector, away: Real, rounding: Tolerance) -> Seen {
+        let sine = self.direction.cross(other.direction).length() + self.spread + other.spread;
+        let aside = other.flat * sine.min(1.0);
+        let far = away + self.reach + other.reach + other.radius;
+        let slack = rounding.of_way(far);
+        let off = self.reach + other.reach + away * self.spread + aside + rounding.0 + slack;
+        let along = way.dot(self.direction);
+        if along.abs() <= off {
+            return Seen { may_be_local: true, forwards: None, is_covered: false };
+        }
+        let forwards = along > 0.0;
+        let end = usize::from(!forwards);
+        let is_known = slack <= THINNER * self.adjoining;
+        let is_covered = is_known && along.abs() - off >= self.covered[end] * far;
+        Seen { may_be_local: self.stops[end] && !is_covered, forwards: Some(forwards), is_covered }
+    }
+}
+
+/// The least cosine between the adjoining axis and a way out of a round shoulder with which the
+/// adjoining link holds the point of the shoulder; more than 1 if there is none. The link holds the
+/// points with larger cosines as well.
+///
+/// Let r be the shoulder's radius, a that of the adjoining link and l its length. The point r v is
+/// r sqrt(1 - c^2) from its axis, where c is the cosine: that is at most a. If r > l, it may be
+/// beyond the axis: there it is r^2 - 2 r l c + l^2 <= a^2 from its end, squared.
+fn least_covered(radius: Real, next: &ModifiedCylinder, far_end: usize) -> Real {
+    // In radii of the shoulder.
+    let (thin, length) = ((1.0 - THINNER) * next.radius() / radius, next.length() / radius);
+    let aside = (1.0 - thin * thin).max(0.0).sqrt();
+    if length >= 1.0 {
+        return aside;
+    }
+    if next.flat()[far_end] {
+        return Real::INFINITY;
+    }
+    aside.max((1.0 + length * length - thin * thin) / (2.0 * length))
+}
+
+/// Whether a link has a face at its start, and at its end.
+pub(super) fn faces(robot: &PlacedRobot, link: usize) -> [bool; 2] {
+    let links = robot.links();
+    let placed = &links[link];
+    let neighbours = [link.checked_sub(1).map(|before| &links[before]), links.get(link + 1)];
+    [0, 1].map(|end: usize| match neighbours[end] {
+        Some(next) => is_step(next.radius(), placed.radius()),
+        None => placed.flat()[end],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::query::robots::OwnMemory;
+    use crate::query::robots::one_robot::OneRobot;
+    use crate::robot::Chain;
+    use parry3d_f64::math::{Real, Vector};
+
+    /// Directions of links, of which `share` is behind.
+    type Shape = fn(share: Real, link: usize) -> Vector;
+
+    const SHAPES: [(&str, Shape); 5] = [
+        ("straight", |_, _| Vector::Z),
+        ("arc", |share, _| {
+            let (sin, cos) = (3.0 * share).sin_cos();
+            Vector::new(sin, 0.0, cos)
+        }),
+        ("helix", |share, _| {
+            let (sin, cos) = (40.0 * share).sin_cos();
+            Vector::new(sin, 0.2, cos)
+        }),
+        ("zigzag", |_, link| Vector::new(if link % 2 == 0 { 0.2 } else { -0.2 }, 0.0, 1.0)),
+        ("sharp zigzag", |_, link| Vector::new(if link % 2 == 0 { 0.5 } else { -0.5 }, 0.0, 1.0)),
+    ];
+
+    fn work(
+        shape: Shape,
+        radius: impl Fn(Real, usize) -> Real,
+        is_flat: bool,
+        count: usize,
+    ) -> (usize, bool) {
+        let (mut at, mut points) = (Vector::ZERO, vec![Vector::ZERO]);
+        for link in 0..count {
+            at += shape(link as Real / count as Real, link).normalize() * (100.0 / count as Real);
+            points.push(at);
+        }
+        // Narrower than what the joints of the zigzags allow.
+        let radii: Vec<_> = (0..count)
+            .map(|link| radius(link as Real / count as Real, link) * 50.0 / count as Real)
+            .collect();
+        let robot =
+            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let robot = robot.expect("points that differ");
+        let mut memory = OwnMemory::default();
+        let found = OneRobot::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
+        (memory.faces().looked_at, found.is_some())
+    }
+
+    /// Twice as many steps are looked at in little more than twice as many pairs of nodes, whatever
+    /// the shape.
+    #[test]
+    fn the_work_grows_as_n_log_n() {
+        for (name, shape) in SHAPES {
+            for is_flat in [false, true] {
+                for corrugated in [0.0, 0.01, 0.3] {
+                    let radius = |share: Real, link: usize| {
+                        (1.0 - 0.3 * share) * if link % 2 == 0 { 1.0 } else { 1.0 - corrugated }
+                    };
+                    let [(few, _), (many, found)] =
+                        [500, 2000].map(|count| work(shape, radius, is_flat, count));
+                    println!("{name}, flat {is_flat}, {corrugated}: {few} {many} {found}");
+                    assert!(many < 8 * few + 40_000, "{name}, flat {is_flat}, {corrugated}: {few} {many}");
+                }
+            }
+        }
+    }
+}
