@@ -4,7 +4,6 @@ mod doubts;
 mod frames;
 mod report;
 mod robot;
-mod rows;
 mod shapes;
 mod wall;
 
@@ -20,24 +19,24 @@ use wall::Wall;
 /// How far is my robot from my wall, link by link? All lengths are in one unit, that of the mesh.
 #[derive(Parser)]
 struct Options {
-    /// The wall: an STL, OBJ or PLY file, or a segmentation in NIfTI, NRRD or MetaImage (which comes in millimetres)
+    /// The wall: an STL, OBJ, PLY, .vtp or .vtk file, or a segmentation in NIfTI, NRRD or MetaImage (which comes in millimetres)
     #[arg(long)]
     mesh: PathBuf,
     /// The label of the wall in a segmentation [default: all that are not 0]
     #[arg(long, value_parser = |s: &str| s.parse::<u32>().or(Err("write a whole number")))]
     label: Option<u32>,
-    /// Points along the robot. A text file has a line for each: x,y,z and optionally the radius of the segment that begins
-    /// there; a heading and lines that begin with # are passed over. Or a .vtp, .vtk or .mrk.json file
+    /// Points along the robot. A text file (.csv, .tsv, .txt, .dat) has a line for each: x,y,z and optionally the radius of
+    /// the segment that begins there; a heading and lines that begin with # are passed over. Or a .vtp, .vtk or .mrk.json file
     #[arg(long, required_unless_present = "shapes")]
     centreline: Option<PathBuf>,
-    /// Which line of a .vtp, .vtk or .mrk.json file with several, counted from 0
+    /// Which line of a .vtp, .vtk or .mrk.json file with several, counted from 0. A list of fiducials needs it too
     #[arg(long, value_parser = |s: &str| s.parse::<usize>().or(Err("write a whole number")))]
     line: Option<usize>,
     /// Many shapes instead of one: lines of shape,x,y,z and optionally the radius. Lines that follow one another with the same
     /// number of a shape are one robot. Prints a CSV with a line for each
     #[arg(long, conflicts_with_all = ["centreline", "tolerance"])]
     shapes: Option<PathBuf>,
-    /// The radius of each segment for which the file has none
+    /// The radius of all segments, if the file has none
     #[arg(long, allow_negative_numbers = true, value_parser = radius)]
     radius: Option<f64>,
     /// Multiplies the robot's coordinates and the radii in its file (not --radius), for example 1000 for metres to millimetres
@@ -113,7 +112,7 @@ fn ask(my: &Options) -> Result<(), Box<dyn Error>> {
 }
 
 fn read_pose(path: &Path) -> Result<Pose, Box<dyn Error>> {
-    let rows = rows::rows(path, 4..=4, "4 numbers")?;
-    let matrix = rows.iter().map(|(_, row)| [row[0], row[1], row[2], row[3]]).collect();
+    let rows = mesh_files::load_table(path, 4..=4, "4 numbers", &mesh_files::Options::default())?;
+    let matrix = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
     Ok(pose_from_matrix(Vec::try_into(matrix).map_err(|_| "--pose needs 4 lines of 4 numbers")?)?)
 }

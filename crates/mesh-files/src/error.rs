@@ -17,14 +17,14 @@ pub enum MeshFileError {
         reason: String,
     },
     /// Its name does not say what it holds.
-    #[error("the format of {} is unknown; give a file that ends in .stl, .obj or .ply{LABEL_MAPS}", file.display())]
+    #[error("the format of {} is unknown; give a file that ends in .stl, .obj or .ply{SURFACES}{LABEL_MAPS}", file.display())]
     #[non_exhaustive]
     UnknownFormat {
         /// The file.
         file: PathBuf,
     },
     /// The name of a centreline's file does not say what it holds.
-    #[error("the format of {} is unknown; give a centreline that ends in .mrk.json, .vtp or .vtk", file.display())]
+    #[error("the format of {} is unknown; give a centreline that ends in .mrk.json, .vtp or .vtk, or a text with x,y,z in its lines that ends in .csv, .tsv, .txt or .dat", file.display())]
     #[non_exhaustive]
     UnknownCentreline {
         /// The file.
@@ -36,6 +36,29 @@ pub enum MeshFileError {
     NoLine {
         /// The file.
         file: PathBuf,
+    },
+    /// A line of a text file does not hold the numbers that are needed.
+    #[error("line {line} of {} {problem}; write {expected}", file.display())]
+    #[non_exhaustive]
+    Line {
+        /// The file.
+        file: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        problem: String,
+        /// What the columns should be.
+        expected: &'static str,
+    },
+    /// A centreline's file holds points that are not said to be a curve.
+    #[error("{} holds a markup of type {found}, which is no curve; if the order of its points is that of the line, \
+             choose line 0", file.display())]
+    #[non_exhaustive]
+    NotACurve {
+        /// The file.
+        file: PathBuf,
+        /// What its program calls it.
+        found: String,
     },
     /// A centreline's file holds several lines, and none was chosen.
     #[error("{} holds {count} lines; choose one from 0 to {}", file.display(), count - 1)]
@@ -58,12 +81,22 @@ pub enum MeshFileError {
         count: usize,
     },
     /// Header and data are in two files.
-    #[error("{} may have its data in a second file; save the segmentation as one file, .nii.gz, .nrrd or \
-             .mha", file.display())]
+    #[error("{} may have its data in a second file; load both from a folder, or save the segmentation as one file, \
+             .nii.gz, .nrrd or .mha", file.display())]
     #[non_exhaustive]
     InTwoFiles {
         /// The file.
         file: PathBuf,
+    },
+    /// Nothing in it says where its voxels are.
+    #[error("{} does not say where its voxels are ({missing}); save it again with a position, or set \
+             Options::allow_no_position, which puts its first voxel at the origin", file.display())]
+    #[non_exhaustive]
+    NoPosition {
+        /// The file.
+        file: PathBuf,
+        /// What is missing.
+        missing: String,
     },
     /// It does not hold what its format asks for.
     #[error("{} is not a valid {format} file ({reason}); export it again", file.display())]
@@ -193,8 +226,9 @@ fn listed(labels: &[u32]) -> String {
 }
 
 /// What else could be read.
+const SURFACES: &str = if cfg!(feature = "centrelines") { ", in .vtp or .vtk" } else { "" };
 const LABEL_MAPS: &str = if cfg!(feature = "label-maps") {
-    ", or a label map that ends in .nii, .nii.gz, .nrrd, .mha or .mhd"
+    ", or a label map that ends in .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd"
 } else {
     ""
 };

@@ -1,13 +1,13 @@
-//! Triangle meshes from STL, OBJ and PLY files and from segmentations in NIfTI, NRRD and MetaImage files; centrelines
-//! from VTK's files and 3D Slicer's markups.
+//! Triangle meshes from STL, OBJ, PLY and VTK files and from segmentations in NIfTI, NRRD and MetaImage files; centrelines
+//! from VTK's files, 3D Slicer's markups and text files.
 //!
 //! [`load`] reads a mesh, by the file's extension. What comes back is whole: there is at least one triangle, every vertex is
 //! finite, and every triangle names three different vertices that are there. What is wrong with a file is said in one
 //! line. Faces without area are left out, and [`Mesh::skipped_faces`] counts them. How much memory reading may take is
 //! limited by [`Options::memory_limit`]. [`load_centreline`] reads points along a line in the same way.
 //!
-//! STL and OBJ are read here, because their errors must name the line, and VTK's files, because no crate reads those of
-//! version 5.1; PLY's grammar and NIfTI's header are left to the crates that know them.
+//! The formats are read here: what the field's programs write differs from what the crates for them accept. XML, JSON,
+//! base64, archives, surface nets and the cutting of polygons are left to the crates that know them.
 #![warn(missing_debug_implementations, missing_docs)]
 
 #[cfg(feature = "centrelines")]
@@ -18,11 +18,12 @@ mod label_map;
 mod mesh;
 mod obj;
 mod ply;
+mod polygon;
 mod stl;
 mod text;
 
 #[cfg(feature = "centrelines")]
-pub use centreline::{Centreline, centreline_from_bytes, load_centreline};
+pub use centreline::{Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table};
 pub use error::MeshFileError;
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
@@ -39,6 +40,9 @@ pub struct Options {
     /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside. For a file
     /// of triangles it is an error.
     pub label: Option<u32>,
+    /// Whether a label map is read that says how far apart its voxels are, but not where. Its first voxel is then the
+    /// origin, its axes are those of the voxels, and its frame is unknown unless the file states it.
+    pub allow_no_position: bool,
     /// Which line of a centreline's file is read, counted from 0. A file with one line needs none.
     pub line: Option<usize>,
     /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless something else is said.
@@ -53,7 +57,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { scale: 1.0, label: None, line: None, memory_limit: 2 << 30 }
+        Self { scale: 1.0, label: None, allow_no_position: false, line: None, memory_limit: 2 << 30 }
     }
 }
 
@@ -67,6 +71,11 @@ impl Options {
     /// labels: asked for one, it is an error.
     pub fn with_label(self, label: Option<u32>) -> Self {
         Self { label, ..self }
+    }
+
+    /// The same, but a label map may leave open where its voxels are.
+    pub fn with_no_position_allowed(self, allow_no_position: bool) -> Self {
+        Self { allow_no_position, ..self }
     }
 
     /// The same, but of a file of several centrelines this one, counted from 0.
@@ -112,6 +121,10 @@ enum Format {
     Stl,
     Obj,
     Ply,
+    #[cfg(feature = "centrelines")]
+    Vtk,
+    #[cfg(feature = "centrelines")]
+    VtkXml,
     #[cfg(feature = "label-maps")]
     MetaImage,
     #[cfg(feature = "label-maps")]
@@ -128,6 +141,10 @@ impl Format {
             "stl" => Ok(Self::Stl),
             "obj" => Ok(Self::Obj),
             "ply" => Ok(Self::Ply),
+            #[cfg(feature = "centrelines")]
+            "vtk" => Ok(Self::Vtk),
+            #[cfg(feature = "centrelines")]
+            "vtp" => Ok(Self::VtkXml),
             #[cfg(feature = "label-maps")]
             "mha" | "mhd" => Ok(Self::MetaImage),
             #[cfg(feature = "label-maps")]
@@ -144,6 +161,8 @@ impl Format {
     fn has_labels(self) -> bool {
         match self {
             Self::Stl | Self::Obj | Self::Ply => false,
+            #[cfg(feature = "centrelines")]
+            Self::Vtk | Self::VtkXml => false,
             #[cfg(feature = "label-maps")]
             Self::MetaImage | Self::Nifti | Self::Nrrd => true,
         }
@@ -154,6 +173,10 @@ impl Format {
             Self::Stl => "STL",
             Self::Obj => "OBJ",
             Self::Ply => "PLY",
+            #[cfg(feature = "centrelines")]
+            Self::Vtk => "VTK",
+            #[cfg(feature = "centrelines")]
+            Self::VtkXml => "VTK XML",
             #[cfg(feature = "label-maps")]
             Self::MetaImage => "MetaImage",
             #[cfg(feature = "label-maps")]
@@ -180,17 +203,64 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 /// of a file of triangles; it takes more memory than the options allow; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
+    #[cfg(feature = "label-maps")]
+    if let Some(whole) = two_files(path, options) {
+        let (format, bytes) = whole?;
+        return parse(path, format, &bytes, options);
+    }
     // The name first: a device may never end.
-    let _format = Format::of(path)?;
+    let format = Format::of(path)?;
     let bytes = read_file(path, options)?;
     #[cfg(feature = "label-maps")]
-    if _format == Format::MetaImage
-        && let Some(voxels) = label_map::meta_image::voxels_file(&bytes)
-    {
-        let voxels = read_file(&path.with_file_name(voxels), options)?;
-        return from_bytes(path, &label_map::meta_image::in_one(&bytes, &voxels), options);
+    let bytes = with_voxels(path, format, bytes, options)?;
+    parse(path, format, &bytes, options)
+}
+
+/// A label map whose header and voxels are in two files by their names, as one.
+#[cfg(feature = "label-maps")]
+fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>), MeshFileError>> {
+    let extension = path.extension()?.to_str()?;
+    let file = |own: &str| {
+        let is_upper = extension.chars().all(char::is_uppercase);
+        read_file(&path.with_extension(if is_upper { own.to_uppercase() } else { own.into() }), options)
+    };
+    if label_map::nifti::is_pair(extension) {
+        let both = file("hdr").and_then(|header| Ok((header, file("img")?)));
+        return Some(both.and_then(|(header, voxels)| {
+            let whole = label_map::nifti::in_one(&header, &voxels);
+            let broken = |reason| MeshFileError::Broken { file: path.to_owned(), format: "NIfTI", reason };
+            Ok((Format::Nifti, whole.map_err(broken)?))
+        }));
     }
-    from_bytes(path, &bytes, options)
+    if extension.eq_ignore_ascii_case("nhdr") {
+        let whole =
+            read_file(path, options).and_then(|bytes| with_voxels(path, Format::Nrrd, bytes, options));
+        return Some(whole.map(|bytes| (Format::Nrrd, bytes)));
+    }
+    None
+}
+
+/// The file with the voxels that its header says are in another one.
+#[cfg(feature = "label-maps")]
+fn with_voxels(
+    path: &Path,
+    format: Format,
+    bytes: Vec<u8>,
+    options: &Options,
+) -> Result<Vec<u8>, MeshFileError> {
+    use label_map::{meta_image, nrrd};
+    let voxels = |name: std::path::PathBuf| read_file(&path.with_file_name(name), options);
+    Ok(match format {
+        Format::MetaImage => match meta_image::voxels_file(&bytes) {
+            Some(name) => meta_image::in_one(&bytes, &voxels(name)?),
+            None => bytes,
+        },
+        Format::Nrrd => match nrrd::voxels_file(&bytes) {
+            Some(name) => nrrd::in_one(&bytes, &voxels(name)?),
+            None => bytes,
+        },
+        _ => bytes,
+    })
 }
 
 /// The bytes of a file that is no larger than the options allow.
@@ -213,7 +283,10 @@ fn read_file(path: &Path, options: &Options) -> Result<Vec<u8>, MeshFileError> {
 /// As [`load_with`].
 pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
-    let format = Format::of(path)?;
+    parse(path, Format::of(path)?, bytes, options)
+}
+
+fn parse(path: &Path, format: Format, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
     options.check_scale()?;
     let file = path.to_owned();
     let broken = |reason: String| {
@@ -229,6 +302,7 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
             let file = path.to_owned();
             match (fault, options.label) {
                 (Fault::Broken(reason), _) => broken(reason),
+                (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
                 (Fault::TooLarge(bytes), _) => {
                     MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
                 }
@@ -244,12 +318,18 @@ pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Re
         Format::Stl => stl::read(bytes).map_err(broken),
         Format::Obj => obj::read(bytes).map_err(broken),
         Format::Ply => ply::read(bytes).map_err(broken),
+        #[cfg(feature = "centrelines")]
+        Format::Vtk => centreline::surface(centreline::vtk_legacy::read(bytes)).map_err(broken),
+        #[cfg(feature = "centrelines")]
+        Format::VtkXml => {
+            centreline::surface(centreline::vtk_xml::read(bytes, options.memory_limit)).map_err(broken)
+        }
         #[cfg(feature = "label-maps")]
         Format::MetaImage => surface(label_map::meta_image::read(bytes)),
         #[cfg(feature = "label-maps")]
-        Format::Nifti => surface(label_map::nifti::read(bytes)),
+        Format::Nifti => surface(label_map::nifti::read(bytes, options.allow_no_position)),
         #[cfg(feature = "label-maps")]
-        Format::Nrrd => surface(label_map::nrrd::read(bytes)),
+        Format::Nrrd => surface(label_map::nrrd::read(bytes, options.allow_no_position)),
     }?;
     if let Some(label) = options.label.filter(|_| !format.has_labels()) {
         return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });

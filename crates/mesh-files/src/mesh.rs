@@ -39,7 +39,7 @@ impl Mesh {
         (self.vertices.into_iter().map(Vertex::from).collect(), self.triangles)
     }
 
-    /// Adds a face, cut into a fan about its first corner, without the triangles that name a vertex twice.
+    /// Adds a convex face, cut into a fan about its first corner, without the triangles that name a vertex twice.
     pub(crate) fn add_face(&mut self, corners: &[u32]) {
         let before = self.triangles.len();
         if let Some((&first, others)) = corners.split_first() {

@@ -1,42 +1,68 @@
-//! OBJ: its vertices and faces. Polygons are cut into fans, faces without area are left out; all objects of the file make
-//! one mesh.
+//! OBJ: its vertices and faces. Polygons are cut, faces without area are left out; all objects of
+//! the file make one mesh.
 
 use crate::mesh::Mesh;
+use crate::polygon::Faces;
 use crate::text::{lines, noted_frame, number, shown};
 
-pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
-    let mut mesh = Mesh { frame: noted_frame(bytes), ..Mesh::default() };
-    // The last vertex that a face names, and where: it may stand further down.
-    let mut last = (0, 0);
-    let mut whole = String::new();
-    for (line, text) in lines(bytes) {
-        // A backslash at the end of a line joins the next one.
-        if let Some(start) = text.trim_end().strip_suffix('\\') {
-            whole += start;
-            whole.push(' ');
-            continue;
-        }
-        whole += &text;
-        let mut words = whole.split_whitespace();
+/// What has been read.
+#[derive(Default)]
+struct Reader {
+    vertices: Vec<[f64; 3]>,
+    faces: Faces,
+    /// The last vertex that a face names, and in which line: it may stand further down.
+    last: (u32, usize),
+}
+
+impl Reader {
+    /// A vertex or a face. Nothing else is needed.
+    fn read_statement(&mut self, text: &str, line: usize) -> Result<(), String> {
+        let mut words = text.split_whitespace();
         match words.next() {
             Some("v") => {
                 let mut next = || number(words.next(), line);
-                mesh.vertices.push([next()?, next()?, next()?]);
+                self.vertices.push([next()?, next()?, next()?]);
             }
-            Some("f") => {
-                let corner = |word| corner(word, mesh.vertices.len(), line);
+            Some("f" | "fo") => {
+                let corner = |word| corner(word, self.vertices.len(), line);
                 let corners = words.map(corner).collect::<Result<Vec<_>, _>>()?;
-                last = corners.iter().map(|&corner| (corner, line)).fold(last, Ord::max);
-                mesh.add_face(&corners);
+                self.last = corners.iter().map(|&corner| (corner, line)).fold(self.last, Ord::max);
+                self.faces.push(corners);
             }
             _ => {}
         }
-        whole.clear();
+        Ok(())
     }
-    let count = mesh.vertices.len();
-    if !mesh.triangles.is_empty() && last.0 as usize >= count {
+}
+
+/// Whether a backslash joins the next line to this one. Names and comments may end in a backslash,
+/// and statements that are not needed need no end.
+fn goes_on(text: &str) -> bool {
+    matches!(text.split_whitespace().next(), Some("v" | "f" | "fo"))
+}
+
+pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
+    let mut reader = Reader::default();
+    let (mut open, mut last_line) = (String::new(), 0);
+    for (line, text) in lines(bytes) {
+        let text = text.split('#').next().unwrap_or_default().trim_end();
+        last_line = line;
+        match text.strip_suffix('\\') {
+            Some(start) if !open.is_empty() || goes_on(start) => {
+                open += start;
+                open.push(' ');
+            }
+            _ if open.is_empty() => reader.read_statement(text, line)?,
+            _ => reader.read_statement(&(std::mem::take(&mut open) + text), line)?,
+        }
+    }
+    reader.read_statement(&open, last_line)?;
+    let (count, last) = (reader.vertices.len(), reader.last);
+    if last.1 > 0 && last.0 as usize >= count {
         return Err(format!("line {} names vertex {}, but there are {count}", last.1, u64::from(last.0) + 1));
     }
+    let mut mesh = Mesh { vertices: reader.vertices, frame: noted_frame(bytes), ..Mesh::default() };
+    reader.faces.cut(&mut mesh)?;
     Ok(mesh)
 }
 
@@ -45,6 +71,6 @@ fn corner(word: &str, count: usize, line: usize) -> Result<u32, String> {
     let wrong = || format!("line {line} has '{}' where the number of a vertex should be", shown(word));
     let number: i64 = word.split('/').next().unwrap_or_default().parse().map_err(|_| wrong())?;
     // Negative numbers count back from the last vertex so far.
-    let index = if number < 0 { count as i64 + number } else { number - 1 };
-    u32::try_from(index).map_err(|_| wrong())
+    let index = if number < 0 { (count as i64).checked_add(number) } else { number.checked_sub(1) };
+    index.and_then(|index| u32::try_from(index).ok()).ok_or_else(wrong)
 }

@@ -1,92 +1,261 @@
-//! PLY, ASCII and binary. Polygons are cut into fans, faces without area are left out.
+//! PLY, ASCII and binary. Polygons and strips are cut, faces without area are left out.
+//!
+//! It is read here since the crates for PLY refuse what other programs read: numbers such as `30.`,
+//! one value a line, blank lines, comments in Latin-1, lines that end by carriage returns.
 
 use crate::mesh::Mesh;
-use crate::text::{noted_frame, shown, without_mark};
-use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
-use std::io::Cursor;
-
-/// So many elements are read at once: what the header counts is not believed, nor is the rest of an element kept.
-const AT_ONCE: usize = 4096;
+use crate::polygon::Faces;
+use crate::text::{no_number, noted_frame, shown, without_mark};
 
 /// The names of a face's list of vertices.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// A vertex or a face: of all its properties, the ones needed here.
+/// The corner that ends a strip, and begins the next one.
+const RESTART: f64 = -1.0;
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Kind {
+    fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+}
+
+struct Property {
+    name: String,
+    kind: Kind,
+    /// The type of the count, if it is a list.
+    count: Option<Kind>,
+}
+
 struct Element {
-    place: [f64; 3],
-    corners: Option<Vec<u32>>,
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
 }
 
-impl PropertyAccess for Element {
-    fn new() -> Self {
-        Self { place: [f64::NAN; 3], corners: None }
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let number = match property {
-            Property::Char(value) => Some(value.into()),
-            Property::UChar(value) => Some(value.into()),
-            Property::Short(value) => Some(value.into()),
-            Property::UShort(value) => Some(value.into()),
-            Property::Int(value) => Some(value.into()),
-            Property::UInt(value) => Some(value.into()),
-            Property::Float(value) => Some(value.into()),
-            Property::Double(value) => Some(value),
-            _ => None,
-        };
-        match (name, number) {
-            ("x", Some(value)) => self.place[0] = value,
-            ("y", Some(value)) => self.place[1] = value,
-            ("z", Some(value)) => self.place[2] = value,
-            (name, _) if CORNERS.contains(&name) => self.corners = property.to_u32_list(),
-            _ => return PropertyAccessResult::Ignored,
-        }
-        PropertyAccessResult::Set
-    }
+/// What follows the header.
+enum Body<'a> {
+    Text(&'a [u8]),
+    Bytes { rest: &'a [u8], is_big_endian: bool },
 }
 
-pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
-    let parser = Parser::<Element>::new();
-    let mut source = Reader::new(Cursor::new(without_mark(bytes)));
-    let header = parser.read_header(&mut source).map_err(|_| {
-        "its header does not begin with 'ply' and a format, name elements and properties, and end with 'end_header'"
-    })?;
-    let mut mesh = Mesh { frame: noted_frame(bytes), ..Mesh::default() };
-    for (_, definition) in &header.elements {
-        let name = shown(&definition.name);
-        let (is_vertex, is_face) = (definition.name == "vertex", definition.name == "face");
-        if is_vertex && let Some(axis) = ["x", "y", "z"].into_iter().find(|axis| !has(definition, axis)) {
-            return Err(format!("its vertices have no property '{axis}'"));
-        }
-        // Without properties they have no bytes, and there may be any number of them.
-        if definition.properties.is_empty() && header.encoding != Encoding::Ascii {
-            continue;
-        }
-        let mut part = definition.clone();
-        for first in (0..definition.count).step_by(AT_ONCE) {
-            part.count = AT_ONCE.min(definition.count - first);
-            let elements = parser.read_payload_for_element(&mut source, &part, &header).map_err(|_| {
-                let count = definition.count;
-                format!(
-                    "the {count} of element '{name}' end early, or hold what their header does not announce"
-                )
-            })?;
-            if is_vertex {
-                mesh.vertices.extend(elements.into_iter().map(|element| element.place));
-            } else if is_face {
-                for (face, index) in elements.into_iter().zip(first..) {
-                    let corners = face
-                        .corners
-                        .ok_or_else(|| format!("face {index} has no list of vertices, each at least 0"))?;
-                    mesh.add_face(&corners);
-                }
+/// Why there is no further number.
+enum Fault<'a> {
+    End,
+    Word(&'a [u8]),
+}
+
+impl<'a> Body<'a> {
+    fn next(&mut self, kind: Kind) -> Result<f64, Fault<'a>> {
+        match self {
+            Self::Text(rest) => {
+                let word = next_word(rest).ok_or(Fault::End)?;
+                let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+                number.ok_or(Fault::Word(word))
+            }
+            Self::Bytes { rest, is_big_endian } => {
+                let is_big_endian = *is_big_endian;
+                Ok(match kind {
+                    Kind::I8 => i8::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::U8 => u8::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::I16 => i16::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::U16 => u16::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::I32 => i32::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::U32 => u32::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::F32 => f32::from_le_bytes(take(rest, is_big_endian)?).into(),
+                    Kind::F64 => f64::from_le_bytes(take(rest, is_big_endian)?),
+                })
             }
         }
     }
+}
+
+fn is_space(byte: &u8) -> bool {
+    byte.is_ascii_whitespace() || *byte == b'\x0b'
+}
+
+fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let from = rest.iter().position(|byte| !is_space(byte))?;
+    let length = rest[from..].iter().position(is_space).unwrap_or(rest.len() - from);
+    let (word, others) = rest[from..].split_at(length);
+    *rest = others;
+    Some(word)
+}
+
+/// The next bytes, the least one first.
+fn take<'a, const SIZE: usize>(rest: &mut &'a [u8], is_big_endian: bool) -> Result<[u8; SIZE], Fault<'a>> {
+    let (&own, others) = rest.split_first_chunk::<SIZE>().ok_or(Fault::End)?;
+    *rest = others;
+    let mut own = own;
+    if is_big_endian {
+        own.reverse();
+    }
+    Ok(own)
+}
+
+pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
+    let (elements, mut body) = header(without_mark(bytes))?;
+    let mut mesh = Mesh { frame: noted_frame(bytes), ..Mesh::default() };
+    let mut faces = Faces::default();
+    for element in &elements {
+        let has = |axis: &&str| element.properties.iter().any(|p| p.name == *axis && p.count.is_none());
+        if element.name == "vertex"
+            && let Some(axis) = ["x", "y", "z"].iter().find(|axis| !has(axis))
+        {
+            return Err(format!("its vertices have no property '{axis}'"));
+        }
+        // Without properties they have no bytes, and there may be any number of them.
+        if element.properties.is_empty() {
+            continue;
+        }
+        for index in 0..element.count {
+            read_element(element, index, &mut body, &mut mesh, &mut faces)?;
+        }
+    }
+    if let Body::Text(mut rest) = body
+        && let Some(word) = next_word(&mut rest)
+        && !word.iter().all(u8::is_ascii_control)
+    {
+        let word = String::from_utf8_lossy(word);
+        return Err(format!(
+            "it has more numbers than its header announces, the first one is '{}'",
+            shown(&word)
+        ));
+    }
+    faces.cut(&mut mesh)?;
     Ok(mesh)
 }
 
-fn has(definition: &ElementDef, property: &str) -> bool {
-    definition.properties.iter().any(|(name, _)| name == property)
+fn read_element(
+    element: &Element,
+    index: u64,
+    body: &mut Body<'_>,
+    mesh: &mut Mesh,
+    faces: &mut Faces,
+) -> Result<(), String> {
+    let (name, count) = (shown(&element.name), element.count);
+    let fault = |fault: Fault<'_>| match fault {
+        Fault::End => format!("the {count} of element '{name}' end early"),
+        Fault::Word(word) => {
+            let word = no_number(&String::from_utf8_lossy(word));
+            format!("{index} of element '{name}', counted from 0, has {word}")
+        }
+    };
+    let mut place = [f64::NAN; 3];
+    let mut list = None;
+    let is_of_faces = ["face", "tristrips"].contains(&element.name.as_str());
+    for property in &element.properties {
+        let Some(kind) = property.count else {
+            let number = body.next(property.kind).map_err(fault)?;
+            if let Some(axis) = ["x", "y", "z"].iter().position(|axis| property.name == *axis) {
+                place[axis] = number;
+            }
+            continue;
+        };
+        let length = body.next(kind).map_err(fault)?;
+        if !(length >= 0.0 && length.fract() == 0.0) {
+            return Err(format!("{index} of element '{name}' has a list of {length} numbers"));
+        }
+        let is_needed = is_of_faces && CORNERS.contains(&property.name.as_str());
+        let mut numbers = Vec::new();
+        for _ in 0..length as u64 {
+            let number = body.next(property.kind).map_err(fault)?;
+            if is_needed {
+                numbers.push(number);
+            }
+        }
+        if is_needed {
+            list = Some(numbers);
+        }
+    }
+    let wrong = || format!("{} {index} has no list of vertices, each at least 0", element.name);
+    let corner = |&number: &f64| {
+        let is_index = number >= 0.0 && number <= u32::MAX.into() && number.fract() == 0.0;
+        is_index.then_some(number as u32).ok_or_else(wrong)
+    };
+    match element.name.as_str() {
+        "vertex" => mesh.vertices.push(place),
+        "face" => {
+            let list = list.ok_or_else(wrong)?;
+            faces.push(list.iter().map(corner).collect::<Result<Vec<_>, _>>()?);
+        }
+        "tristrips" => {
+            let list = list.ok_or_else(wrong)?;
+            for strip in list.split(|&corner| corner == RESTART).filter(|strip| !strip.is_empty()) {
+                faces.push_strip(&strip.iter().map(corner).collect::<Result<Vec<_>, _>>()?);
+            }
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+const NO_HEADER: &str = "its header does not begin with 'ply' and a format, name elements and properties, and end with 'end_header'";
+
+/// The elements, and what follows them.
+fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), String> {
+    let rest = bytes.strip_prefix(b"ply").ok_or(NO_HEADER)?;
+    let spaces = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+    let rest = &rest[spaces..];
+    // In a binary file the byte behind a carriage return may be the first of the data.
+    let ends = [&b"\r\n"[..], b"\n", b"\r"];
+    let end = ends.into_iter().find(|end| rest.starts_with(end)).ok_or(NO_HEADER)?;
+    let mut rest = &rest[end.len()..];
+    let (mut elements, mut format) = (Vec::<Element>::new(), None);
+    loop {
+        let length = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).ok_or(NO_HEADER)?;
+        let line = String::from_utf8_lossy(&rest[..length]);
+        let is_pair = end != b"\r" && rest[length..].starts_with(b"\r\n");
+        rest = &rest[length + if is_pair { 2 } else { 1 }..];
+        let words: Vec<_> = line.split_whitespace().collect();
+        let wrong = || format!("its header has '{}', which is no line of a header", shown(line.trim()));
+        let kind = |name: &str| Kind::of(name).ok_or_else(wrong);
+        match words[..] {
+            [] | ["comment" | "obj_info", ..] => {}
+            ["format", name, ..] => format = Some(name.to_owned()),
+            ["element", name, count] => {
+                let count = count.parse().map_err(|_| wrong())?;
+                elements.push(Element { name: name.into(), count, properties: Vec::new() });
+            }
+            ["property", "list", count, number, name] => {
+                let property = Property { name: name.into(), kind: kind(number)?, count: Some(kind(count)?) };
+                elements.last_mut().ok_or_else(wrong)?.properties.push(property);
+            }
+            ["property", number, name] => {
+                let property = Property { name: name.into(), kind: kind(number)?, count: None };
+                elements.last_mut().ok_or_else(wrong)?.properties.push(property);
+            }
+            ["end_header"] => break,
+            _ => return Err(wrong()),
+        }
+    }
+    let body = match format.as_deref() {
+        Some("ascii") => Body::Text(rest),
+        Some("binary_little_endian") => Body::Bytes { rest, is_big_endian: false },
+        Some("binary_big_endian") => Body::Bytes { rest, is_big_endian: true },
+        _ => return Err(NO_HEADER.into()),
+    };
+    Ok((elements, body))
 }

@@ -19,7 +19,13 @@ pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 /// A coordinate.
 pub fn number(word: Option<&str>, line: usize) -> Result<f64, String> {
     let word = word.ok_or_else(|| format!("line {line} ends where a number should be"))?;
-    word.parse().map_err(|_| format!("line {line} has '{}' where a number should be", shown(word)))
+    word.parse().map_err(|_| format!("line {line} has {}", no_number(word)))
+}
+
+/// What is wrong with a word that is no number.
+pub fn no_number(word: &str) -> String {
+    let remedy = if word.contains(',') { "; write decimals with a point" } else { "" };
+    format!("'{}' where a number should be{remedy}", shown(word))
 }
 
 /// A word as a message can show it: short, and on one line.
@@ -42,6 +48,12 @@ pub fn looks_like(bytes: &[u8]) -> Option<&'static str> {
     if [&b"ni1\0"[..], b"n+1\0"].iter().any(|magic| bytes.get(344..348) == Some(magic)) {
         return Some("NIfTI");
     }
+    if start.starts_with(b"# vtk DataFile") {
+        return Some("VTK");
+    }
+    if start.windows(8).any(|window| window == b"<VTKFile") {
+        return Some("VTK XML");
+    }
     let text = std::str::from_utf8(start.strip_suffix(b"\xef").unwrap_or(start)).ok()?;
     let mut words = text.lines().filter_map(|line| line.split_whitespace().next());
     let first = words.find(|word| !word.starts_with('#'))?;
@@ -58,9 +70,26 @@ pub fn looks_like(bytes: &[u8]) -> Option<&'static str> {
 pub fn noted_frame(bytes: &[u8]) -> Option<Frame> {
     let head = &bytes[..bytes.len().min(1000)];
     let note = head.windows(9).find(|window| window.starts_with(b"SPACE="))?;
-    match &note[6..] {
+    frame_named(&note[6..])
+}
+
+pub fn frame_named(name: &[u8]) -> Option<Frame> {
+    match name {
         b"RAS" => Some(Frame::Ras),
         b"LPS" => Some(Frame::Lps),
         _ => None,
     }
+}
+
+/// How many millimetres a unit of length has, by its name.
+#[cfg(any(feature = "centrelines", feature = "label-maps"))]
+pub fn unit_in_mm(name: &str) -> Option<f64> {
+    Some(match name {
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => 1.0,
+        "m" | "meter" | "meters" | "metre" | "metres" => 1000.0,
+        "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => 10.0,
+        "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "microns" | "micrometer" | "micrometers"
+        | "micrometre" => 1e-3,
+        _ => return None,
+    })
 }

@@ -66,12 +66,19 @@ fn points_are_read_as_people_write_them() {
     for text in [
         "30,30,20,2\n30,30,40\n",
         "30,30,20,2\n30,30,40,0\n",
-        "# saved by hand\n\nx,y,z\n30,30,20,2\n# the tip\n30,30,40\n",
+        "# saved by hand\n\nx,y,z,radius\n30,30,20,2\n# the tip\n30,30,40\n",
         "\u{feff}x;y;z;radius\r\n30; 30; 20; 2\r\n30; 30; 40\r\n",
         "# x y z r\n3.0e1 3.0e1 2.0e1 2.0e0\n3.0e1 3.0e1 4.0e1 2.0e0\n",
-        "X\tY\tZ\n30\t30\t20\t2\n30\t30\t40\n",
+        "X\tY\tZ\tR [mm]\n30\t30\t20\t2\n30\t30\t40\n",
         "  30   30 20  2 \n\n   30  30 40",
         "30 , 30 ,\t20,\u{a0}2\n30,30,40\n",
+        // Decimal commas, quotes, lines that end by carriage returns alone, and columns as ParaView names them.
+        "30,5;30,0;20,0;1,0\n30,0;30,0;40,0\n",
+        "30,0\t30,0\t20,0\t1,0\n30,0\t30,0\t40,0\n",
+        "\"x\",\"y\",\"z\",\"radius\"\n\"30\",\"30\",\"20\",\"2\"\n\"30,0\",\"30\",\"40\"\n",
+        "x,y,z,r\r30,30,20,2\r30,30,40\r",
+        "\"Radius\",\"Normals:0\",\"Points:0\",\"Points:1\",\"Points:2\"\n2,7,30,30,20\n2,7,30,30,40\n",
+        "x [mm],y [mm],z [mm],radius [mm],distance_to_wall_mm\r\n30,30,20,2,9\r\n30,30,40,2,9\r\n",
     ] {
         assert_eq!(minimum(&["--mesh", room, "--centreline", &file("people.csv", text)]), 20.0, "{text}");
     }
@@ -102,21 +109,28 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
     refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
     refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");
-    // Decimal commas.
-    refuse_shape("30,5;30,0;20,0;1,0\n30,0;30,0;40,0\n", "write x,y,z or x,y,z,radius");
+    // A column is a radius where its heading says so.
+    refuse_shape(
+        "x,y,z,distance_to_wall_mm\n30,30,20,2\n30,30,40,2\n",
+        "no radius; write it behind x,y,z, or give",
+    );
+    refuse_shape("x,y,z\n30,30,20,2\n30,30,40\n", "has 4 columns, but the heading names 3; write x,y,z");
+    refuse_shape("30,30,20,2\n30,30,30\n30,30,40\n", "line 2 of ");
+    let radius = ["--mesh", room, "--centreline", shape, "--radius", "1"];
+    refuse("my_robot", &radius, "has a column of radii; leave out --radius");
     refuse_shape("30,30,20,1\n", "point");
     refuse_shape("30,30,20,-1\n30,30,40\n", "radius 0 is -1");
     refuse_shape("30,30,20,1\n30,30,40,-1\n", "the radius of the last point is -1");
     refuse_shape("30,30,20,1\n30,30,40,nan\n", "the radius of the last point is NaN");
     refuse_shape("30,30,20,inf\n30,30,40\n", "radius 0 is inf");
-    refuse_shape("30,30,20,1\n30,nan,40\n", "point 1");
+    refuse_shape("30,30,20,1\n30,nan,40\n", "vertex 1");
     // A number too many, or one that is not there: nothing moves up.
     refuse_shape("30,30,20,1,0\n30,30,40\n", "line 1 of ");
     refuse_shape("30,30,20,1\n30,30\n", "has 2 columns; write x,y,z or x,y,z,radius");
     for (text, line, column) in [
         ("1,,2,0.5\n30,30,40\n", 1, 2),
         ("30,30,20,1\n,30,30,40\n", 2, 1),
-        ("x,y,z\n30,30,20,1\n30,30,,40\n", 3, 3),
+        ("x,y,z,r\n30,30,20,1\n30,30,,40\n", 3, 3),
         ("30,30,20,1\n30,30,40,\n", 2, 4),
         ("30;30;;20\n30;30;40\n", 1, 3),
         ("30\t\t30\t20\n30\t30\t40\n", 1, 2),

@@ -1,10 +1,10 @@
 //! The numbers of a `DataArray` in one of VTK's XML files.
 
-use crate::text::shown;
+use super::xml::Element;
+use crate::text::{no_number, shown};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use flate2::read::ZlibDecoder;
-use roxmltree::Node;
 use std::cell::Cell;
 use std::io::Read;
 
@@ -52,12 +52,14 @@ impl DataArray {
 
 impl<'a> Arrays<'a> {
     /// `appended` begins with its own tag.
-    pub fn new(root: Node, appended: Option<&'a [u8]>, limit: u64) -> Result<Self, String> {
+    pub fn new(root: &Element, appended: Option<&'a [u8]>, limit: u64) -> Result<Self, String> {
         let is_packed = match root.attribute("compressor") {
             None | Some("") => false,
             Some("vtkZLibDataCompressor") => true,
             Some(other) => {
-                return Err(format!("it is packed by {}; save it by zlib or not packed", shown(other)));
+                let name = other.strip_prefix("vtk").and_then(|name| name.strip_suffix("DataCompressor"));
+                let name = shown(name.unwrap_or(other));
+                return Err(format!("it is packed by {name}; save it with the compressor ZLib, or none"));
             }
         };
         let header = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
@@ -74,10 +76,11 @@ impl<'a> Arrays<'a> {
         Ok(Self { is_big_endian, header, is_packed, appended, left: Cell::new(limit) })
     }
 
-    pub fn read(&self, array: Node) -> Result<DataArray, String> {
+    pub fn read(&self, array: &Element) -> Result<DataArray, String> {
         let kind = array.attribute("type").unwrap_or_default();
         let (size, is_float) = match kind {
-            "Int8" | "UInt8" => (1, false),
+            // The letters of a text.
+            "Int8" | "UInt8" | "String" => (1, false),
             "Int16" | "UInt16" => (2, false),
             "Int32" | "UInt32" => (4, false),
             "Int64" | "UInt64" => (8, false),
@@ -85,10 +88,10 @@ impl<'a> Arrays<'a> {
             "Float64" => (8, true),
             _ => return Err(format!("its numbers of type '{}' cannot be read", shown(kind))),
         };
-        let text = array.text().unwrap_or_default();
+        let text = array.text.as_str();
         let bytes = match array.attribute("format").unwrap_or("ascii") {
             "ascii" => {
-                let wrong = |word: &str| format!("it has '{}' where a number should be", shown(word));
+                let wrong = |word: &str| format!("it has {}", no_number(word));
                 let words = || text.split_whitespace();
                 return if is_float {
                     let numbers: Result<_, _> =

@@ -2,12 +2,17 @@
 
 mod data_array;
 mod markups;
-mod vtk_legacy;
-mod vtk_xml;
+mod poly_data;
+mod table;
+pub mod vtk_legacy;
+pub mod vtk_xml;
+mod xml;
 
-use crate::mesh::Frame;
+use crate::mesh::{Frame, Mesh};
 use crate::{MeshFileError, Options, read_file, text};
+use poly_data::{JOINING, PolyData};
 use std::path::Path;
+pub use table::{load_shapes, load_table};
 
 /// Points along a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,44 +20,51 @@ use std::path::Path;
 pub struct Centreline {
     /// The points in the file's order.
     pub points: Vec<[f64; 3]>,
-    /// The frame of the coordinates, where the file states it.
+    /// The radius of the segment that begins at each point but the last, if the file is a text with a column for it.
+    pub radii: Option<Vec<f64>>,
+    /// The frame of the coordinates, where the file or its format states it.
     pub frame: Option<Frame>,
+    /// Whether the unit of length is stated. Markups state it, and come in millimetres before they are scaled.
+    pub states_unit: bool,
+    /// How many points of the line are left out, because nobody has placed them yet.
+    pub skipped_points: usize,
+}
+
+/// A line of a file.
+#[derive(Default)]
+struct Line {
+    points: Vec<[f64; 3]>,
+    skipped_points: usize,
+    /// What it is instead of a curve, by its program.
+    other: Option<String>,
 }
 
 /// All lines of a file.
 struct Lines {
-    lines: Vec<Vec<[f64; 3]>>,
+    lines: Vec<Line>,
     frame: Option<Frame>,
+    states_unit: bool,
 }
 
-/// Points, and lines that name them.
-#[derive(Default)]
-struct PolyData {
-    points: Vec<[f64; 3]>,
-    lines: Vec<Vec<u64>>,
-}
-
-impl PolyData {
-    /// The lines by their points.
-    ///
-    /// # Errors
-    /// A line names a point that is not there.
-    fn resolve(self) -> Result<Vec<Vec<[f64; 3]>>, String> {
-        let count = self.points.len();
-        let point = |index: u64| {
-            let point = usize::try_from(index).ok().and_then(|index| self.points.get(index));
-            point
-                .copied()
-                .ok_or_else(|| format!("a line names point {index}, but there are {count}, counted from 0"))
-        };
-        self.lines.into_iter().map(|line| line.into_iter().map(point).collect()).collect()
+impl Lines {
+    /// The lines of PolyData.
+    fn of(data: PolyData) -> Result<Self, String> {
+        let frame = data.frame;
+        let line = |points| Line { points, ..Line::default() };
+        Ok(Self { lines: data.into_lines()?.into_iter().map(line).collect(), frame, states_unit: false })
     }
+}
+
+/// The surface of PolyData.
+pub fn surface(read: Result<PolyData, String>) -> Result<Mesh, String> {
+    read.and_then(PolyData::into_mesh)
 }
 
 /// What a centreline's extension says it holds.
 #[derive(Clone, Copy)]
 enum Format {
     Markups,
+    Table,
     VtkLegacy,
     VtkXml,
 }
@@ -61,6 +73,7 @@ impl Format {
     fn of(path: &Path) -> Result<Self, MeshFileError> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         match name.rsplit_once('.').map_or("", |(_, extension)| extension) {
+            "csv" | "tsv" | "txt" | "dat" => Ok(Self::Table),
             "json" => Ok(Self::Markups),
             "vtk" => Ok(Self::VtkLegacy),
             "vtp" => Ok(Self::VtkXml),
@@ -71,15 +84,17 @@ impl Format {
     fn name(self) -> &'static str {
         match self {
             Self::Markups => "markups",
+            Self::Table => "text",
             Self::VtkLegacy => "VTK",
             Self::VtkXml => "VTK XML",
         }
     }
 }
 
-/// The centreline in the file: a curve of 3D Slicer's markups (`.mrk.json`), or a line of VTK's PolyData (`.vtp`, `.vtk`),
-/// as VMTK and SOFA write. A file with several lines needs [`Options::line`]. Radii in the file are not read: they are
-/// those of the vessel, not of the robot.
+/// The centreline in the file: a curve of 3D Slicer's markups (`.mrk.json`), the points of a text file (`.csv`, `.tsv`,
+/// `.txt`, `.dat`) with x, y, z and optionally the radius, or a line of VTK's PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write. Cells whose ends meet are one line. A file with several lines needs
+/// [`Options::line`], and so does what is no curve, such as a list of fiducials. Radii in files of VTK are not read:
+/// they are those of the vessel, not of the robot.
 ///
 /// # Errors
 /// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; or a line names a point that is
@@ -104,28 +119,45 @@ pub fn centreline_from_bytes(
     options.check_scale()?;
     let file = path.to_owned();
     let read = match format {
+        Format::Table => return one_line(&file, table::centreline(path, bytes, options)?, options.line),
         Format::Markups => markups::read(bytes),
-        Format::VtkLegacy => vtk_legacy::read(bytes),
-        Format::VtkXml => vtk_xml::read(bytes, options.memory_limit),
+        Format::VtkLegacy => vtk_legacy::read(bytes).and_then(Lines::of),
+        Format::VtkXml => vtk_xml::read(bytes, options.memory_limit).and_then(|data| {
+            if data.lines.len() as u64 * JOINING > options.memory_limit {
+                return Err("its lines take more memory than is allowed".into());
+            }
+            Lines::of(data)
+        }),
     };
-    let Lines { mut lines, frame } = read.map_err(|reason| {
+    let Lines { mut lines, frame, states_unit } = read.map_err(|reason| {
         let (file, format) = (file.clone(), format.name());
         match text::looks_like(bytes) {
-            Some(found @ ("PLY" | "STL" | "OBJ" | "NRRD" | "NIfTI" | "a zip archive")) => {
-                MeshFileError::Misnamed { file, format, found }
-            }
+            Some(
+                found @ ("PLY" | "STL" | "OBJ" | "NRRD" | "NIfTI" | "a zip archive" | "VTK" | "VTK XML"),
+            ) if found != format => MeshFileError::Misnamed { file, format, found },
             _ => MeshFileError::Broken { file, format, reason },
         }
     })?;
     let count = lines.len();
     let line = match (options.line, count) {
         (_, 0) => return Err(MeshFileError::NoLine { file }),
-        (None, 1) => 0,
+        (None, 1) => match lines[0].other.take() {
+            Some(found) => return Err(MeshFileError::NotACurve { file, found }),
+            None => 0,
+        },
         (None, _) => return Err(MeshFileError::SeveralLines { file, count }),
         (Some(line), _) if line < count => line,
         (Some(line), _) => return Err(MeshFileError::NoSuchLine { file, line, count }),
     };
-    let mut points = lines.swap_remove(line);
+    let Line { mut points, skipped_points, .. } = lines.swap_remove(line);
     options.scale_all(&file, &mut points)?;
-    Ok(Centreline { points, frame })
+    Ok(Centreline { points, radii: None, frame, states_unit, skipped_points })
+}
+
+/// The centreline of a file that has no more.
+fn one_line(file: &Path, own: Centreline, line: Option<usize>) -> Result<Centreline, MeshFileError> {
+    match line {
+        None | Some(0) => Ok(own),
+        Some(line) => Err(MeshFileError::NoSuchLine { file: file.to_owned(), line, count: 1 }),
+    }
 }

@@ -1,8 +1,9 @@
-//! VTK's legacy files with PolyData, in text or binary (whose numbers are big-endian), of any version: lines are counts
-//! and points, or since 5.1 an array of offsets and one of points.
+//! VTK's legacy files with PolyData or unstructured cells, in text or binary (whose numbers are big-endian), of any
+//! version: cells are counts and points, or since 5.1 an array of offsets and one of points.
 
-use super::{Lines, PolyData};
-use crate::text::{noted_frame, shown};
+use super::poly_data::PolyData;
+use crate::mesh::Frame;
+use crate::text::{frame_named, no_number, noted_frame, shown};
 
 /// What is left of the file.
 struct Reader<'a> {
@@ -21,6 +22,16 @@ impl<'a> Reader<'a> {
         Some(std::str::from_utf8(line).unwrap_or("").trim())
     }
 
+    /// The next line that is not empty, as words.
+    fn words(&mut self) -> Vec<&'a str> {
+        loop {
+            match self.line().map(words) {
+                Some(words) if words.is_empty() => {}
+                words => return words.unwrap_or_default(),
+            }
+        }
+    }
+
     fn word(&mut self) -> Result<&'a str, String> {
         let from = self.bytes.iter().position(|byte| !byte.is_ascii_whitespace()).ok_or(SHORT)?;
         let rest = &self.bytes[from..];
@@ -30,40 +41,36 @@ impl<'a> Reader<'a> {
     }
 
     /// So many numbers of this type. Nothing is kept for numbers that are not there.
-    fn numbers(&mut self, count: usize, kind: &str) -> Result<Vec<f64>, String> {
-        let size = match kind.to_ascii_lowercase().as_str() {
-            "char" | "unsigned_char" => 1,
-            "short" | "unsigned_short" => 2,
-            "int" | "unsigned_int" | "float" => 4,
-            // Programs disagree about longs, and VTK writes vtktypeint64 instead.
-            "double" | "vtktypeint64" | "vtkidtype" => 8,
-            _ => return Err(format!("its numbers of type '{}' cannot be read", shown(kind))),
-        };
+    fn numbers(&mut self, count: usize, kind: Kind) -> Result<Vec<f64>, String> {
         if !self.is_binary {
-            let number = |word: &str| {
-                word.parse().map_err(|_| format!("it has '{}' where a number should be", shown(word)))
-            };
+            let number = |word: &str| word.parse().map_err(|_| format!("it has {}", no_number(word)));
             return (0..count).map(|_| self.word().and_then(number)).collect();
         }
-        let length = count.checked_mul(size).filter(|&length| length <= self.bytes.len()).ok_or(SHORT)?;
-        let (own, rest) = self.bytes.split_at(length);
-        self.bytes = rest;
+        let own = self.take(count, kind.size)?;
         let wide = |bytes: &[u8]| bytes.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
         let number = |bytes: &[u8]| {
             let bits = wide(bytes);
-            match kind.to_ascii_lowercase().as_str() {
-                "float" => f64::from(f32::from_bits(bits as u32)),
-                "double" => f64::from_bits(bits),
-                "char" => f64::from(bits as i8),
-                "short" => f64::from(bits as i16),
-                "int" => f64::from(bits as i32),
-                _ => bits as f64,
+            match (kind.class, kind.size) {
+                (Class::Float, 4) => f64::from(f32::from_bits(bits as u32)),
+                (Class::Float, _) => f64::from_bits(bits),
+                (Class::Signed, 1) => f64::from(bits as i8),
+                (Class::Signed, 2) => f64::from(bits as i16),
+                (Class::Signed, 4) => f64::from(bits as i32),
+                (Class::Signed, _) => bits as i64 as f64,
+                (Class::Unsigned, _) => bits as f64,
             }
         };
-        Ok(own.chunks_exact(size).map(number).collect())
+        Ok(own.chunks_exact(kind.size).map(number).collect())
     }
 
-    fn indices(&mut self, count: usize, kind: &str) -> Result<Vec<u64>, String> {
+    fn take(&mut self, count: usize, size: usize) -> Result<&'a [u8], String> {
+        let length = count.checked_mul(size).filter(|&length| length <= self.bytes.len()).ok_or(SHORT)?;
+        let (own, rest) = self.bytes.split_at(length);
+        self.bytes = rest;
+        Ok(own)
+    }
+
+    fn indices(&mut self, count: usize, kind: Kind) -> Result<Vec<u64>, String> {
         let index = |number: f64| {
             // Above 2^53 no number is the next of another.
             let is_index = number >= 0.0 && number.fract() == 0.0 && number < 9e15;
@@ -72,14 +79,23 @@ impl<'a> Reader<'a> {
         self.numbers(count, kind)?.into_iter().map(index).collect()
     }
 
+    /// Of the sizes that a type has on different machines, the one that `fits` what follows so many numbers.
+    fn sized(&self, count: usize, name: &str, fits: impl Fn(&[u8]) -> bool) -> Result<Kind, String> {
+        let (class, sizes) = Kind::named(name)?;
+        let is_it = |size: usize| {
+            let after = count.checked_mul(size).and_then(|length| self.bytes.get(length..));
+            after.is_some_and(|after| fits(after.trim_ascii_start()))
+        };
+        let size = sizes.iter().copied().find(|&size| sizes.len() == 1 || !self.is_binary || is_it(size));
+        Ok(Kind { class, size: size.unwrap_or(sizes[0]) })
+    }
+
     /// The cells of a section, each by its points.
     fn cells(&mut self, first: usize, second: usize) -> Result<Vec<Vec<u64>>, String> {
         let before = self.bytes;
-        let Some(["OFFSETS", kind]) =
-            self.line().map(words).as_deref().and_then(|words| words.first_chunk::<2>().copied())
-        else {
+        let ["OFFSETS", name] = self.line().map(words).unwrap_or_default()[..] else {
             self.bytes = before;
-            let all = self.indices(second, "int")?;
+            let all = self.indices(second, Kind { class: Class::Signed, size: 4 })?;
             let (mut rest, mut cells) = (&all[..], Vec::new());
             while let Some((&count, others)) = rest.split_first() {
                 let count =
@@ -90,17 +106,17 @@ impl<'a> Reader<'a> {
             }
             return Ok(cells);
         };
+        const NEXT: &str = "CONNECTIVITY";
+        let kind = self.sized(first, name, |after| after.starts_with(NEXT.as_bytes()))?;
         let offsets = self.indices(first, kind)?;
-        let mut head = self.line().map(words);
-        if head.as_ref().is_some_and(Vec::is_empty) {
-            head = self.line().map(words);
-        }
-        let Some(["CONNECTIVITY", kind]) =
-            head.as_deref().and_then(|words| words.first_chunk::<2>().copied())
-        else {
-            return Err("its OFFSETS are not followed by CONNECTIVITY".into());
+        let points = match self.words()[..] {
+            [NEXT, own] if own == name => self.indices(second, kind)?,
+            [NEXT, own] => {
+                let kind = self.sized(second, own, is_head)?;
+                self.indices(second, kind)?
+            }
+            _ => return Err("its OFFSETS are not followed by CONNECTIVITY".into()),
         };
-        let points = self.indices(second, kind)?;
         let cell = |ends: &[u64]| {
             let [from, to] = [ends[0], ends[1]].map(|end| usize::try_from(end).unwrap_or(usize::MAX));
             points
@@ -110,13 +126,138 @@ impl<'a> Reader<'a> {
         };
         offsets.windows(2).map(cell).collect()
     }
+
+    /// Passes over the arrays of a field, and finds the frame that 3D Slicer notes in one.
+    fn field(&mut self, arrays: usize) -> Result<Option<Frame>, String> {
+        let mut frame = None;
+        for _ in 0..arrays {
+            let mut head = self.words();
+            while head.first() == Some(&"METADATA") {
+                self.metadata();
+                head = self.words();
+            }
+            let [name, components, tuples, kind] = head[..] else {
+                return Err(format!("a field has '{}' where an array should begin", shown(&head.join(" "))));
+            };
+            let count = |word: &str| {
+                word.parse::<usize>()
+                    .map_err(|_| format!("the array '{}' has {}", shown(name), no_number(word)))
+            };
+            let count = count(components)?.checked_mul(count(tuples)?).ok_or(SHORT)?;
+            match kind.to_ascii_lowercase().as_str() {
+                "string" | "utf8_string" => {
+                    for _ in 0..count {
+                        let text = self.text()?;
+                        if name == "SPACE" {
+                            frame = frame.or(frame_named(text));
+                        }
+                    }
+                }
+                "bit" if self.is_binary => drop(self.take(count.div_ceil(8), 1)?),
+                _ if self.is_binary => {
+                    let kind = self.sized(count, kind, is_head)?;
+                    self.take(count, kind.size)?;
+                }
+                _ => {
+                    for _ in 0..count {
+                        self.word()?;
+                    }
+                }
+            }
+        }
+        Ok(frame)
+    }
+
+    /// A text of an array: a line, or its length and its bytes. The first two bits say how many bytes the length has.
+    fn text(&mut self) -> Result<&'a [u8], String> {
+        if !self.is_binary {
+            return Ok(self.line().ok_or(SHORT)?.as_bytes());
+        }
+        let &first = self.bytes.first().ok_or(SHORT)?;
+        let size = [8, 4, 2, 1][usize::from(first >> 6)];
+        let wide = self.take(1, size)?.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
+        let length = wide & !(3 << (8 * size - 2));
+        self.take(usize::try_from(length).map_err(|_| SHORT)?, 1)
+    }
+
+    /// Passes over what ends at an empty line.
+    fn metadata(&mut self) {
+        while self.line().is_some_and(|line| !line.is_empty()) {}
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Class {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+/// The type of numbers, with its size in bytes.
+#[derive(Clone, Copy)]
+struct Kind {
+    class: Class,
+    size: usize,
+}
+
+impl Kind {
+    /// A type by its name, with the sizes that it has on different machines.
+    fn named(name: &str) -> Result<(Class, &'static [usize]), String> {
+        Ok(match name.to_ascii_lowercase().as_str() {
+            "char" | "signed_char" | "vtktypeint8" => (Class::Signed, &[1]),
+            "unsigned_char" | "vtktypeuint8" => (Class::Unsigned, &[1]),
+            "short" | "vtktypeint16" => (Class::Signed, &[2]),
+            "unsigned_short" | "vtktypeuint16" => (Class::Unsigned, &[2]),
+            "int" | "vtktypeint32" => (Class::Signed, &[4]),
+            "unsigned_int" | "vtktypeuint32" => (Class::Unsigned, &[4]),
+            "vtktypeint64" | "long_long" => (Class::Signed, &[8]),
+            "vtktypeuint64" | "unsigned_long_long" => (Class::Unsigned, &[8]),
+            "long" | "vtkidtype" => (Class::Signed, &[8, 4]),
+            "unsigned_long" => (Class::Unsigned, &[8, 4]),
+            "float" => (Class::Float, &[4]),
+            "double" => (Class::Float, &[8]),
+            _ => return Err(format!("its numbers of type '{}' cannot be read", shown(name))),
+        })
+    }
+}
+
+/// The sections of a file.
+const SECTIONS: [&str; 12] = [
+    "POINTS",
+    "LINES",
+    "POLYGONS",
+    "TRIANGLE_STRIPS",
+    "VERTICES",
+    "CELLS",
+    "CELL_TYPES",
+    "METADATA",
+    "FIELD",
+    "POINT_DATA",
+    "CELL_DATA",
+    "DATASET",
+];
+
+/// Whether the head of a section or of an array follows, or nothing.
+fn is_head(after: &[u8]) -> bool {
+    let line = after.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let Ok(line) = std::str::from_utf8(line) else { return false };
+    match words(line)[..] {
+        [] => after.is_empty(),
+        [_, components, tuples, kind]
+            if components.parse::<usize>().is_ok() && tuples.parse::<usize>().is_ok() =>
+        {
+            ["string", "utf8_string", "bit"].contains(&kind.to_ascii_lowercase().as_str())
+                || Kind::named(kind).is_ok()
+        }
+        [first, ..] => SECTIONS.contains(&first.to_ascii_uppercase().as_str()),
+    }
 }
 
 fn words(line: &str) -> Vec<&str> {
     line.split_whitespace().collect()
 }
 
-pub fn read(bytes: &[u8]) -> Result<Lines, String> {
+pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
     let mut file = Reader { bytes, is_binary: false };
     if !file.line().is_some_and(|line| line.starts_with("# vtk DataFile")) {
         return Err("it does not begin with '# vtk DataFile'".into());
@@ -128,6 +269,7 @@ pub fn read(bytes: &[u8]) -> Result<Lines, String> {
         _ => return Err("its third line is neither ASCII nor BINARY".into()),
     }
     let mut found = PolyData::default();
+    let mut cells = Vec::new();
     while let Some(line) = file.line() {
         let words = words(line);
         let number = |place: usize| -> Result<usize, String> {
@@ -138,22 +280,71 @@ pub fn read(bytes: &[u8]) -> Result<Lines, String> {
         };
         match words.first().map(|word| word.to_ascii_uppercase()).as_deref() {
             None => {}
-            Some("DATASET") if words.get(1).is_some_and(|kind| kind.eq_ignore_ascii_case("POLYDATA")) => {}
-            Some("DATASET") => return Err("it holds no PolyData; export the centreline as PolyData".into()),
+            Some("DATASET") => {
+                let kind = words.get(1).copied().unwrap_or_default();
+                if !["POLYDATA", "UNSTRUCTURED_GRID"].contains(&kind.to_ascii_uppercase().as_str()) {
+                    return Err(
+                        "it holds no PolyData; export the centreline or the surface as PolyData".into()
+                    );
+                }
+            }
             Some("POINTS") => {
                 let count = number(1)?.checked_mul(3).ok_or(SHORT)?;
-                let numbers = file.numbers(count, words.get(2).copied().unwrap_or("float"))?;
+                let kind = file.sized(count, words.get(2).copied().unwrap_or("float"), is_head)?;
+                let numbers = file.numbers(count, kind)?;
                 found.points = numbers.as_chunks().0.to_vec();
             }
             Some("LINES") => found.lines.extend(file.cells(number(1)?, number(2)?)?),
-            Some("VERTICES" | "POLYGONS" | "TRIANGLE_STRIPS") => drop(file.cells(number(1)?, number(2)?)?),
-            Some("METADATA") => while file.line().is_some_and(|line| !line.is_empty()) {},
+            Some("POLYGONS") => found.polygons.extend(file.cells(number(1)?, number(2)?)?),
+            Some("TRIANGLE_STRIPS") => found.strips.extend(file.cells(number(1)?, number(2)?)?),
+            Some("VERTICES") => drop(file.cells(number(1)?, number(2)?)?),
+            Some("CELLS") => cells = file.cells(number(1)?, number(2)?)?,
+            Some("CELL_TYPES") => {
+                let types = file.numbers(number(1)?, Kind { class: Class::Signed, size: 4 })?;
+                sort(&mut found, std::mem::take(&mut cells), &types)?;
+            }
+            Some("METADATA") => file.metadata(),
+            Some("FIELD") => found.frame = found.frame.or(file.field(number(2)?)?),
             // What follows belongs to the points and cells.
-            Some("POINT_DATA" | "CELL_DATA" | "FIELD") => break,
+            Some("POINT_DATA" | "CELL_DATA") => break,
             Some(_) => return Err(format!("it has '{}' where a section should begin", shown(line))),
         }
     }
-    Ok(Lines { lines: found.resolve()?, frame: noted_frame(bytes) })
+    found.frame = found.frame.or(noted_frame(bytes));
+    Ok(found)
+}
+
+/// Cells of an unstructured grid by their types.
+fn sort(found: &mut PolyData, cells: Vec<Vec<u64>>, types: &[f64]) -> Result<(), String> {
+    if cells.len() != types.len() {
+        return Err(format!("it has {} cells, but {} types of cells", cells.len(), types.len()));
+    }
+    for (cell, &kind) in cells.into_iter().zip(types) {
+        match kind as u8 {
+            // Vertices.
+            1 | 2 => {}
+            3 | 4 => found.lines.push(cell),
+            6 => found.strips.push(cell),
+            5 | 7 | 9 => found.polygons.push(cell),
+            // A pixel: row by row instead of around.
+            8 => found.polygons.push(
+                cell.iter()
+                    .enumerate()
+                    .map(|(k, &point)| match k {
+                        2 => cell.get(3).copied().unwrap_or(point),
+                        3 => cell[2],
+                        _ => point,
+                    })
+                    .collect(),
+            ),
+            _ => {
+                return Err(format!(
+                    "it has cells of type {kind}, which are no surface; extract the surface"
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 const SHORT: &str = "it is shorter than it says";

@@ -1,61 +1,78 @@
 //! VTK's XML files with PolyData: arrays as text, as base64, or appended behind the XML, packed by zlib or not.
 
 use super::data_array::{Arrays, DataArray};
-use super::{Lines, PolyData};
-use crate::text::{noted_frame, shown};
-use roxmltree::{Document, Node};
+use super::poly_data::PolyData;
+use super::xml::{self, Element};
+use crate::mesh::Frame;
+use crate::text::{frame_named, noted_frame, shown};
 
-pub fn read(bytes: &[u8], limit: u64) -> Result<Lines, String> {
+pub fn read(bytes: &[u8], limit: u64) -> Result<PolyData, String> {
     // What is appended need not be XML: it is cut off, and what was open is closed.
     let mark = b"<AppendedData";
     let cut = bytes.windows(mark.len()).position(|window| window == mark);
     let head = &bytes[..cut.unwrap_or(bytes.len())];
-    let mut text = String::from_utf8_lossy(head).trim_start_matches('\u{feff}').to_owned();
-    if cut.is_some() {
-        text.push_str("</VTKFile>");
+    let text = String::from_utf8_lossy(head);
+    let root = xml::parse(text.trim_start_matches('\u{feff}'), cut.is_some())?;
+    if root.name != "VTKFile" || root.attribute("type") != Some("PolyData") {
+        return Err("it holds no PolyData; export the centreline or the surface as PolyData".into());
     }
-    let document = Document::parse(&text).map_err(|error| error.to_string().replace('\n', " "))?;
-    let root = document.root_element();
-    if root.tag_name().name() != "VTKFile" || root.attribute("type") != Some("PolyData") {
-        return Err("it holds no PolyData; export the centreline as PolyData".into());
+    let arrays = Arrays::new(&root, cut.map(|cut| &bytes[cut..]), limit)?;
+    let mut all = PolyData::default();
+    for data in root.children("PolyData") {
+        for piece in data.children("Piece") {
+            all.append(self::piece(piece, &arrays)?);
+        }
+        for field in data.children("FieldData") {
+            all.frame = all.frame.or(noted_space(field, &arrays));
+        }
     }
-    let arrays = Arrays::new(root, cut.map(|cut| &bytes[cut..]), limit)?;
-    let mut lines = Vec::new();
-    for piece in root.descendants().filter(|node| node.has_tag_name("Piece")) {
-        lines.extend(self::piece(piece, &arrays)?.resolve()?);
-    }
-    Ok(Lines { lines, frame: noted_frame(head) })
+    all.frame = all.frame.or(noted_frame(head));
+    Ok(all)
 }
 
-fn piece(piece: Node, arrays: &Arrays) -> Result<PolyData, String> {
-    let child = |name: &str| piece.children().find(|node| node.has_tag_name(name));
-    let array = |parent: Option<Node>, name: Option<&str>| -> Result<Option<DataArray>, String> {
-        let found = parent.and_then(|parent| {
-            let is_it = |node: &Node| {
-                node.has_tag_name("DataArray") && (name.is_none() || node.attribute("Name") == name)
-            };
-            parent.children().find(is_it)
-        });
-        found.map(|node| arrays.read(node)).transpose()
-    };
-    let points = array(child("Points"), None)?.map(DataArray::into_numbers).unwrap_or_default();
-    let indices = |name: &str| -> Result<Vec<u64>, String> {
-        array(child("Lines"), Some(name))?.map_or(Ok(Vec::new()), DataArray::into_indices)
-    };
-    let (connectivity, ends) = (indices("connectivity")?, indices("offsets")?);
-    let mut from = 0;
-    let mut lines = Vec::new();
-    for end in ends {
-        let to = usize::try_from(end).unwrap_or(usize::MAX);
-        let line = connectivity.get(from..to).ok_or("its offsets do not fit its connectivity")?;
-        lines.push(line.to_vec());
-        from = to;
-    }
+/// The frame that 3D Slicer notes as an array of text. Other programs' arrays of this name say nothing.
+fn noted_space(field: &Element, arrays: &Arrays) -> Option<Frame> {
+    let is_space = |array: &&Element| array.attribute("Name") == Some("SPACE");
+    let array = field.children.iter().find(is_space)?;
+    let DataArray::Integers(letters) = arrays.read(array).ok()? else { return None };
+    let letters: Option<Vec<u8>> = letters.into_iter().map(|letter| u8::try_from(letter).ok()).collect();
+    frame_named(letters?.split(|&letter| letter == 0).next()?)
+}
+
+fn piece(piece: &Element, arrays: &Arrays) -> Result<PolyData, String> {
+    let points = piece.child("Points").and_then(|points| points.child("DataArray"));
+    let points = points.map(|points| arrays.read(points)).transpose()?;
+    let points = points.map(DataArray::into_numbers).unwrap_or_default();
     if points.len() % 3 != 0 {
         return Err(format!(
             "its points have {} coordinates, which is no multiple of 3",
             shown(&points.len().to_string())
         ));
     }
-    Ok(PolyData { points: points.as_chunks().0.to_vec(), lines })
+    let cells = |name: &str| cells(piece.child(name), arrays);
+    Ok(PolyData {
+        points: points.as_chunks().0.to_vec(),
+        lines: cells("Lines")?,
+        polygons: cells("Polys")?,
+        strips: cells("Strips")?,
+        frame: None,
+    })
+}
+
+fn cells(parent: Option<&Element>, arrays: &Arrays) -> Result<Vec<Vec<u64>>, String> {
+    let indices = |name: &str| -> Result<Vec<u64>, String> {
+        let is_it = |array: &&Element| array.attribute("Name") == Some(name);
+        let array = parent.and_then(|parent| parent.children("DataArray").find(is_it));
+        array.map_or(Ok(Vec::new()), |array| arrays.read(array)?.into_indices())
+    };
+    let (connectivity, ends) = (indices("connectivity")?, indices("offsets")?);
+    let mut from = 0;
+    let mut cells = Vec::new();
+    for end in ends {
+        let to = usize::try_from(end).unwrap_or(usize::MAX);
+        let cell = connectivity.get(from..to).ok_or("its offsets do not fit its connectivity")?;
+        cells.push(cell.to_vec());
+        from = to;
+    }
+    Ok(cells)
 }

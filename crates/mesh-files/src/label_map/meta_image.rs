@@ -1,14 +1,19 @@
 //! MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. Their frame is LPS, in millimetres, as ITK's.
 
-use super::voxels::{Encoding, Kind, Voxels};
-use super::{Fault, Place, Volume, count};
+use super::voxels::{Encoding, Kind, Voxels, last};
+use super::{Fault, Place, Volume, count, voxels_path};
 use crate::mesh::Frame;
 use crate::text::shown;
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 /// The last field of the header, which says where the voxels are.
 const LAST: &str = "ElementDataFile";
 const HERE: &str = "LOCAL";
+
+fn is_here(name: &str) -> bool {
+    name.eq_ignore_ascii_case(HERE)
+}
 
 /// The fields of the header by name, and what follows it.
 struct File<'a> {
@@ -58,12 +63,9 @@ impl<'a> File<'a> {
 }
 
 /// The file that holds the voxels, if it is another one.
-pub fn voxels_file(bytes: &[u8]) -> Option<String> {
+pub fn voxels_file(bytes: &[u8]) -> Option<PathBuf> {
     let file = File::new(bytes).ok()?;
-    let other = file.get(&[LAST])?;
-    // Neither a list of files nor a pattern, and none in another folder.
-    let is_name = !other.is_empty() && !other.contains(['/', '\\', '%', ' ']) && other != "LIST";
-    (other != HERE && is_name).then(|| other.to_owned())
+    file.get(&[LAST]).filter(|other| !is_here(other)).and_then(voxels_path)
 }
 
 /// Header and voxels as one file.
@@ -79,16 +81,17 @@ pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
 
 pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     let file = File::new(bytes)?;
-    if file.need(LAST)? != HERE {
-        return Err("its voxels are in a second file; give both, or save one as .mha".into());
+    let here = file.need(LAST)?;
+    if !is_here(here) {
+        let other = shown(here);
+        return Err(
+            format!("its voxels are in a second file, '{other}'; keep it beside, or save one .mha").into()
+        );
     }
     if file.need("NDims")? != "3"
         || file.get(&["ElementNumberOfChannels"]).is_some_and(|channels| channels != "1")
     {
         return Err("it is not one volume of three dimensions; save a single label map".into());
-    }
-    if file.get(&["HeaderSize"]).is_some_and(|size| size != "0") {
-        return Err("its 'HeaderSize' is not 0; save it again with 3D Slicer or ITK-SNAP".into());
     }
     let sizes: Option<Vec<_>> =
         file.need("DimSize")?.split_whitespace().map(|size| size.parse().ok()).collect();
@@ -101,16 +104,21 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
         (_, true) => Encoding::Zlib,
         _ => Encoding::Raw,
     };
-    let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
-    let voxels = Voxels {
-        data: file.data,
-        encoding,
-        skip: 0,
-        count: count(sizes)?,
-        kind,
-        is_big_endian,
-        scaling: None,
+    let count = count(sizes)?;
+    // Bytes in front of the voxels; -1 means that these are the last ones.
+    let skip: i64 =
+        file.get(&["HeaderSize"]).unwrap_or("0").parse().map_err(|_| "its 'HeaderSize' is no number")?;
+    let (data, skip) = match (usize::try_from(skip), encoding) {
+        (Ok(skip), _) => (file.data, skip),
+        (_, Encoding::Raw) if skip == -1 => (last(file.data, count, kind), 0),
+        _ => {
+            return Err(
+                format!("its 'HeaderSize' is {skip}; save it again with 3D Slicer or ITK-SNAP").into()
+            );
+        }
     };
+    let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
+    let voxels = Voxels { data, encoding, skip, count, kind, is_big_endian, scaling: None };
     Ok(Volume { sizes, voxels, place: place(&file)?, frame: Some(Frame::Lps), states_unit: true })
 }
 

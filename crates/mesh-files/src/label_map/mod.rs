@@ -9,6 +9,7 @@ use crate::mesh::{Frame, Mesh};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
 use std::collections::BTreeSet;
+use std::path::{Component, PathBuf};
 use voxels::Voxels;
 
 /// The most voxels that are read; their numbers, with room around, fit in 32 bits.
@@ -18,6 +19,8 @@ const MOST_VOXELS: u64 = 1 << 31;
 pub enum Fault {
     /// What its format asks for is not there.
     Broken(String),
+    /// Nothing says where the voxels are.
+    NoPosition(String),
     /// A voxel holds this, which is no label.
     NotALabel(f64),
     /// The surface would take so many bytes.
@@ -74,6 +77,20 @@ impl Place {
         let [[a, b, c, _], [d, e, f, _], [g, h, i, _]] = self.0;
         a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
     }
+}
+
+/// The voxels of a file that says only how far apart they are: the first one is the origin.
+fn without_position([x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
+    [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]
+}
+
+/// The path of a file of voxels relative to its header, if it is in the same folder or below it. Neither a list of files
+/// nor a pattern of their names.
+fn voxels_path(name: &str) -> Option<PathBuf> {
+    let is_list = name.split_whitespace().next() == Some("LIST") || name.contains('%');
+    let path = PathBuf::from(name);
+    let is_below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    (!name.is_empty() && !is_list && !name.contains('\\') && is_below).then_some(path)
 }
 
 /// The number of voxels, if it is one that can be read.

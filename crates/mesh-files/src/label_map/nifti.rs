@@ -1,35 +1,161 @@
-//! NIfTI-1 label maps, packed by gzip or not. Their frame is RAS, in millimetres.
+//! NIfTI label maps of versions 1 and 2, packed by gzip or not. Their frame is RAS, in millimetres.
 
 use super::voxels::{Encoding, Kind, Voxels, unpack};
-use super::{Fault, Place, Volume, count};
+use super::{Fault, Place, Volume, count, without_position};
 use crate::mesh::Frame;
-use nifti::{Endianness, NiftiHeader, NiftiType};
 use std::borrow::Cow;
 
-/// The header, and the four bytes that tell whether more follows.
-const HEAD: usize = 352;
+/// How long the header of each version is, and the four bytes that tell whether more follows.
+const HEADS: [usize; 2] = [348, 540];
+const MORE: usize = 4;
 
-pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
+/// A header. Places of fields are given for version 1 and for version 2, by nifti1.h and nifti2.h.
+struct Header<'a> {
+    bytes: &'a [u8],
+    is_second: bool,
+    is_big_endian: bool,
+    /// Whether the voxels are in a file of their own.
+    is_pair: bool,
+}
+
+impl<'a> Header<'a> {
+    fn new(bytes: &'a [u8]) -> Result<Self, String> {
+        const WRONG: &str = "its header is cut short or not NIfTI's";
+        let is_magic = |place: usize, magic: &[u8; 4]| bytes.get(place..place + 4) == Some(magic);
+        let (is_second, is_pair) = match () {
+            () if is_magic(344, b"n+1\0") => (false, false),
+            () if is_magic(344, b"ni1\0") => (false, true),
+            () if is_magic(4, b"n+2\0") => (true, false),
+            () if is_magic(4, b"ni2\0") => (true, true),
+            () if bytes.len() >= HEADS[0] => {
+                return Err("it has no mark of NIfTI; if it is Analyze 7.5, save it as NIfTI".into());
+            }
+            () => return Err(WRONG.into()),
+        };
+        if bytes.len() < HEADS[usize::from(is_second)] {
+            return Err(WRONG.into());
+        }
+        // The number of dimensions tells the order of bytes.
+        let header = Self { bytes, is_second, is_big_endian: false, is_pair };
+        let other = Self { is_big_endian: true, ..header };
+        let fits = |header: &Self| (1..=7).contains(&header.dimension(0));
+        if fits(&header) {
+            Ok(header)
+        } else if fits(&other) {
+            Ok(other)
+        } else {
+            Err(format!("it has {} dimensions", header.dimension(0)))
+        }
+    }
+
+    fn at<const SIZE: usize>(&self, place: usize) -> [u8; SIZE] {
+        let mut own = [0; SIZE];
+        own.copy_from_slice(&self.bytes[place..place + SIZE]);
+        if self.is_big_endian {
+            own.reverse();
+        }
+        own
+    }
+
+    fn real(&self, [first, second]: [usize; 2], index: usize) -> f64 {
+        if self.is_second {
+            f64::from_le_bytes(self.at(second + 8 * index))
+        } else {
+            f32::from_le_bytes(self.at(first + 4 * index)).into()
+        }
+    }
+
+    fn short_or_int(&self, [first, second]: [usize; 2]) -> i64 {
+        if self.is_second {
+            i32::from_le_bytes(self.at(second)).into()
+        } else {
+            i16::from_le_bytes(self.at(first)).into()
+        }
+    }
+
+    fn dimension(&self, index: usize) -> i64 {
+        if self.is_second {
+            i64::from_le_bytes(self.at(16 + 8 * index))
+        } else {
+            i16::from_le_bytes(self.at(40 + 2 * index)).into()
+        }
+    }
+
+    fn data_type(&self) -> i64 {
+        let place = if self.is_second { 12 } else { 70 };
+        i16::from_le_bytes(self.at(place)).into()
+    }
+
+    fn spacing(&self, index: usize) -> f64 {
+        self.real([76, 104], index)
+    }
+
+    fn offset(&self) -> f64 {
+        if self.is_second { i64::from_le_bytes(self.at(168)) as f64 } else { self.real([108, 168], 0) }
+    }
+
+    /// The code of the unit of length.
+    fn unit(&self) -> u8 {
+        (if self.is_second { self.at::<4>(500)[0] } else { self.bytes[123] }) & 7
+    }
+}
+
+/// Whether the file of this name is one of a pair.
+pub fn is_pair(extension: &str) -> bool {
+    ["hdr", "img"].iter().any(|end| extension.eq_ignore_ascii_case(end))
+}
+
+/// Header and voxels of a pair as one file.
+///
+/// # Errors
+/// The header is broken.
+pub fn in_one(header: &[u8], voxels: &[u8]) -> Result<Vec<u8>, String> {
+    let read = Header::new(header)?;
+    let length = HEADS[usize::from(read.is_second)];
+    let start = length + MORE;
+    let skip = read.offset();
+    if !read.is_pair {
+        return Err("it holds the voxels itself; give it the extension .nii".into());
+    }
+    if !(skip >= 0.0 && skip <= voxels.len() as f64) {
+        return Err(format!("its voxels begin at byte {skip}, but their file has {} bytes", voxels.len()));
+    }
+    let mut whole = [&header[..length], &[0; MORE], &voxels[skip as usize..]].concat();
+    let (place, mut offset) = if read.is_second {
+        (168, (start as i64).to_le_bytes().to_vec())
+    } else {
+        (108, (start as f32).to_le_bytes().to_vec())
+    };
+    if read.is_big_endian {
+        offset.reverse();
+    }
+    whole[place..place + offset.len()].copy_from_slice(&offset);
+    whole[if read.is_second { 5 } else { 345 }] = b'+';
+    Ok(whole)
+}
+
+pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> {
     let is_packed = bytes.starts_with(b"\x1f\x8b");
+    let most = HEADS[1] + MORE;
     let head: Cow<'_, [u8]> =
-        if is_packed { unpack(bytes, HEAD)?.into() } else { bytes[..bytes.len().min(HEAD)].into() };
-    if head.get(4..8) == Some(b"n+2\0") {
-        return Err("it is NIfTI-2; save it as NIfTI-1".into());
+        if is_packed { unpack(bytes, most)?.into() } else { bytes[..bytes.len().min(most)].into() };
+    let header = Header::new(&head)?;
+    if header.is_pair {
+        return Err("its voxels are in a second file; load the .hdr file beside its .img file".into());
     }
-    let header =
-        NiftiHeader::from_reader(&head[..]).map_err(|_| "its header is cut short or not NIfTI-1's")?;
-    if &header.magic == b"ni1\0" {
-        return Err("its voxels are in a second file; save both in one, .nii or .nii.gz".into());
-    }
-    let [dimensions, width, height, depth, ref more @ ..] = header.dim.map(usize::from);
-    let is_series = more.iter().take(dimensions.saturating_sub(3)).any(|&size| size > 1);
-    if dimensions < 3 || is_series {
+    let dimensions = header.dimension(0) as usize;
+    if dimensions < 3 || (4..=dimensions).any(|index| header.dimension(index) > 1) {
         return Err("it is not one volume of three dimensions; save a single label map".into());
     }
+    let size = |index: usize| usize::try_from(header.dimension(index));
+    let [Ok(width), Ok(height), Ok(depth)] = [size(1), size(2), size(3)] else {
+        return Err("one of its sizes is negative".into());
+    };
     let sizes = [width, height, depth];
-    let offset = header.vox_offset;
+    let offset = header.offset();
+    let least = HEADS[usize::from(header.is_second)] as f64;
     // What does not fit in 32 bits is no header's length.
-    if !(offset >= 348.0 && f64::from(offset) < f64::from(u32::MAX)) {
+    if !(offset >= least && offset < f64::from(u32::MAX)) {
         return Err(
             format!("its voxels begin at byte {offset}, which is in the header or past the end").into()
         );
@@ -40,22 +166,18 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
         skip: offset as usize,
         count: count(sizes)?,
         kind: kind(&header)?,
-        is_big_endian: header.endianness == Endianness::Big,
+        is_big_endian: header.is_big_endian,
         scaling: scaling(&header)?,
     };
-    Ok(Volume {
-        sizes,
-        voxels,
-        place: place(&header)?,
-        frame: Some(Frame::Ras),
-        states_unit: header.xyzt_units & 7 != 0,
-    })
+    let (place, is_placed) = place(&header, allow_no_position)?;
+    let frame = is_placed.then_some(Frame::Ras);
+    Ok(Volume { sizes, voxels, place, frame, states_unit: header.unit() != 0 })
 }
 
 /// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or not a number, whatever
 /// the intercept is; otherwise an intercept that is not finite is an error.
-fn scaling(header: &NiftiHeader) -> Result<Option<[f64; 2]>, String> {
-    let [slope, intercept] = [header.scl_slope, header.scl_inter].map(f64::from);
+fn scaling(header: &Header) -> Result<Option<[f64; 2]>, String> {
+    let [slope, intercept] = [[112, 176], [116, 184]].map(|places| header.real(places, 0));
     if slope == 0.0 || !slope.is_finite() {
         Ok(None)
     } else if intercept.is_finite() {
@@ -65,52 +187,64 @@ fn scaling(header: &NiftiHeader) -> Result<Option<[f64; 2]>, String> {
     }
 }
 
-fn kind(header: &NiftiHeader) -> Result<Kind, String> {
+fn kind(header: &Header) -> Result<Kind, String> {
     Ok(match header.data_type() {
-        Ok(NiftiType::Int8) => Kind::I8,
-        Ok(NiftiType::Uint8) => Kind::U8,
-        Ok(NiftiType::Int16) => Kind::I16,
-        Ok(NiftiType::Uint16) => Kind::U16,
-        Ok(NiftiType::Int32) => Kind::I32,
-        Ok(NiftiType::Uint32) => Kind::U32,
-        Ok(NiftiType::Int64) => Kind::I64,
-        Ok(NiftiType::Uint64) => Kind::U64,
-        Ok(NiftiType::Float32) => Kind::F32,
-        Ok(NiftiType::Float64) => Kind::F64,
-        _ => return Err(format!("its voxels are of type {}, which holds no label", header.datatype)),
+        2 => Kind::U8,
+        4 => Kind::I16,
+        8 => Kind::I32,
+        16 => Kind::F32,
+        64 => Kind::F64,
+        256 => Kind::I8,
+        512 => Kind::U16,
+        768 => Kind::U32,
+        1024 => Kind::I64,
+        1280 => Kind::U64,
+        other => return Err(format!("its voxels are of type {other}, which holds no label")),
     })
 }
 
-/// Where the voxels are: the sform if there is one, otherwise the qform (methods 3 and 2 of nifti1.h). Method 1 knows
-/// no patient, so a file without both is refused.
-fn place(header: &NiftiHeader) -> Result<Place, String> {
-    let unit = match header.xyzt_units & 7 {
+/// Where the voxels are, and whether the file says so: the sform if there is one, otherwise the qform (methods 3 and 2 of
+/// nifti1.h). Method 1 knows no patient. An sform of zeros is none.
+fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Fault> {
+    let unit = match header.unit() {
         0 | 2 => 1.0,
         1 => 1000.0,
         3 => 1e-3,
-        code => return Err(format!("its unit of length has the unknown code {code}")),
+        code => return Err(format!("its unit of length has the unknown code {code}").into()),
     };
-    let (rows, name) = if header.sform_code > 0 {
-        ([header.srow_x, header.srow_y, header.srow_z].map(|row| row.map(f64::from)), "sform")
-    } else if header.qform_code > 0 {
-        (qform(header), "qform")
-    } else {
-        return Err("it does not say where its voxels are: sform and qform are both unknown".into());
-    };
-    Place::new(rows.map(|row| row.map(|x| x * unit)), name)
+    let scaled = |rows: [[f64; 4]; 3], name| Place::new(rows.map(|row| row.map(|x| x * unit)), name);
+    let [q, s] = [[252, 344], [254, 348]].map(|places| header.short_or_int(places) > 0);
+    let sform = [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
+    let is_zero = sform.iter().all(|row| row[..3] == [0.0; 3]);
+    let spacing = [1, 2, 3].map(|index| header.spacing(index));
+    // Readers disagree: nibabel takes the form as it is, ITK mirrors the axis.
+    if let Some(axis) = (0..3).find(|&axis| spacing[axis] < 0.0) {
+        let (name, value) = (axis + 1, spacing[axis]);
+        let wrong =
+            format!("its pixdim[{name}] is {value}, which some programs mirror; write a positive one");
+        return Err(wrong.into());
+    }
+    if s && !(is_zero && q) {
+        return Ok((scaled(sform, "sform")?, true));
+    }
+    if q {
+        return Ok((scaled(qform(header, spacing), "qform")?, true));
+    }
+    if !allow_no_position {
+        return Err(Fault::NoPosition("sform and qform are both unknown".into()));
+    }
+    Ok((scaled(without_position(spacing), "pixdim")?, false))
 }
 
 /// The quaternion's rotation times the spacings, the third one mirrored if the header says so.
-fn qform(header: &NiftiHeader) -> [[f64; 4]; 3] {
-    let [b, c, d] = [header.quatern_b, header.quatern_c, header.quatern_d].map(f64::from);
+fn qform(header: &Header, [x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
+    let [b, c, d, shift @ ..] = [0, 1, 2, 3, 4, 5].map(|index| header.real([256, 352], index));
     let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();
     let rotation = [
         [a * a + b * b - c * c - d * d, 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
         [2.0 * (b * c + a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d - a * b)],
         [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), a * a + d * d - b * b - c * c],
     ];
-    let [mirror, x, y, z, ..] = header.pixdim.map(f64::from);
-    let z = if mirror < 0.0 { -z } else { z };
-    let shift = [header.quatern_x, header.quatern_y, header.quatern_z].map(f64::from);
+    let z = if header.spacing(0) < 0.0 { -z } else { z };
     [0, 1, 2].map(|row| [rotation[row][0] * x, rotation[row][1] * y, rotation[row][2] * z, shift[row]])
 }

@@ -1,10 +1,15 @@
-//! NRRD label maps in one file: raw, gzip or ASCII. Their frame is what `space` says, RAS or LPS.
+//! NRRD label maps: raw, gzip or ASCII, in one file or with the voxels in a file beside the header. Their frame is what
+//! `space` says, RAS or LPS.
 
-use super::voxels::{Encoding, Kind, Voxels};
-use super::{Fault, Place, Volume, count};
+use super::voxels::{Encoding, Kind, Voxels, last};
+use super::{Fault, Place, Volume, count, voxels_path, without_position};
 use crate::mesh::Frame;
-use crate::text::shown;
+use crate::text::{shown, unit_in_mm};
 use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// The names of the field that says where the voxels are, if not in the same file.
+const ELSEWHERE: [&str; 2] = ["data file", "datafile"];
 
 /// The fields of the header by name, and what follows it.
 struct File<'a> {
@@ -13,7 +18,7 @@ struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    /// The header ends at the first empty line.
+    /// The header ends at the first empty line, or where the file does if the voxels are elsewhere.
     fn new(bytes: &'a [u8]) -> Result<Self, String> {
         if !bytes.starts_with(b"NRRD000") {
             return Err("it does not begin with 'NRRD000' and a version".into());
@@ -21,16 +26,25 @@ impl<'a> File<'a> {
         let mut fields = HashMap::new();
         let mut data = bytes;
         loop {
-            let end = data.iter().position(|&byte| byte == b'\n');
-            let end = end.ok_or("its header is not followed by an empty line")?;
+            let end = data.iter().position(|&byte| byte == b'\n').unwrap_or(data.len());
             let line = String::from_utf8_lossy(&data[..end]);
-            data = &data[end + 1..];
+            let is_end = data.is_empty();
+            data = data.get(end + 1..).unwrap_or_default();
             let line = line.trim();
-            if line.is_empty() {
+            // Keys and values of the user's own are written as `key:=value`.
+            if let Some((name, value)) = line.split_once(':')
+                && !value.starts_with('=')
+                && !line.starts_with('#')
+            {
+                fields.insert(name.trim().to_ascii_lowercase(), value.trim().to_owned());
+            }
+            if line.is_empty() && !is_end {
                 return Ok(Self { fields, data });
             }
-            if let Some((name, value)) = line.split_once(": ") {
-                fields.insert(name.trim().to_ascii_lowercase(), value.trim().to_owned());
+            if is_end {
+                let is_apart = ELSEWHERE.iter().any(|&name| fields.contains_key(name));
+                let whole = is_apart.then_some(Self { fields, data });
+                return whole.ok_or_else(|| "its header is not followed by an empty line".into());
             }
         }
     }
@@ -48,26 +62,101 @@ impl<'a> File<'a> {
     }
 }
 
-pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
+/// The file that holds the voxels, if it is another one.
+pub fn voxels_file(bytes: &[u8]) -> Option<PathBuf> {
+    let file = File::new(bytes).ok()?;
+    ELSEWHERE.iter().find_map(|name| file.get(name)).and_then(voxels_path)
+}
+
+/// Header and voxels as one file.
+pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(header);
+    let is_elsewhere = |line: &str| {
+        let name = line.split(':').next().unwrap_or_default().trim();
+        ELSEWHERE.iter().any(|other| name.eq_ignore_ascii_case(other))
+    };
+    let fields = text.lines().take_while(|line| !line.trim().is_empty()).filter(|line| !is_elsewhere(line));
+    let whole: String = fields.map(|line| format!("{line}\n")).collect();
+    [whole.as_bytes(), b"\n", voxels].concat()
+}
+
+/// The axes of the voxels: how many there are along each, and the step from one to the next, if the file says so.
+struct Axes {
+    sizes: [usize; 3],
+    steps: Option<[[f64; 3]; 3]>,
+}
+
+/// A number for each of the axes.
+fn list<T: std::str::FromStr>(file: &File, name: &str, count: usize) -> Result<Vec<T>, String> {
+    let numbers: Option<Vec<T>> =
+        file.need(name)?.split_whitespace().map(|number| number.parse().ok()).collect();
+    let numbers = numbers.filter(|numbers| numbers.len() == count);
+    let count = if count == 3 { "three".to_owned() } else { count.to_string() };
+    numbers.ok_or_else(|| format!("its '{name}' are not {count} numbers"))
+}
+
+/// A vector such as `(1,0,0)`, or `none`, for each of the axes.
+fn vectors(file: &File, name: &str, count: usize) -> Result<Vec<Option<[f64; 3]>>, String> {
+    let wrong = || format!("its '{name}' is not {count} x three numbers");
+    let vector = |text: &str| -> Option<[f64; 3]> {
+        let numbers: Option<Vec<_>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        numbers?.try_into().ok()
+    };
+    let mut vectors = Vec::new();
+    for part in file.need(name)?.split(['(', ')']).map(str::trim).filter(|part| !part.is_empty()) {
+        if part.split_whitespace().all(|word| word == "none") {
+            vectors.extend(part.split_whitespace().map(|_| None));
+        } else {
+            vectors.push(Some(vector(part).ok_or_else(wrong)?));
+        }
+    }
+    if vectors.len() == count { Ok(vectors) } else { Err(wrong()) }
+}
+
+fn axes(file: &File) -> Result<Axes, String> {
+    const LAYERS: &str =
+        "3D Slicer writes segments that overlap so: export them one by one, or as a label map";
+    let count: usize = file.need("dimension")?.parse().map_err(|_| "its 'dimension' is no number")?;
+    if !(3..=4).contains(&count) {
+        return Err(format!("it has {count} dimensions, not three; export one label map"));
+    }
+    let mut sizes: Vec<usize> = list(file, "sizes", count)?;
+    let mut steps = match file.get("space directions") {
+        Some(_) => Some(vectors(file, "space directions", count)?),
+        None => None,
+    };
+    if count == 4 {
+        // An axis that is none of space: one layer is a label map.
+        let is_layer = |index: &usize| steps.as_ref().is_none_or(|steps| steps[*index].is_none());
+        let layer = (0..4).filter(is_layer).min_by_key(|&index| sizes[index]);
+        let layer = layer.ok_or_else(|| format!("it has four dimensions, not three; {LAYERS}"))?;
+        if sizes[layer] != 1 {
+            return Err(format!("it holds {} layers; {LAYERS}", sizes[layer]));
+        }
+        sizes.remove(layer);
+        if let Some(steps) = &mut steps {
+            steps.remove(layer);
+        }
+    }
+    let three = |steps: Vec<Option<[f64; 3]>>| -> Option<[[f64; 3]; 3]> {
+        steps.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+    };
+    let wrong = "its 'space directions' is not 3 x three numbers";
+    let steps = steps.map(|steps| three(steps).ok_or(wrong)).transpose()?;
+    let sizes = sizes.try_into().map_err(|_| "its 'sizes' are not three numbers")?;
+    Ok(Axes { sizes, steps })
+}
+
+pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> {
     let file = File::new(bytes)?;
-    for name in ["data file", "datafile"] {
-        if file.get(name).is_some() {
-            return Err("its voxels are in a second file; save both in one, .nrrd".into());
-        }
+    if let Some(other) = ELSEWHERE.iter().find_map(|name| file.get(name)) {
+        let other = shown(other);
+        return Err(
+            format!("its voxels are in a second file, '{other}'; keep it beside, or save one .nrrd").into()
+        );
     }
-    for name in ["byte skip", "line skip"] {
-        if file.get(name).is_some_and(|skip| skip != "0") {
-            return Err(format!("its '{name}' is not 0; save it again with 3D Slicer or ITK-SNAP").into());
-        }
-    }
-    if file.need("dimension")? != "3" {
-        return Err("it has not three dimensions; export one label map, without overlapping segments".into());
-    }
-    let sizes: Option<Vec<_>> =
-        file.need("sizes")?.split_whitespace().map(|size| size.parse().ok()).collect();
-    let sizes = sizes.and_then(|sizes| <[usize; 3]>::try_from(sizes).ok());
-    let sizes = sizes.ok_or("its 'sizes' are not three numbers")?;
-    let count = count(sizes)?;
+    let axes = axes(&file)?;
+    let count = count(axes.sizes)?;
     let kind = kind(file.need("type")?)?;
     let is_big_endian = file.get("endian").is_some_and(|endian| endian.eq_ignore_ascii_case("big"));
     if kind.size() > 1 && file.get("endian").is_none() && !is_text(file.need("encoding")?) {
@@ -77,11 +166,31 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
         "raw" => Encoding::Raw,
         "gzip" | "gz" => Encoding::Gzip,
         encoding if is_text(encoding) => Encoding::Text,
+        "bzip2" | "bz2" => return Err("its encoding 'bzip2' cannot be read; save it as gzip or raw".into()),
         encoding => return Err(File::unknown("encoding", encoding).into()),
     };
-    let (place, frame) = place(&file)?;
-    let voxels = Voxels { data: file.data, encoding, skip: 0, count, kind, is_big_endian, scaling: None };
-    Ok(Volume { sizes, voxels, place, frame, states_unit: file.get("space units").is_some() })
+    let skip = |name: &str| -> Result<i64, String> {
+        file.get(name).unwrap_or("0").parse().map_err(|_| format!("its '{name}' is no number"))
+    };
+    let mut data = file.data;
+    for _ in 0..skip("line skip")?.clamp(0, data.len() as i64) {
+        let end = data.iter().position(|&byte| byte == b'\n');
+        data = &data[end.map_or(data.len(), |end| end + 1)..];
+    }
+    // -1 means that the voxels are the last bytes.
+    let byte_skip = skip("byte skip")?;
+    let (data, skip) = match (usize::try_from(byte_skip), encoding) {
+        (Ok(skip), _) => (data, skip),
+        (_, Encoding::Raw) if byte_skip == -1 => (last(data, count, kind), 0),
+        _ => {
+            return Err(
+                format!("its 'byte skip' is {byte_skip}; save it again with 3D Slicer or ITK-SNAP").into()
+            );
+        }
+    };
+    let (place, frame) = place(&file, &axes, allow_no_position)?;
+    let voxels = Voxels { data, encoding, skip, count, kind, is_big_endian, scaling: None };
+    Ok(Volume { sizes: axes.sizes, voxels, place, frame, states_unit: file.get("space units").is_some() })
 }
 
 fn is_text(encoding: &str) -> bool {
@@ -105,7 +214,7 @@ fn kind(name: &str) -> Result<Kind, String> {
 }
 
 /// Where the voxels are, and in which frame.
-fn place(file: &File) -> Result<(Place, Option<Frame>), String> {
+fn place(file: &File, axes: &Axes, allow_no_position: bool) -> Result<(Place, Option<Frame>), Fault> {
     let space = file.get("space").unwrap_or_default();
     // The third frame of the format has no name here: mirrored, it is RAS.
     let (frame, mirror) = match space.to_ascii_lowercase().as_str() {
@@ -113,31 +222,32 @@ fn place(file: &File) -> Result<(Place, Option<Frame>), String> {
         "left-posterior-superior" | "lps" => (Some(Frame::Lps), 1.0),
         "left-anterior-superior" | "las" => (Some(Frame::Ras), -1.0),
         "" | "3d-right-handed" => (None, 1.0),
-        _ => return Err(File::unknown("space", space)),
+        _ => return Err(File::unknown("space", space).into()),
     };
-    let vectors = |name: &str, count: usize| -> Result<Vec<[f64; 3]>, String> {
-        let text = file.need(name)?;
-        let wrong = || format!("its '{name}' is not {count} x three numbers");
-        let vector = |text: &str| -> Option<[f64; 3]> {
-            let numbers: Option<Vec<_>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-            numbers?.try_into().ok()
-        };
-        let parts = text.split(['(', ')']).map(str::trim).filter(|part| !part.is_empty());
-        let vectors: Option<Vec<_>> = parts.map(vector).collect();
-        vectors.filter(|vectors| vectors.len() == count).ok_or_else(wrong)
+    let missing = ["space directions", "space origin"].into_iter().find(|name| file.get(name).is_none());
+    if let Some(missing) = missing.filter(|_| !allow_no_position) {
+        return Err(Fault::NoPosition(format!("its header has no field '{missing}'")));
+    }
+    let origin = match file.get("space origin") {
+        Some(_) => vectors(file, "space origin", 1)?[0].ok_or("its 'space origin' is not three numbers")?,
+        None => [0.0; 3],
     };
-    let directions = vectors("space directions", 3)?;
-    let origin = vectors("space origin", 1)?[0];
-    let units = file.get("space units").unwrap_or("\"mm\"").to_ascii_lowercase();
+    let units = file.get("space units").unwrap_or("\"mm\"").to_lowercase();
     let mut units = units.split('"').map(str::trim).filter(|unit| !unit.is_empty());
     let first = units.next().unwrap_or("mm");
-    let unit = match first {
-        _ if units.any(|unit| unit != first) => return Err("its space units are not all the same".into()),
-        "mm" => 1.0,
-        "m" => 1000.0,
-        "cm" => 10.0,
-        "um" => 1e-3,
-        unit => return Err(File::unknown("unit", unit)),
+    if units.any(|unit| unit != first) {
+        return Err("its space units are not all the same".into());
+    }
+    let unit = unit_in_mm(first).ok_or_else(|| File::unknown("unit", first))?;
+    let Some(directions) = axes.steps else {
+        let spacings: Vec<f64> = match file.get("spacings") {
+            Some(text) => text.split_whitespace().filter_map(|word| word.parse().ok()).collect(),
+            None => vec![1.0; 3],
+        };
+        // A layer has no spacing.
+        let spacings: Vec<_> = spacings.into_iter().filter(|spacing| !spacing.is_nan()).collect();
+        let spacings = spacings.try_into().map_err(|_| "its 'spacings' are not three numbers")?;
+        return Ok((Place::new(without_position(spacings), "spacings")?, None));
     };
     let rows = [0, 1, 2].map(|row| {
         let sign = if row == 0 { mirror } else { 1.0 } * unit;

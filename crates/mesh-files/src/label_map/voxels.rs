@@ -32,13 +32,21 @@ impl Kind {
     }
 }
 
+/// How far a number may be from a whole one and still be a label: some writers store labels times a
+/// scale, rounded to single precision or to a few digits. An image is refused all the same, since
+/// some of its voxels are farther from whole numbers.
+fn tolerance(number: f64) -> f64 {
+    (number * f64::from(f32::EPSILON)).clamp(1e-4, 1e-2)
+}
+
 /// A voxel's number as a label.
 ///
 /// # Errors
 /// It is none: the file holds an image and not a segmentation.
 pub fn label(number: f64) -> Result<u32, Fault> {
-    if number >= 0.0 && number <= f64::from(u32::MAX) && number.fract() == 0.0 {
-        Ok(number as u32)
+    let whole = number.round();
+    if (whole - number).abs() <= tolerance(number) && (0.0..=f64::from(u32::MAX)).contains(&whole) {
+        Ok(whole as u32)
     } else {
         Err(Fault::NotALabel(number))
     }
@@ -154,7 +162,7 @@ impl Voxels<'_> {
 
     /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the file has bytes.
     fn each_of_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
-        let text = String::from_utf8_lossy(self.data);
+        let text = String::from_utf8_lossy(self.data.get(self.skip..).ok_or(SHORT)?);
         let mut seen = 0;
         for word in text.split_whitespace().take(self.count) {
             let number = word.parse();
@@ -171,6 +179,12 @@ impl Voxels<'_> {
 const AT_ONCE: usize = 1 << 14;
 const SHORT: &str = "it is shorter than its header says";
 const DAMAGED: &str = "its packed voxels are damaged or cut short";
+
+/// The last bytes of a file, as many as the voxels take; all of them if they are too few.
+pub fn last(data: &[u8], count: usize, kind: Kind) -> &[u8] {
+    let size = count.saturating_mul(kind.size());
+    &data[data.len().saturating_sub(size)..]
+}
 
 /// Deflate packs 1032 bytes into one at most: a header that promises more is not believed.
 fn could_hold(archive: &[u8], count: usize) -> bool {

@@ -110,7 +110,10 @@ fn a_curve_of_slicer_has_its_points_and_its_frame() {
     assert_eq!(curve.points, [[1.5, -2.0, 3.0], [4.0, 5.0, 6.25]]);
     assert_eq!(curve.frame, Some(Frame::Lps));
     assert_eq!(read("F.mrk.json", CURVE.replace("LPS", "RAS")).unwrap().frame, Some(Frame::Ras));
-    assert_eq!(read("F.json", CURVE.replace(r#""coordinateSystem": "LPS", "#, "")).unwrap().frame, None);
+    assert_eq!(
+        read("F.json", CURVE.replace(r#""coordinateSystem": "LPS", "#, "")).unwrap().frame,
+        Some(Frame::Lps)
+    );
 }
 
 #[test]
@@ -127,10 +130,10 @@ fn what_is_wrong_with_a_centreline_is_said_in_one_line() {
     let vtk = String::from_utf8(std::fs::read(data("lines_4_ascii.vtk")).unwrap()).unwrap();
     let vtp = String::from_utf8(std::fs::read(data("lines_ascii.vtp")).unwrap()).unwrap();
     for (name, text, expected) in [
-        ("a.csv", String::new(), "ends in .mrk.json, .vtp or .vtk"),
+        ("a.xyz", String::new(), "ends in .mrk.json, .vtp or .vtk, or a text"),
         ("a.vtk", String::new(), "'# vtk DataFile'"),
         ("a.vtk", "solid x".into(), "holds STL, not VTK"),
-        ("a.vtk", vtk.replace("POLYDATA", "UNSTRUCTURED_GRID"), "export the centreline as PolyData"),
+        ("a.vtk", vtk.replace("POLYDATA", "STRUCTURED_GRID"), "export the centreline or the surface as"),
         ("a.vtk", vtk.replace("POINTS 7", "POINTS 99999999999999"), "where a number should be"),
         ("a.vtk", vtk.replace("LINES 2 9", "LINES 2 99999999999999"), "where a number should be"),
         ("a.vtk", vtk.replace("4 0 1 2 3", "4 0 1 2 7"), "a line names point 7, but there are 7"),
@@ -139,7 +142,7 @@ fn what_is_wrong_with_a_centreline_is_said_in_one_line() {
         ("a.vtk", vtk.replace("double", "decimal"), "numbers of type 'decimal'"),
         ("a.vtk", vtk.split("LINES").next().unwrap().into(), "holds no line"),
         ("a.vtp", String::new(), "is not a valid VTK XML file"),
-        ("a.vtp", vtp.replace("PolyData", "ImageData"), "export the centreline as PolyData"),
+        ("a.vtp", vtp.replace("PolyData", "ImageData"), "export the centreline or the surface as"),
         ("a.vtp", vtp.replace("Int64", "Float64"), "by numbers that are no integers"),
         ("a.vtp", vtp.replace("Int64", "Bits"), "numbers of type 'Bits'"),
         ("a.vtp", vtp.replace("Name=\"offsets\"", "Name=\"ends\""), "holds no line"),

@@ -309,7 +309,7 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         ("offset.nii", whole().sform(&matrix).floats(108, &[f32::NAN]).bytes(), "byte NaN"),
         ("unit.nii", whole().sform(&matrix).put(123, &[7]).bytes(), "unknown code 7"),
         ("second.nii", second.bytes(), "second file"),
-        ("two.nii", nifti_2.bytes(), "save it as NIfTI-1"),
+        ("two.nii", nifti_2.bytes(), "two.nii "),
         (
             "zero.nii",
             Nifti::new(vec![0; voxels.len()]).sform(&matrix).bytes(),
@@ -320,7 +320,7 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         ("cut.nrrd", header("raw", "raw")[..1000].to_vec(), "shorter than its header says"),
         ("type.nrrd", header("uchar", "block"), "its type 'block' cannot be read"),
         ("sizes.nrrd", header("sizes: 40 34 30", "sizes: 40 x 30"), "not three numbers"),
-        ("layers.nrrd", header("dimension: 3", "dimension: 4"), "without overlapping segments"),
+        ("layers.nrrd", header("dimension: 3", "dimension: 4"), "not 4 numbers"),
         ("packed.nrrd", header("raw", "bzip2"), "its encoding 'bzip2' cannot be read"),
         ("space.nrrd", header("space: RAS", "space: scanner-xyz"), "its space 'scanner-xyz' cannot be read"),
         ("second.nrrd", header("endian", "data file: brain.raw\nendian"), "second file"),
@@ -354,4 +354,162 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         "label 255, but with 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...; choose",
     );
     refused("second", read("brain.nhdr", ""), "as one file");
+}
+
+#[test]
+fn labels_that_a_writer_scaled_are_rounded_and_images_refused() {
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let plain = label("a.nii", &Nifti::new(voxels.clone()).sform(&matrix).bytes(), 3).unwrap();
+    // 7 is 255 parts of 7 / 255, in single precision or in a few digits: 6.9999998, 7.00005, 6.9999.
+    let scaled: Vec<_> = voxels.iter().map(|&label| (u32::from(label) * 255 / 7) as u8).collect();
+    let of = |slope: f32, voxels: &[u8]| {
+        label("a.nii", &Nifti::new(voxels.to_vec()).sform(&matrix).floats(112, &[slope, 0.0]).bytes(), 7)
+    };
+    let sevens: Vec<_> = scaled.iter().map(|&part| if part == 255 { 255 } else { 0 }).collect();
+    for slope in [7.0 / 255.0, 0.027_451, 0.027_450_8] {
+        let found = of(slope, &sevens).unwrap();
+        assert!(!found.triangles.is_empty() && found.triangles.len() < plain.triangles.len());
+    }
+    for slope in [0.0275, 0.0274] {
+        refused("image", of(slope, &sevens), "holds an image, in which a voxel is");
+    }
+    // 3 / 7 of 255 is no whole number: 109 parts are 2.992.
+    refused("image", of(7.0 / 255.0, &scaled), "holds an image, in which a voxel is 2.99");
+    for (number, expected) in [(2.999_99_f32, true), (3.000_01, true), (2.999, false), (3.001, false)] {
+        let bytes: Vec<_> =
+            voxels.iter().flat_map(|&voxel| if voxel == 3 { number } else { 0.0 }.to_be_bytes()).collect();
+        let read = label("a.nrrd", &nrrd(&matrix, "float", "raw", "LPS", &bytes), 3);
+        assert_eq!(read.is_ok(), expected, "{number}");
+    }
+    // A whole number that single precision cannot hold is no image.
+    assert!(of(16_777_217.0 / 255.0, &sevens).is_err_and(|error| error.contains("no voxel with label 7")));
+}
+
+#[test]
+fn a_form_of_nifti_that_says_nothing_is_not_used() {
+    let matrix = oblique(1.0);
+    let (voxels, centre) = ball(&matrix, 9.5);
+    let whole = || Nifti::new(voxels.clone());
+    // An sform of zeros beside a good qform.
+    let zeros = [[0.0; 4]; 3];
+    let q = label("q.nii", &whole().sform(&zeros).qform(1.0).bytes(), 3).unwrap();
+    assert_ball("q", &q, centre, 9.5, 1.0);
+    refused(
+        "plane",
+        label("a.nii", &whole().sform(&zeros).bytes(), 3),
+        "its sform brings all voxels into one plane",
+    );
+    // Negative spacings: nibabel and ITK place the voxels differently, by an sform too.
+    for (place, spacings, name) in
+        [(80, [-1.0, 1.2, 0.8], 1), (80, [1.0, -1.2, 0.8], 2), (80, [1.0, 1.2, -0.8], 3)]
+    {
+        let mut negative = whole();
+        negative.qform(1.0).floats(place, &spacings);
+        for bytes in [negative.bytes(), negative.sform(&matrix).bytes()] {
+            refused("spacing", label("a.nii", &bytes, 3), &format!("its pixdim[{name}] is -"));
+        }
+    }
+    // Neither of them.
+    let mut none = whole();
+    none.floats(76, &[1.0, 2.0, 3.0, 4.0]);
+    refused(
+        "none",
+        label("a.nii", &none.bytes(), 3),
+        "does not say where its voxels are (sform and qform are both",
+    );
+    let options = Options::default().with_label(Some(7)).with_no_position_allowed(true);
+    let corner = from_bytes("a.nii", &none.bytes(), &options).unwrap();
+    assert_eq!(corner.frame, None);
+    // The corner has voxels 0 to 3 along each axis.
+    let far = [0, 1, 2].map(|axis| corner.vertices.iter().map(|v| v[axis]).fold(f64::MIN, f64::max));
+    assert!(
+        [2.0, 3.0, 4.0].iter().zip(far).all(|(size, far)| far > 3.0 * size && far < 4.0 * size),
+        "{far:?}"
+    );
+}
+
+/// A header of NIfTI-2, by the byte offsets of nifti2.h.
+fn second(voxels: &[u8], matrix: &Matrix, is_big: bool) -> Vec<u8> {
+    let mut head = vec![0; 544];
+    let mut put = |at: usize, mut bytes: Vec<u8>| {
+        if is_big {
+            bytes.reverse();
+        }
+        head[at..at + bytes.len()].copy_from_slice(&bytes);
+    };
+    put(0, 540_i32.to_le_bytes().into());
+    put(12, 2_i16.to_le_bytes().into());
+    let sizes = SIZES.map(|size| size as i64);
+    for (k, size) in [3, sizes[0], sizes[1], sizes[2], 1, 1, 1, 1].into_iter().enumerate() {
+        put(16 + 8 * k, size.to_le_bytes().into());
+    }
+    put(168, 544_i64.to_le_bytes().into());
+    put(176, 1_f64.to_le_bytes().into());
+    put(348, 1_i32.to_le_bytes().into());
+    for (k, x) in matrix.iter().flatten().enumerate() {
+        put(400 + 8 * k, x.to_le_bytes().into());
+    }
+    put(500, 2_i32.to_le_bytes().into());
+    head[4..8].copy_from_slice(b"n+2\0");
+    [&head[..], voxels].concat()
+}
+
+#[test]
+fn the_second_version_of_nifti_is_read() {
+    let matrix = oblique(-1.0);
+    let (voxels, centre) = ball(&matrix, 9.5);
+    for is_big in [false, true] {
+        let bytes = second(&voxels, &matrix, is_big);
+        for (name, bytes) in [("a.nii", bytes.clone()), ("a.nii.gz", gzip(&bytes))] {
+            let mesh = label(name, &bytes, 3).unwrap();
+            assert_ball(name, &mesh, centre, 9.5, 1.0);
+            assert_eq!((mesh.frame, mesh.states_unit), (Some(Frame::Ras), true));
+        }
+    }
+}
+
+#[test]
+fn voxels_in_a_file_beside_the_header_are_read() {
+    use mesh_files::load_with;
+    let matrix = oblique(1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("beside");
+    std::fs::create_dir_all(folder.join("raw data")).unwrap();
+    let load = |name: &str| {
+        load_with(folder.join(name), &Options::default().with_label(Some(3)))
+            .map_err(|error| error.to_string())
+    };
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
+    let whole = nrrd(&matrix, "uchar", "raw", "LPS", &voxels);
+    let expected = label("a.nrrd", &whole, 3).unwrap();
+    let head = String::from_utf8(whole[..whole.len() - voxels.len() - 1].to_vec()).unwrap();
+    let apart = |field: &str| head.clone() + field;
+    write("ball 1.raw", &voxels);
+    write("raw data/ball.raw", &voxels);
+    write("ball.raw.gz", &gzip(&voxels));
+    write("tail.raw", &[&b"a head\n of 2 lines\n"[..], &voxels].concat());
+    for (name, text) in [
+        ("a.nhdr", apart("data file: ball 1.raw\n")),
+        ("b.nhdr", apart("data file: ./ball 1.raw\n\n")),
+        ("c.nrrd", apart("datafile: raw data/ball.raw\r\n")),
+        ("d.nhdr", apart("data file: ball.raw.gz\n").replace("encoding: raw", "encoding: gzip")),
+        ("e.nhdr", apart("data file: tail.raw\nbyte skip: -1\n")),
+        ("f.nhdr", apart("data file: tail.raw\nbyte skip: 19\n")),
+        ("g.nhdr", apart("data file: tail.raw\nline skip: 2\n")),
+        ("h.nhdr", apart("DATA FILE: ball 1.raw\n")),
+    ] {
+        write(name, text.as_bytes());
+        assert_eq!(load(name).as_ref(), Ok(&expected), "{name}");
+    }
+    for (name, text, expected) in [
+        ("list.nhdr", apart("data file: LIST\na.raw\n"), "in a second file, 'LIST'"),
+        ("many.nhdr", apart("data file: a%03d.raw 1 9 1\n"), "in a second file"),
+        ("up.nhdr", apart("data file: ../ball.raw\n"), "in a second file"),
+        ("gone.nhdr", apart("data file: gone.raw\n"), "gone.raw"),
+        ("skip.nhdr", apart("data file: ball 1.raw\nbyte skip: -2\n"), "its 'byte skip' is -2"),
+    ] {
+        write(name, text.as_bytes());
+        refused(name, load(name), expected);
+    }
 }

@@ -26,16 +26,16 @@ fn headers_that_count_what_is_not_there_take_no_memory() {
         [head.as_bytes(), &[0; 100]].concat()
     };
     let mut stl = vec![0; 84 + 50];
-    stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    stl[80..84].copy_from_slice(&(u32::MAX - 1).to_le_bytes());
     for (name, bytes, expected) in [
         ("ascii.ply", vertex(4_000_000_000, "ascii"), "end early"),
         ("little.ply", vertex(4_000_000_000, "binary_little_endian"), "end early"),
         ("big.ply", vertex(u64::MAX / 2, "binary_big_endian"), "end early"),
         ("face.ply", face(u32::MAX), "end early"),
-        ("lines.ply", nothing("ascii", 4_000_000_000), "end early"),
-        // Any number of elements of no bytes: what follows them is read.
+        // Any number of elements of no words or no bytes: what follows them is read.
+        ("lines.ply", nothing("ascii", 4_000_000_000), "where a number should be"),
         ("bytes.ply", nothing("binary_little_endian", u64::MAX / 2), "3 of element 'vertex' end early"),
-        ("count.stl", stl, "counts 4294967295 triangles, but it ends after 1"),
+        ("count.stl", stl, "counts 4294967294 triangles, but it ends after 1"),
     ] {
         let bytes = if name == "bytes.ply" { bytes[..bytes.len() - 99].to_vec() } else { bytes };
         let taken = memory(|| refused(name, read(name, &bytes), expected));

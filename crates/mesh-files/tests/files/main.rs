@@ -8,7 +8,11 @@ mod label_maps;
 mod limits;
 #[cfg(feature = "label-maps")]
 mod meta_image;
+mod mutations;
+mod reports;
 mod triangles;
+#[cfg(feature = "centrelines")]
+mod vtk;
 
 use mesh_files::Mesh;
 use std::f64::consts::TAU;

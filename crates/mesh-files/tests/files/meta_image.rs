@@ -48,6 +48,13 @@ fn what_is_wrong_with_a_meta_image_is_said_in_one_line() {
     ] {
         refused("ball.mha", read("ball.mha", text), expected);
     }
+    for (text, body) in [
+        (one.replace("LOCAL", "Local"), voxels.clone()),
+        (one.replace("ElementDataFile", "HeaderSize = 3\nElementDataFile"), "123".to_owned() + &voxels),
+        (one.replace("ElementDataFile", "HeaderSize = -1\nElementDataFile"), "12345".to_owned() + &voxels),
+    ] {
+        assert!(read("ball.mha", text + &body).is_ok());
+    }
     // Neither another folder's file nor a pattern of names.
     for other in ["../ball.raw", "/etc/passwd", "slice%03d.raw", "LIST"] {
         refused(

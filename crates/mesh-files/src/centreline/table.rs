@@ -1,0 +1,263 @@
+//! Points in lines of text, as spreadsheets, numpy, ParaView and people write them.
+
+use super::{Centreline, Format};
+use crate::text::{lines, shown};
+use crate::{MeshFileError, Options, read_file};
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+/// What the lines of a centreline hold, and those of many shapes.
+const POINTS: &str = "x,y,z or x,y,z,radius";
+const SHAPES: &str = "shape,x,y,z or shape,x,y,z,radius";
+
+/// Numbers line by line.
+struct Table {
+    /// The names of the columns, if the file has them, in small letters and without units.
+    heading: Option<Vec<String>>,
+    /// The numbers of each line, with the line's number.
+    rows: Vec<(usize, Vec<f64>)>,
+}
+
+/// What is wrong with a line.
+struct Fault {
+    line: usize,
+    problem: String,
+}
+
+impl Fault {
+    fn named(self, file: &Path, expected: &'static str) -> MeshFileError {
+        MeshFileError::Line { file: file.to_owned(), line: self.line, problem: self.problem, expected }
+    }
+}
+
+fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
+    Err(Fault { line, problem })
+}
+
+/// The numbers of each line of a text file. Empty lines, lines that begin with # and a heading are passed over. Columns
+/// are separated by semicolons, tabs, commas or spaces, and may be quoted.
+///
+/// # Errors
+/// The file cannot be read, a line has another number of columns, or a word is no number; `expected` says what to write.
+pub fn load_table(
+    path: impl AsRef<Path>,
+    columns: RangeInclusive<usize>,
+    expected: &'static str,
+    options: &Options,
+) -> Result<Vec<Vec<f64>>, MeshFileError> {
+    let path = path.as_ref();
+    let named = |fault: Fault| fault.named(path, expected);
+    let table = parse(&read_file(path, options)?).map_err(named)?;
+    for (line, row) in &table.rows {
+        if !columns.contains(&row.len()) {
+            return fault(*line, format!("has {} columns", row.len())).map_err(named);
+        }
+    }
+    Ok(table.rows.into_iter().map(|(_, row)| row).collect())
+}
+
+/// Many robots from a text file: lines of shape,x,y,z and optionally the radius of the segment that begins there. Lines
+/// that follow one another with the same number of a shape are one robot.
+///
+/// # Errors
+/// As [`load_table`]; some lines have a radius and others have not.
+pub fn load_shapes(
+    path: impl AsRef<Path>,
+    options: &Options,
+) -> Result<Vec<(f64, Centreline)>, MeshFileError> {
+    let path = path.as_ref();
+    options.check_scale()?;
+    let mut shapes = read(path, &read_file(path, options)?, 1, SHAPES, options)?;
+    // A point that is not finite is left to the robot: one bad shape does not fail the others.
+    for (_, shape) in &mut shapes {
+        shape.points.iter_mut().flatten().for_each(|x| *x *= options.scale);
+    }
+    Ok(shapes)
+}
+
+/// One robot.
+pub fn centreline(path: &Path, bytes: &[u8], options: &Options) -> Result<Centreline, MeshFileError> {
+    let mut robots = read(path, bytes, 0, POINTS, options)?;
+    let (_, mut robot) = robots.swap_remove(0);
+    options.scale_all(path, &mut robot.points)?;
+    Ok(robot)
+}
+
+/// The robots of a table before their points are scaled. Coordinates begin in this column unless the heading says something
+/// else.
+fn read(
+    path: &Path,
+    bytes: &[u8],
+    first: usize,
+    expected: &'static str,
+    options: &Options,
+) -> Result<Vec<(f64, Centreline)>, MeshFileError> {
+    let named = |fault: Fault| fault.named(path, expected);
+    let table = parse(bytes).map_err(named)?;
+    let columns = Columns::of(&table, first).map_err(named)?;
+    if table.rows.is_empty() {
+        let (file, format, reason) =
+            (path.to_owned(), Format::Table.name(), format!("it has no points; write {expected}"));
+        return Err(MeshFileError::Broken { file, format, reason });
+    }
+    let mut robots = Vec::new();
+    for rows in table.rows.chunk_by(|(_, a), (_, b)| first == 0 || a[0].to_bits() == b[0].to_bits()) {
+        let points = rows.iter().map(|(_, row)| columns.axes.map(|axis| row[axis])).collect();
+        let radii = columns.radii(rows).map_err(named)?;
+        let radii = radii.map(|radii| radii.into_iter().map(|radius| radius * options.scale).collect());
+        let robot = Centreline { points, radii, frame: None, states_unit: false, skipped_points: 0 };
+        robots.push((rows[0].1[0], robot));
+    }
+    Ok(robots)
+}
+
+/// Where the coordinates are, and the radius.
+struct Columns {
+    axes: [usize; 3],
+    radius: Option<usize>,
+}
+
+impl Columns {
+    fn of(table: &Table, first: usize) -> Result<Self, Fault> {
+        let plain = [first, first + 1, first + 2];
+        let Some(heading) = &table.heading else {
+            return Self::check(table, Self { axes: plain, radius: Some(first + 3) }, first + 4, first);
+        };
+        let named = |name: &str| heading.iter().position(|own| own == name);
+        let radius = RADIUS.iter().find_map(|name| named(name));
+        let axes = match PARAVIEW.map(named) {
+            [Some(x), Some(y), Some(z)] => [x, y, z],
+            _ => plain,
+        };
+        Self::check(table, Self { axes, radius }, heading.len(), first)
+    }
+
+    /// Every line has the coordinates, and no column without a name.
+    fn check(table: &Table, columns: Self, most: usize, first: usize) -> Result<Self, Fault> {
+        let last = columns.axes.into_iter().fold(first, usize::max);
+        for (line, row) in &table.rows {
+            if row.len() <= last || (table.heading.is_none() && row.len() > most) {
+                return fault(*line, format!("has {} columns", row.len()));
+            }
+            if row.len() > most {
+                return fault(*line, format!("has {} columns, but the heading names {most}", row.len()));
+            }
+        }
+        Ok(columns)
+    }
+
+    /// The radius of the segment that begins at each point but the last, if the file has them.
+    fn radii(&self, rows: &[(usize, Vec<f64>)]) -> Result<Option<Vec<f64>>, Fault> {
+        let Some(column) = self.radius else { return Ok(None) };
+        let of = |(_, row): &(usize, Vec<f64>)| row.get(column).copied();
+        let Some((last, others)) = rows.split_last() else { return Ok(None) };
+        if rows.iter().all(|row| of(row).is_none()) {
+            return Ok(None);
+        }
+        // No segment begins at the last point, but a radius that is none tells of a mistake.
+        if let Some(unused) = of(last)
+            && !(0.0..f64::INFINITY).contains(&unused)
+        {
+            return fault(last.0, format!("says that the radius of the last point is {unused}"));
+        }
+        let radius = |row: &(usize, Vec<f64>)| match of(row) {
+            Some(radius) => Ok(radius),
+            None => fault(row.0, "has no radius, but other lines have".into()),
+        };
+        others.iter().map(radius).collect::<Result<_, _>>().map(Some)
+    }
+}
+
+/// The names of a column of radii.
+const RADIUS: [&str; 4] = ["radius", "radii", "rad", "r"];
+/// What ParaView calls the coordinates of points. They may stand in any column.
+const PARAVIEW: [&str; 3] = ["points:0", "points:1", "points:2"];
+
+fn parse(bytes: &[u8]) -> Result<Table, Fault> {
+    let mut table = Table { heading: None, rows: Vec::new() };
+    let mut is_first = true;
+    for (line, text) in lines(bytes) {
+        let text = bare(&text);
+        if text.trim().is_empty() || text.starts_with('#') {
+            continue;
+        }
+        let columns = columns(text);
+        if std::mem::take(&mut is_first) && is_heading(&columns) {
+            let names: Vec<_> = columns.iter().map(|word| name(word)).collect();
+            if let Some(column) = misplaced(&names) {
+                return fault(line, format!("has '{}' in column {}", shown(&columns[column]), column + 1));
+            }
+            table.heading = Some(names);
+            continue;
+        }
+        let mut row = Vec::new();
+        for (column, word) in (1..).zip(&columns) {
+            let wrong = || match word.is_empty() {
+                true => format!("has nothing in column {column}"),
+                false => format!("has '{}' in column {column}", shown(word)),
+            };
+            row.push(number(word).ok_or_else(|| Fault { line, problem: wrong() })?);
+        }
+        table.rows.push((line, row));
+    }
+    Ok(table)
+}
+
+/// The line without the brackets in which numpy prints matrices, and the comma between them.
+fn bare(line: &str) -> &str {
+    let inside = line.trim_matches([' ', '\r']);
+    let inside = inside.strip_suffix("],").unwrap_or(inside);
+    if inside.starts_with('[') || inside.ends_with(']') {
+        inside.trim_matches(['[', ']', ' '])
+    } else {
+        inside
+    }
+}
+
+/// The words between semicolons, or tabs, or commas, empty ones too; without any of these, the words between spaces.
+/// Between quotes no word ends.
+fn columns(line: &str) -> Vec<String> {
+    let marks = [';', '\t', ','];
+    let mut is_quoted = false;
+    let is_outside = |&c: &char| {
+        is_quoted ^= c == '"';
+        !is_quoted
+    };
+    let outside: String = line.chars().filter(is_outside).collect();
+    let mark = marks.into_iter().find(|&mark| outside.contains(mark));
+    let mut is_quoted = false;
+    let ends = |c: char| {
+        is_quoted ^= c == '"';
+        !is_quoted && mark.map_or(c.is_whitespace(), |mark| mark == c)
+    };
+    let words = line.split(ends).map(|word| word.trim().trim_matches('"').trim().to_owned());
+    words.filter(|word| mark.is_some() || !word.is_empty()).collect()
+}
+
+/// A number, with a point or a comma for its decimals.
+fn number(word: &str) -> Option<f64> {
+    let is_comma = word.matches(',').count() == 1 && !word.contains('.');
+    if is_comma { word.replace(',', ".").parse().ok() } else { word.parse().ok() }
+}
+
+/// A name in small letters, without the unit in brackets.
+fn name(word: &str) -> String {
+    let bare = word.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
+    ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
+}
+
+/// Names of columns: words without a digit, none of which can be read as a number or is missing; or ParaView's names.
+fn is_heading(columns: &[String]) -> bool {
+    if PARAVIEW.iter().all(|axis| columns.iter().any(|word| name(word) == *axis)) {
+        return true;
+    }
+    let is_name = |word: &String| word.contains(char::is_alphabetic) && number(word).is_none();
+    columns.iter().all(is_name) && !columns.iter().any(|word| name(word).contains(char::is_numeric))
+}
+
+/// The column of a heading that names x, y or z out of their order, or without a column of shapes in front.
+fn misplaced(names: &[String]) -> Option<usize> {
+    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
+    let first = usize::from(names.first().is_some_and(|name| name == "shape"));
+    (0..names.len()).find(|&column| axis(&names[column]).is_some_and(|axis| first + axis != column))
+}

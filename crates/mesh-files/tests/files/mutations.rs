@@ -1,0 +1,160 @@
+//! Files that were spoilt: whatever the bytes, reading ends soon, takes little memory, and gives a
+//! mesh or an error of one line.
+
+use crate::reports::report;
+use mesh_files::{MeshFileError, Options, from_bytes};
+use std::time::{Duration, Instant};
+
+/// How many spoilt files of each format.
+const ROUNDS: usize = 2000;
+/// The files have a few hundred bytes; memory is in proportion, unless a header is believed.
+const MEMORY: u64 = 4 << 20;
+const TIME: Duration = Duration::from_secs(1);
+
+/// A fixed sequence (splitmix64).
+struct Draws(u64);
+
+impl Draws {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % count.max(1) as u64) as usize
+    }
+}
+
+/// One to four changes: a flipped bit, another byte, an end, lines that change places, a line twice, a digit more.
+fn spoilt(whole: &[u8], draws: &mut Draws) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    for _ in 0..=draws.below(4) {
+        let at = draws.below(bytes.len());
+        match draws.below(6) {
+            0 if !bytes.is_empty() => bytes[at] ^= 1 << draws.below(8),
+            1 if !bytes.is_empty() => bytes[at] = draws.below(256) as u8,
+            2 => bytes.truncate(at),
+            3 | 4 => {
+                let mut lines: Vec<_> = bytes.split(|&byte| byte == b'\n').map(<[u8]>::to_vec).collect();
+                let [a, b] = [draws.below(lines.len()), draws.below(lines.len())];
+                if draws.below(2) == 0 {
+                    lines.swap(a, b)
+                } else {
+                    lines.insert(a, lines[b].clone())
+                }
+                bytes = lines.join(&b'\n');
+            }
+            _ => {
+                let digit = (at..bytes.len()).find(|&at| bytes[at].is_ascii_digit());
+                digit.into_iter().for_each(|at| bytes.insert(at, b'9'));
+            }
+        }
+    }
+    bytes
+}
+
+fn check(name: &str, whole: &[u8], read: impl Fn(&[u8]) -> Result<(), MeshFileError>) {
+    let mut draws = Draws(whole.len() as u64);
+    let (mut refused, mut changed) = (0, 0);
+    for round in 0..ROUNDS {
+        let bytes = spoilt(whole, &mut draws);
+        changed += usize::from(bytes != whole);
+        let start = Instant::now();
+        let mut answer = Ok(());
+        let taken = allocation_counter::measure(|| answer = read(&bytes)).bytes_max;
+        assert!(taken < MEMORY && start.elapsed() < TIME, "{name}, {round}: {taken}, {:?}", start.elapsed());
+        if let Err(error) = answer {
+            let text = error.to_string();
+            assert!(!text.contains('\n') && text.contains(name), "{name}, {round}: {text}");
+            refused += 1;
+        }
+    }
+    // The sample has both.
+    assert!(changed > ROUNDS * 3 / 4, "{name}: {changed}");
+    assert!((ROUNDS / 20..ROUNDS).contains(&refused), "{name}: {refused}");
+}
+
+fn check_meshes(files: &[(&str, &str)]) {
+    for (name, file) in files {
+        let whole = std::fs::read(report(file)).unwrap();
+        check(name, &whole, |bytes| {
+            let mesh = from_bytes(name, bytes, &Options::default().with_memory_limit(MEMORY / 2))?;
+            let count = mesh.vertices.len();
+            assert!(!mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite()));
+            assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
+            Ok(())
+        });
+    }
+}
+
+#[test]
+fn spoilt_files_of_triangles_are_read_or_refused() {
+    check_meshes(&[
+        ("a.obj", "A02_inline_comment.obj"),
+        ("concave.obj", "A03_concave_L.obj"),
+        ("a.ply", "A06_ushort_uint_and_second_list.ply"),
+        ("strips.ply", "A05_tristrips_ascii.ply"),
+        ("binary.ply", "A06_big_endian_double_extra.ply"),
+        ("a.stl", "A07_end_solid.stl"),
+        ("binary.stl", "A08_attribute_payload.stl"),
+    ]);
+}
+
+#[cfg(feature = "label-maps")]
+#[test]
+fn spoilt_label_maps_are_read_or_refused() {
+    check_meshes(&[
+        ("a.nii", "A10_slope_uint8.nii"),
+        ("a.nii.gz", "A10_slope_nan.nii.gz"),
+        ("a.nrrd", "A13_colon_key_value_crlf.nrrd"),
+        ("skip.nrrd", "A13_byte_skip_minus_1.nrrd"),
+        ("a.mha", "A14_anatomical_says_RAS.mha"),
+    ]);
+}
+
+#[cfg(feature = "centrelines")]
+#[test]
+fn spoilt_centrelines_are_read_or_refused() {
+    for (name, file) in [
+        ("a.vtk", "A15_field_before_points.vtk"),
+        ("a.vtp", "A17_two_point_cells.vtp"),
+        ("space.vtp", "A18_space_lps_in_field_data.vtp"),
+        ("a.mrk.json", "A19_undefined_point.mrk.json"),
+        ("a.csv", "A20_bom_heading_units.csv"),
+        ("binary.vtk", "../lines_5_binary.vtk"),
+        ("packed.vtp", "../lines_appended_packed_base64.vtp"),
+    ] {
+        let whole = std::fs::read(report(file)).unwrap();
+        check(name, &whole, |bytes| {
+            let options = Options::default().with_line(Some(0)).with_memory_limit(MEMORY / 2);
+            let line = mesh_files::centreline_from_bytes(name, bytes, &options)?;
+            assert!(line.points.iter().flatten().all(|x| x.is_finite()));
+            Ok(())
+        });
+    }
+}
+
+/// XML that takes long where namespaces are resolved or attributes compared: a limit instead.
+#[cfg(feature = "centrelines")]
+#[test]
+fn hostile_xml_is_refused_at_once() {
+    let count = 100_000;
+    let attributes: String = (0..count).map(|i| format!(" a{i}=\"\"")).collect();
+    let nested: String = (0..count).map(|i| format!("<a xmlns:n{i}=\"u{i}\">")).collect();
+    let flat: String = (0..2 * count).map(|i| format!("<a xmlns:n{i}=\"u{i}\"/>")).collect();
+    for (inside, expected) in [
+        (format!("<a{attributes}/>"), "more than 64 attributes"),
+        (nested, "nested more than 32 levels deep"),
+        ("<a>".repeat(count), "nested more than 32 levels deep"),
+        (flat, "more than 131072 elements"),
+    ] {
+        let text = format!("<VTKFile type=\"PolyData\">{inside}</VTKFile>");
+        let start = Instant::now();
+        let options = Options::default();
+        let lines = mesh_files::centreline_from_bytes("a.vtp", text.as_bytes(), &options).map(drop);
+        let mesh = from_bytes("a.vtp", text.as_bytes(), &options).map(drop);
+        for answer in [lines, mesh] {
+            crate::refused("a.vtp", answer.map_err(|error| error.to_string()), expected);
+        }
+        assert!(start.elapsed() < Duration::from_secs(10), "{expected}: {:?}", start.elapsed());
+    }
+}

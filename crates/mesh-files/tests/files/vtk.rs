@@ -1,0 +1,274 @@
+//! Surfaces in VTK's files, lines that are cut into cells, and what stands between the sections.
+
+use crate::reports::{area, volume};
+use crate::{Vertex, read, refused};
+use mesh_files::{Centreline, Frame, Options, centreline_from_bytes};
+
+const POINTS: [Vertex; 5] =
+    [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [1.0, 0.0, 20.0], [3.0, 0.0, 29.0], [4.0, 1.0, 35.0]];
+
+fn lines(name: &str, bytes: impl AsRef<[u8]>, line: Option<usize>) -> Result<Centreline, String> {
+    let options = Options::default().with_line(line);
+    centreline_from_bytes(name, bytes.as_ref(), &options).map_err(|error| error.to_string())
+}
+
+fn text(section: &str) -> String {
+    let points: Vec<_> = POINTS.iter().flatten().map(f64::to_string).collect();
+    format!(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 5 double\n{}\n{section}\n",
+        points.join(" ")
+    )
+}
+
+fn cells(cells: &[&[usize]]) -> String {
+    let numbers: usize = cells.iter().map(|cell| cell.len() + 1).sum();
+    let line = |cell: &&[usize]| {
+        let words: Vec<_> = cell.iter().map(usize::to_string).collect();
+        format!("{} {}\n", cell.len(), words.join(" "))
+    };
+    text(&format!("LINES {} {numbers}\n{}", cells.len(), cells.iter().map(line).collect::<String>()))
+}
+
+fn places(indices: &[usize]) -> Vec<Vertex> {
+    indices.iter().map(|&index| POINTS[index]).collect()
+}
+
+#[test]
+fn cells_are_joined_where_their_ends_meet() {
+    // The cells, and the lines that they make: in the order and the direction of their first cells.
+    type Lines<'a> = &'a [&'a [usize]];
+    let cases: [(Lines<'_>, Lines<'_>); 14] = [
+        (&[&[0, 1], &[1, 2], &[2, 3], &[3, 4]], &[&[0, 1, 2, 3, 4]]),
+        (&[&[2, 3], &[0, 1], &[3, 4], &[1, 2]], &[&[0, 1, 2, 3, 4]]),
+        // Some are turned, and the first one too.
+        (&[&[2, 3], &[1, 0], &[3, 4], &[2, 1]], &[&[0, 1, 2, 3, 4]]),
+        (&[&[3, 2], &[0, 1], &[3, 4], &[1, 2]], &[&[4, 3, 2, 1, 0]]),
+        // Once around.
+        (&[&[1, 2], &[2, 0], &[0, 1]], &[&[1, 2, 0, 1]]),
+        // Two lines, and one that branches.
+        (&[&[3, 4], &[0, 1], &[1, 2]], &[&[3, 4], &[0, 1, 2]]),
+        (&[&[0, 1], &[1, 2], &[1, 3], &[3, 4]], &[&[0, 1], &[1, 2], &[1, 3, 4]]),
+        // Longer lines go on where one begins at the end of another.
+        (&[&[2, 3, 4], &[0, 1, 2]], &[&[0, 1, 2, 3, 4]]),
+        (&[&[0, 1, 2], &[2, 3], &[3, 4]], &[&[0, 1, 2, 3, 4]]),
+        (&[&[0, 1, 2], &[3, 2]], &[&[0, 1, 2, 3]]),
+        // Two branches that begin, or end, at one place.
+        (&[&[0, 1, 2], &[0, 3, 4]], &[&[0, 1, 2], &[0, 3, 4]]),
+        (&[&[1, 2, 0], &[4, 3, 0]], &[&[1, 2, 0], &[4, 3, 0]]),
+        // One that meets the middle of another.
+        (&[&[0, 1, 2], &[1, 3], &[3, 4]], &[&[0, 1, 2], &[1, 3, 4]]),
+        // No length.
+        (&[&[0, 1], &[2, 2]], &[&[0, 1], &[2, 2]]),
+    ];
+    for (cut, expected) in cases {
+        for (number, line) in expected.iter().enumerate() {
+            let found = lines("a.vtk", cells(cut), Some(number));
+            assert_eq!(found.map(|found| found.points), Ok(places(line)), "{cut:?}");
+        }
+        let alone = lines("a.vtk", cells(cut), None);
+        if expected.len() == 1 {
+            assert!(alone.is_ok(), "{cut:?}");
+        } else {
+            refused("several", alone, &format!("holds {} lines; choose one", expected.len()));
+        }
+    }
+    // The points of each cell are its own, as where files were joined.
+    let own = "POINTS 6 double\n0 0 0 0 0 10 1 0 20 3 0 29 0 0 10 1 0 20\nLINES 3 9\n2 2 3\n2 0 1\n2 4 5\n";
+    let apart = text("").split("POINTS").next().unwrap().to_owned() + own;
+    assert_eq!(lines("a.vtk", apart, None).unwrap().points, places(&[0, 1, 2, 3]));
+}
+
+#[test]
+fn thousands_of_cells_are_one_line_soon() {
+    let count = 20_000;
+    let points: String = (0..count).map(|i| format!("{i} 0 0\n")).collect();
+    let cells: String = (1..count).rev().map(|i| format!("2 {} {i}\n", i - 1)).collect();
+    let all = format!(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS {count} float\n{points}LINES {} {}\n{cells}",
+        count - 1,
+        3 * (count - 1)
+    );
+    let line = lines("a.vtk", all, None).unwrap();
+    assert!(line.points.iter().enumerate().all(|(i, point)| point[0] == i as f64));
+    assert_eq!(line.points.len(), count);
+}
+
+#[test]
+fn what_stands_before_the_points_is_passed_over_and_its_frame_is_kept() {
+    let line = "LINES 1 4\n3 0 1 2\n";
+    let whole = text(line);
+    for before in [
+        "METADATA\nINFORMATION 0\n\n",
+        "FIELD FieldData 2\ntime 1 1 double\n0.5\nMETADATA\nINFORMATION 1\nNAME a LOCATION b\nDATA 1\n\n\nids 2 2 long\n1 2 3 4\n",
+        "FIELD FieldData 1\nnames 1 2 string\ntwo%20words\nPOINTS\n",
+    ] {
+        let found = lines("a.vtk", whole.replace("POINTS", &format!("{before}POINTS")), None).unwrap();
+        assert_eq!((found.points, found.frame), (places(&[0, 1, 2]), None), "{before}");
+    }
+    let noted = whole.replace("POINTS", "FIELD FieldData 1\nSPACE 1 1 string\nLPS\nPOINTS");
+    assert_eq!(lines("a.vtk", noted, None).unwrap().frame, Some(Frame::Lps));
+    // In bytes: a text has its length before it, numbers of the same type have four bytes or eight.
+    for (kind, size) in [("vtkIdType", 4), ("vtkIdType", 8), ("long", 4), ("long", 8), ("vtktypeint64", 8)] {
+        let number = |x: u64| x.to_be_bytes()[8 - size..].to_vec();
+        let mut bytes =
+            b"# vtk DataFile Version 5.1\nx\nBINARY\nDATASET POLYDATA\nFIELD FieldData 3\n".to_vec();
+        bytes.extend(format!("ids 1 3 {kind}\n").bytes());
+        (1..4).for_each(|id| bytes.extend(number(id)));
+        bytes.extend(b"\nSPACE 1 1 string\n\xc3RAS\nbits 1 9 bit\n\xff\x80\nPOINTS 3 double\n");
+        POINTS[..3].iter().flatten().for_each(|x| bytes.extend(x.to_be_bytes()));
+        bytes.extend(format!("\nLINES 2 3\nOFFSETS {kind}\n").bytes());
+        [0, 3].into_iter().for_each(|end| bytes.extend(number(end)));
+        bytes.extend(format!("\nCONNECTIVITY {kind}\n").bytes());
+        [0, 1, 2].into_iter().for_each(|point| bytes.extend(number(point)));
+        bytes.extend(b"\nPOINT_DATA 3\n");
+        let found = lines("a.vtk", &bytes, None);
+        assert_eq!(
+            found.map(|f| (f.points, f.frame)),
+            Ok((places(&[0, 1, 2]), Some(Frame::Ras))),
+            "{kind} {size}"
+        );
+    }
+    // What LPS may be called in a file of VTK's XML, as numbers of letters; any other array of this name says nothing.
+    let vtp = std::fs::read_to_string(crate::reports::report("A18_space_lps_in_field_data.vtp")).unwrap();
+    for (letters, frame) in
+        [("82 65 83 0", Some(Frame::Ras)), ("76 80 83", Some(Frame::Lps)), ("1 2 3", None)]
+    {
+        let found = lines("a.vtp", vtp.replace("76 80 83 0", letters), None).unwrap();
+        assert_eq!(found.frame, frame, "{letters}");
+    }
+    // "RAS\0" and "LPS\0" in base64 behind the length of four bytes.
+    for (letters, frame) in [("BAAAAFJBUwA=", Frame::Ras), ("BAAAAExQUwA=", Frame::Lps)] {
+        let start = vtp.find("SPACE").unwrap();
+        let (head, tail) = vtp.split_at(start);
+        let binary = head.to_owned() + &tail.replacen("ascii", "binary", 1).replace("76 80 83 0", letters);
+        assert_eq!(lines("a.vtp", binary, None).unwrap().frame, Some(frame));
+    }
+}
+
+#[test]
+fn surfaces_of_vtk_are_meshes() {
+    let head =
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    let polygons = "POLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let new = "POLYGONS 5 12\nOFFSETS vtktypeint64\n0 3 6 9 12\nCONNECTIVITY vtktypeint64\n0 2 1 0 1 3 1 2 3 2 0 3\n";
+    let cells = polygons.replace("POLYGONS", "CELLS") + "CELL_TYPES 4\n5\n5\n5\n5\n";
+    let grid = head.replace("POLYDATA", "UNSTRUCTURED_GRID");
+    for text in [head.to_owned() + polygons, head.to_owned() + new, grid.clone() + &cells] {
+        let mesh = read("a.vtk", &text).unwrap();
+        assert!((volume(&mesh) - 1.0 / 6.0).abs() < 1e-15, "{text}");
+        // As a centreline it is none, and a centreline is no mesh.
+        refused("surface", lines("a.vtk", &text, None), "holds no line; export the curve");
+    }
+    let strip = "TRIANGLE_STRIPS 1 5\n4 1 2 0 3\n";
+    assert_eq!(read("a.vtk", head.to_owned() + strip).unwrap().triangles, [[1, 2, 0], [0, 2, 3]]);
+    refused(
+        "line",
+        read("a.vtk", head.to_owned() + "LINES 1 4\n3 0 1 2\n"),
+        "holds no triangles; export the surface",
+    );
+    refused(
+        "cells",
+        read("a.vtk", grid.clone() + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"),
+        "extract the surface",
+    );
+    let pixel = grid + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n8\n";
+    assert_eq!(read("a.vtk", pixel).unwrap().triangles, [[0, 1, 3], [0, 3, 2]]);
+    let vtp = |polys: &str, offsets: &str| {
+        let text = std::fs::read_to_string(crate::reports::report("A17_two_point_cells.vtp")).unwrap();
+        let text = text.replace("0 0 0 0 0 10 1 0 20 3 0 29", "0 0 0 1 0 0 0 1 0 0 0 1");
+        text.replace("0 1 1 2 2 3", polys).replace("2 4 6", offsets).replace("Lines>", "Polys>")
+    };
+    let mesh = read("a.vtp", vtp("0 2 1 0 1 3 1 2 3 2 0 3", "3 6 9 12")).unwrap();
+    assert_eq!((mesh.triangles.len(), mesh.vertices.len()), (4, 4));
+    let square = read("a.vtp", vtp("0 1 2 3", "4")).unwrap();
+    assert!(square.triangles.len() == 2 && area(&square) > 0.0);
+    refused("beyond", read("a.vtp", vtp("0 1 4", "3")), "names vertex 4, but there are 4");
+    for (packer, name) in [("vtkLZ4DataCompressor", "LZ4"), ("vtkLZMADataCompressor", "LZMA")] {
+        let text = vtp("0 1 2", "3").replace("version", &format!("compressor=\"{packer}\" version"));
+        refused(
+            name,
+            read("a.vtp", text),
+            &format!("packed by {name}; save it with the compressor ZLib, or none"),
+        );
+    }
+}
+
+const CURVE: &str = r#"{"markups": [{"type": "Curve", UNITS "controlPoints": [
+    {"position": [1500, -2000, 3000], "positionStatus": "defined"},
+    {"position": "", "positionStatus": "preview"}, {"position": null}, {"position": ""},
+    {"position": [0, 0, 0], "positionStatus": "undefined"}, {"position": [4000, 5000, 6250]}]}]}"#;
+
+#[test]
+fn units_of_markups_are_brought_to_millimetres_and_unset_points_are_counted() {
+    for (units, scale) in [
+        ("", 1.0),
+        (r#""coordinateUnits": null,"#, 1.0),
+        (r#""coordinateUnits": "mm","#, 1.0),
+        (r#""coordinateUnits": ["mm", "UCUM", "millimeter"],"#, 1.0),
+        (r#""coordinateUnits": ["um", "UCUM", "micrometer"],"#, 1e3),
+        (r#""coordinateUnits": "um","#, 1e3),
+        (r#""coordinateUnits": "cm","#, 0.1),
+        (r#""coordinateUnits": "m","#, 1e-3),
+    ] {
+        let curve = lines("a.mrk.json", CURVE.replace("UNITS", units), None).unwrap();
+        let expected = [[1500.0, -2000.0, 3000.0], [4000.0, 5000.0, 6250.0]];
+        assert_eq!(curve.points, expected.map(|point: Vertex| point.map(|x| x / scale)), "{units}");
+        assert!(curve.skipped_points == 4 && curve.states_unit && curve.frame == Some(Frame::Lps), "{units}");
+    }
+    for (units, expected) in [
+        (r#""coordinateUnits": "inch","#, "'inch', not mm; save it in mm"),
+        (r#""coordinateUnits": 7,"#, "not mm"),
+        (r#""coordinateUnits": [],"#, "not mm"),
+        (r#""coordinateSystem": "scanner","#, "neither LPS nor RAS"),
+    ] {
+        refused(units, lines("a.mrk.json", CURVE.replace("UNITS", units), None), expected);
+    }
+    let none = CURVE.replace("UNITS", "").replace("[1500, -2000, 3000]", "\"here\"");
+    refused(
+        "text",
+        lines("a.mrk.json", none, None),
+        "control point 0 has the position 'here', not three numbers",
+    );
+}
+
+#[test]
+fn points_that_are_no_curve_are_read_where_the_user_says_so() {
+    for kind in ["Fiducial", "ClosedCurve", "Angle", "ROI", "Plane"] {
+        let list = CURVE.replace("UNITS", "").replace("\"Curve\"", &format!("\"{kind}\""));
+        refused(
+            kind,
+            lines("a.mrk.json", &list, None),
+            &format!("of type {kind}, which is no curve; if the order"),
+        );
+        assert_eq!(lines("a.mrk.json", &list, Some(0)).unwrap().points.len(), 2);
+    }
+    let line = CURVE.replace("UNITS", "").replace("\"Curve\"", "\"Line\"");
+    assert_eq!(lines("a.mrk.json", line, None).unwrap().points.len(), 2);
+}
+
+#[test]
+fn texts_have_radii_where_they_say_so() {
+    let radii = |text: &str| lines("a.csv", text, None).map(|line| (line.points.len(), line.radii));
+    let two = Some(vec![2.0]);
+    assert_eq!(radii("0,0,0,2\n0,0,1\n"), Ok((2, two.clone())));
+    assert_eq!(radii("x,y,z,radius\n0,0,0,2\n0,0,1,2\n"), Ok((2, two.clone())));
+    assert_eq!(radii("x,y,z,distance_to_wall_mm\n0,0,0,2\n0,0,1,2\n"), Ok((2, None)));
+    assert_eq!(radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"), Ok((2, two)));
+    let report =
+        lines("a.csv", std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(), None);
+    assert_eq!(report.unwrap().points, [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0]]);
+    let scaled = centreline_from_bytes("a.csv", b"1;2;3;4\n1;2;4,5;4\n", &Options::scaled(10.0)).unwrap();
+    assert_eq!((scaled.points[1], scaled.radii), ([10.0, 20.0, 45.0], Some(vec![40.0])));
+    for (text, expected) in [
+        ("", "has no points; write x,y,z or x,y,z,radius"),
+        ("0,0,0,2\n0,0,1\n0,0,2\n", "line 2 of a.csv has no radius, but other lines have"),
+        ("0,0,0,2\n0,0,1,-1\n", "line 2 of a.csv says that the radius of the last point is -1"),
+        ("x,y,z\n0,0,0,2\n", "line 2 of a.csv has 4 columns, but the heading names 3"),
+        ("z,y,x\n0,0,0\n", "line 1 of a.csv has 'z' in column 1"),
+        ("0,0\n", "line 1 of a.csv has 2 columns"),
+        ("0,0,\"\"\n", "has nothing in column 3"),
+        ("0,0,0\n0,0,nan\n", "is not finite"),
+    ] {
+        refused(text, radii(text), expected);
+    }
+}

@@ -1,0 +1,291 @@
+"""Reads what the field's own programs write, in every variant that they offer, and compares it with what they hold.
+
+    pip install trimesh scipy meshio pyvista nibabel pynrrd SimpleITK
+    python tests/writers.py READ
+
+READ is the program of examples/read.rs. Triangles are compared corner by corner, label maps by the box around the label:
+its middle is where nibabel, pynrrd and SimpleITK read the label's voxels. Fails if a file is read otherwise than it was
+written, or refused without being expected to be.
+"""
+
+import itertools
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import meshio
+import nibabel
+import nrrd
+import numpy as np
+import pyvista
+import SimpleITK as sitk
+import trimesh
+import vtk
+
+READ = sys.argv[1]
+FOLDER = Path(tempfile.mkdtemp())
+failed, count = [], 0
+
+
+def ask(*arguments):
+    done = subprocess.run([READ, *map(str, arguments)], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def check(name, is_right, answer):
+    global count
+    count += 1
+    if not is_right:
+        failed.append(name)
+        print(f"{name}: {answer.get('error', 'is read otherwise than it was written')}")
+
+
+def path(name):
+    """A file of its own for each variant."""
+    folder = FOLDER / str(count)
+    folder.mkdir(exist_ok=True)
+    return folder / name
+
+
+# --- Surfaces
+
+ROUND = trimesh.creation.icosphere(subdivisions=2, radius=7.25)
+ROUND.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 2, 2], [3, 0, 1]))
+ROUND.apply_translation([11.5, -3.25, 40.125])
+
+
+def is_same(answer, vertices=ROUND.vertices, faces=ROUND.faces):
+    """The same triangles with the same turns: each vertex is a written one, within single precision."""
+    if "error" in answer or len(answer["triangles"]) != len(faces):
+        return False
+    far = np.linalg.norm(np.array(answer["vertices"])[:, None] - np.asarray(vertices)[None], axis=2)
+    if far.min(axis=1).max() > 1e-5:
+        return False
+    read = far.argmin(axis=1)[np.array(answer["triangles"])]
+    turned = lambda t: min(tuple(np.roll(t, k)) for k in range(3))
+    return sorted(map(turned, read)) == sorted(map(turned, np.asarray(faces)))
+
+
+def check_surface(name, file):
+    answer = ask(file)
+    check(name, is_same(answer), answer)
+
+
+def surfaces():
+    for kind, options in [
+        ("stl", {}), ("stl_ascii", {}), ("obj", {}), ("ply", {"encoding": "ascii"}), ("ply", {"encoding": "binary"}),
+        ("ply", {"vertex_normal": True}), ("obj", {"include_normals": True, "digits": 12}),
+    ]:
+        file = path("a." + kind.split("_")[0])
+        file.write_bytes(data.encode() if isinstance(data := ROUND.export(file_type=kind, **options), str) else data)
+        check_surface(f"trimesh {kind} {options}", file)
+    mesh = meshio.Mesh(ROUND.vertices, [("triangle", ROUND.faces)])
+    for kind, form, options in [
+        ("stl", "stl", {"binary": False}), ("stl", "stl", {"binary": True}), ("obj", "obj", {}),
+        ("ply", "ply", {"binary": False}), ("ply", "ply", {"binary": True}),
+        ("vtk", "vtk42", {"binary": False}), ("vtk", "vtk42", {"binary": True}),
+        ("vtk", "vtk51", {"binary": False}), ("vtk", "vtk51", {"binary": True}),
+    ]:
+        file = path("a." + kind)
+        meshio.write(file, mesh, file_format=form, **options)
+        check_surface(f"meshio {form} {options}", file)
+    data = pyvista.wrap(ROUND)
+    data.field_data["note"] = ["two words", "and more"]
+    data.field_data["time"] = [0.5]
+    data.point_data["ids"] = np.arange(data.n_points)
+    for kind, binary in itertools.product(["stl", "ply", "vtk", "vtp"], [True, False]):
+        file = path("a." + kind)
+        data.save(file, binary=binary)
+        check_surface(f"pyvista {kind} binary={binary}", file)
+    strips = data.strip()
+    for kind, version in [("vtk", 42), ("vtk", 51), ("vtp", 0)]:
+        file = path("a." + kind)
+        write_vtk(strips, file, version, False)
+        check_surface(f"VTK strips {kind} {version}", file)
+    # A polygon that is not convex.
+    hook = np.array([[4, 0, 0], [4, 1, 0], [1, 1, 0], [1, 4, 0], [0, 4, 0], [0, 0, 0]], dtype=float)
+    polygon = pyvista.PolyData(hook, faces=[6, *range(6)])
+    for kind in ["vtk", "vtp", "ply", "obj"]:
+        file = path("a." + kind)
+        if kind == "obj":
+            meshio.write(file, meshio.Mesh(hook, [("polygon", np.arange(6)[None])]))
+        else:
+            polygon.save(file)
+        answer = ask(file)
+        area = trimesh.Trimesh(answer.get("vertices", []), answer.get("triangles", []), process=False).area
+        check(f"concave {kind}", abs(area - 7) < 1e-6, answer)
+
+
+# --- Lines
+
+LINE = np.array([[0, 0, 0], [0, 0, 10], [1, 0, 20], [3, 0, 29], [4, 1, 35]], dtype=float)
+
+
+def write_vtk(data, file, version, binary, compressor=None, mode=None, header=None):
+    if file.suffix == ".vtk":
+        writer = vtk.vtkPolyDataWriter()
+        writer.SetFileVersion(version)
+        writer.SetFileTypeToBinary() if binary else writer.SetFileTypeToASCII()
+    else:
+        writer = vtk.vtkXMLPolyDataWriter()
+        getattr(writer, f"SetDataModeTo{mode or 'Ascii'}")()
+        getattr(writer, f"SetCompressorTypeTo{compressor or 'None'}")()
+        if header:
+            getattr(writer, f"SetHeaderTypeTo{header}")()
+    writer.SetInputData(data)
+    writer.SetFileName(str(file))
+    writer.Write()
+
+
+def check_line(name, file, refused=None):
+    answer = ask("--line", file)
+    if refused:
+        return check(name, refused in answer.get("error", ""), answer)
+    check(name, "error" not in answer and np.allclose(answer["points"], LINE, atol=1e-6), answer)
+
+
+def lines():
+    whole, cut = pyvista.MultipleLines(LINE), pyvista.lines_from_points(LINE)
+    shuffled = pyvista.PolyData(LINE, lines=[2, 0, 1, 2, 2, 3, 2, 2, 1, 2, 4, 3])
+    for title, data in [("one cell", whole), ("cells of two", cut), ("in any order", shuffled)]:
+        data = data.copy()
+        data.point_data["MaximumInscribedSphereRadius"] = np.arange(5.0)
+        data.point_data["normals"] = np.ones((5, 3))
+        data.field_data["note"] = ["two words"]
+        for version, binary in itertools.product([42, 51], [True, False]):
+            file = path("a.vtk")
+            write_vtk(data, file, version, binary)
+            check_line(f"{title} vtk {version} binary={binary}", file)
+        for mode, compressor, header in itertools.product(
+            ["Ascii", "Binary", "Appended"], ["None", "ZLib", "LZ4", "LZMA"], ["UInt32", "UInt64"]
+        ):
+            file = path("a.vtp")
+            write_vtk(data, file, 0, True, compressor, mode, header)
+            refused = f"packed by {compressor}" if compressor in ["LZ4", "LZMA"] else None
+            check_line(f"{title} vtp {mode} {compressor} {header}", file, refused)
+
+
+# --- Label maps
+
+BLOCK = np.zeros((8, 6, 10), dtype=np.uint8)
+BLOCK[2:5, 1:4, 5:8] = 3
+BLOCK[7, 5, 9] = 1
+
+
+def box(corner_to_place):
+    """The box of the block's voxels, wherever the program says they are; a surface passes half a voxel outside."""
+    return np.array([corner_to_place(np.array(corner)) for corner in itertools.product((2, 4), (1, 3), (5, 7))])
+
+
+def check_map(name, file, places, frame, refused=None):
+    answer = ask(f"{file}:3")
+    if refused:
+        return check(name, refused in answer.get("error", ""), answer)
+    if "error" in answer:
+        return check(name, False, answer)
+    middle = np.mean(answer["vertices"], axis=0)
+    is_right = np.allclose(middle, places.mean(axis=0), atol=1e-3) and answer["frame"] == frame
+    # Each vertex is near the block.
+    steps = np.linalg.norm(places - places.mean(axis=0), axis=1).max()
+    far = np.linalg.norm(np.array(answer["vertices"]) - places.mean(axis=0), axis=1).max()
+    check(name, is_right and far < 2 * steps, answer)
+
+
+def turned(mirror=1.0):
+    turn = trimesh.transformations.rotation_matrix(0.6, [1, 2, 2])[:3, :3]
+    affine = np.eye(4)
+    affine[:3, :3] = turn @ np.diag([2.0, 3.0, 4.0 * mirror])
+    affine[:3, 3] = [10, 20, 30]
+    return affine
+
+
+def label_maps():
+    for klass, dtype, mirror, form, order in itertools.product(
+        [nibabel.Nifti1Image, nibabel.Nifti2Image, nibabel.Nifti1Pair, nibabel.Nifti2Pair],
+        [np.uint8, np.int16, np.int32, np.float32, np.float64], [1.0, -1.0], ["s", "q", "both", "zero s"], "<>",
+    ):
+        header = klass.header_class(endianness=order)
+        image = klass(BLOCK.astype(dtype), turned(mirror), header)
+        image.set_data_dtype(np.dtype(dtype).newbyteorder(order))
+        image.set_sform(turned(mirror), code=0 if form == "q" else 1)
+        image.set_qform(turned(mirror), code=0 if form == "s" else 1)
+        if form == "zero s":
+            image.header["srow_x"] = image.header["srow_y"] = image.header["srow_z"] = 0
+        file = path("a.img" if "Pair" in klass.__name__ else "a.nii.gz" if dtype == np.uint8 else "a.nii")
+        image.to_filename(file)
+        affine = turned(mirror)
+        check_map(f"nibabel {klass.__name__} {dtype.__name__} {mirror} {form} {order}", file,
+                  box(lambda voxel: affine[:3, :3] @ voxel + affine[:3, 3]), "Ras")
+    # Labels that a writer scales to fill its type.
+    for dtype in [np.uint8, np.int16, np.uint16]:
+        image = nibabel.Nifti1Image(BLOCK.astype(float), turned())
+        image.set_data_dtype(dtype)
+        file = path("a.nii")
+        image.to_filename(file)
+        affine = turned()
+        check_map(f"nibabel scaled {dtype.__name__}", file, box(lambda v: affine[:3, :3] @ v + affine[:3, 3]), "Ras")
+
+    # nibabel and SimpleITK read a negative spacing differently.
+    for form in ["s", "q"]:
+        image = nibabel.Nifti1Image(BLOCK, turned())
+        image.set_sform(turned(), code=int(form == "s"))
+        image.set_qform(turned(), code=int(form == "q"))
+        file = path("a.nii")
+        image.to_filename(file)
+        whole = bytearray(file.read_bytes())
+        whole[80:84] = np.float32(-2).tobytes()
+        file.write_bytes(whole)
+        check_map(f"negative pixdim {form}", file, None, None, "pixdim[1] is -2")
+
+    for space, encoding, dtype, apart in itertools.product(
+        ["left-posterior-superior", "right-anterior-superior"], ["raw", "gzip", "ascii", "bzip2"],
+        [np.uint8, np.int16, np.uint32, np.float32], [False, True],
+    ):
+        affine = turned()
+        header = {"space": space, "space directions": affine[:3, :3].T, "space origin": affine[:3, 3],
+                  "encoding": encoding, "kinds": ["domain"] * 3}
+        file = path("a.nhdr" if apart else "a.nrrd")
+        nrrd.write(str(file), BLOCK.astype(dtype), header, detached_header=apart)
+        _, read = nrrd.read(str(file))
+        check_map(f"pynrrd {space} {encoding} {dtype.__name__} apart={apart}", file,
+                  box(lambda v: read["space directions"].T @ v + read["space origin"]),
+                  "Lps" if space.startswith("left") else "Ras", "'bzip2'" if encoding == "bzip2" else None)
+    file = path("a.nrrd")
+    nrrd.write(str(file), BLOCK, {"spacings": [2.0, 3.0, 4.0]})
+    check_map("pynrrd spacings", file, None, None, "does not say where its voxels are")
+    file = path("a.nrrd")
+    nrrd.write(str(file), np.stack([BLOCK, BLOCK]), {
+        "space": "left-posterior-superior", "space origin": [0, 0, 0], "kinds": ["list"] + ["domain"] * 3,
+        "space directions": np.vstack([[np.nan] * 3, np.eye(3)])})
+    check_map("pynrrd layers", file, None, None, "holds 2 layers")
+
+    for kind, pixel, packed, mirror in itertools.product(
+        ["nii", "nii.gz", "hdr", "nrrd", "nhdr", "mha", "mhd"],
+        [sitk.sitkUInt8, sitk.sitkInt16, sitk.sitkUInt16, sitk.sitkInt32, sitk.sitkFloat32, sitk.sitkUInt64],
+        [True, False], [1.0, -1.0],
+    ):
+        affine = turned(mirror)
+        image = sitk.Cast(sitk.GetImageFromArray(BLOCK.transpose(2, 1, 0)), pixel)
+        image.SetSpacing([2.0, 3.0, 4.0])
+        image.SetOrigin(affine[:3, 3])
+        image.SetDirection((affine[:3, :3] / [2.0, 3.0, 4.0]).ravel())
+        file = path("a b." + kind if kind == "mhd" else "a." + kind)
+        try:
+            sitk.WriteImage(image, str(file), useCompression=packed)
+        except RuntimeError:
+            continue  # Not in this format.
+        read = sitk.ReadImage(str(file))
+        is_ras = kind.split(".")[0] in ["nii", "hdr"]
+        flip = np.array([-1.0, -1.0, 1.0]) if is_ras else np.ones(3)
+        place = lambda v: np.array(read.TransformContinuousIndexToPhysicalPoint(v.astype(float).tolist())) * flip
+        check_map(f"SimpleITK {kind} {image.GetPixelIDTypeAsString()} packed={packed} {mirror}", file, box(place),
+                  "Ras" if is_ras else "Lps")
+
+
+surfaces()
+lines()
+label_maps()
+print(f"{count} files, {len(failed)} read otherwise")
+sys.exit(bool(failed))
