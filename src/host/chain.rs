@@ -10,6 +10,7 @@
 //! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes them (see
 //! [`joint`](super::joint)).
 
+use super::mass;
 use crate::robot::length;
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
@@ -58,7 +59,7 @@ impl Shape for Chain {
     /// The sum over the links, so that what two links share counts twice: for a tube, about the half balls
     /// and wedges at its joints.
     fn mass_properties(&self, density: Real) -> MassProperties {
-        self.links().iter().map(|link| link.mass_properties(density)).sum()
+        mass::mass_properties_of_all(self.links(), density)
     }
 
     fn shape_type(&self) -> ShapeType {

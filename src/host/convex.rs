@@ -18,6 +18,9 @@ use parry3d_f64::shape::{Shape, SupportMap};
 /// What rounding leaves of the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
+/// By how much two iterations for the same pair may differ, as a share of the largest coordinate.
+const ITERATED: Real = 1e-4;
+
 /// A link and another convex shape, in either order.
 pub(super) struct ConvexPair<'a, L> {
     inner: &'a L,
@@ -81,7 +84,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let within = prediction.max(0.0);
         let mut found = self.inner.contact(self.pos12, g1, g2, within)?;
         if found.is_none() {
-            if self.are_apart_by(within) {
+            let rounding = ROUNDING * largest(self.pos12, g1, g2);
+            if self.are_apart_by(within + rounding) {
                 return Ok(None);
             }
             found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?;
@@ -91,7 +95,17 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             Some(contact) => self.least(contact)?,
             None => self.contact_of_closest()?,
         };
-        Ok(found.filter(|contact| contact.dist <= prediction))
+        // What is within the prediction is what the distance says, which other iterations find.
+        Ok(match found {
+            Some(contact) if contact.dist <= prediction => Some(contact),
+            Some(contact) if prediction >= 0.0 => {
+                let beyond = contact.dist - prediction;
+                let may_be_within = beyond <= ITERATED * largest(self.pos12, g1, g2);
+                let is_within = may_be_within && self.distance()? <= prediction;
+                is_within.then_some(Contact { dist: prediction, ..contact })
+            }
+            _ => None,
+        })
     }
 
     /// The contact of an overlap, or of what is not plain, or a better one. Of shapes that all but touch EPA may say that they

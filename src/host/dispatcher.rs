@@ -3,6 +3,7 @@
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
 use super::elements::{self, FieldPair};
+use super::iterated::IteratedPair;
 use super::link_cast;
 use super::link_pair::LinkPair;
 use super::link_triangle::LinkTrianglePair;
@@ -39,9 +40,10 @@ use parry3d_f64::shape::Shape;
 /// | `cast_shapes_nonlinear` | never late | never late | never late | never late but for GJK |
 /// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | exact points along the contact's normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
 ///
-/// Numbers are for shapes of size one. parry's tolerances are absolute, so in another unit of length the relative error is
-/// another. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column, links too large or too
-/// small for parry's iterations, beyond 2^50 or below 2^-200, are refused.
+/// Numbers are for shapes of size one, and for others as shares of the size: a pair of the last
+/// column is scaled by a power of two before `L` is asked about it, because parry's tolerances are
+/// absolute. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last
+/// column, what is smaller than 2^-40 of the other shape or of the way between them is refused.
 ///
 /// **The shortest translation.** The one that separates a link from another convex shape may be longer than the shortest that
 /// a search of all directions finds. It is longer by at most
@@ -60,8 +62,10 @@ use parry3d_f64::shape::Shape;
 /// **Predictions.** Nothing that is farther away than the prediction is returned. A negative prediction asks for an overlap at
 /// least as deep. Of a manifold it is the nearest point that counts.
 ///
-/// **Manifolds.** The least `dist` of a manifold is that of `contact`, unless a mesh's normal constraints have turned the
-/// normal.
+/// **Manifolds.** The least `dist` of a pair's manifolds is that of `contact`. The flags of a mesh
+/// or a height field that fix internal edges may turn a normal, and remove no contact: an edge
+/// without a neighbour constrains nothing, and a one-sided surface holds from behind as well, where
+/// nothing touches its front as deep.
 ///
 /// **Nonlinear casts** that do not stop at the start ignore what touches there until the link's core would meet the other
 /// shape. At that time half of what keeps the link from passing through is left.
@@ -138,7 +142,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(ShapeIntersection::new(links.distance() <= 0.0));
                 }
-                self.inner(pos12, g1, g2)?.intersection_test(pos12, g1, g2)
+                let pair = IteratedPair::of(pos12, g1, g2)?;
+                let [g1, g2] = pair.shapes();
+                self.0.intersection_test(&pair.pos12, g1, g2)
             }
         }
     }
@@ -168,12 +174,14 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(ShapeDistance::new(links.distance()));
                 }
-                let inner = self.inner(pos12, g1, g2)?;
-                let answer = match ConvexPair::of(inner, pos12, g1, g2) {
-                    Some(pair) => ShapeDistance::new(pair.distance()?),
-                    None => inner.distance(pos12, g1, g2)?,
+                let pair = IteratedPair::of(pos12, g1, g2)?;
+                let [g1, g2] = pair.shapes();
+                let answer = match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
+                    Some(convex) => ShapeDistance::new(convex.distance()?),
+                    None => self.0.distance(&pair.pos12, g1, g2)?,
                 };
-                check_margin(answer.distance).map(|()| answer)
+                check_margin(answer.distance)?;
+                Ok(ShapeDistance { distance: answer.distance * pair.unit, ..answer })
             }
         }
     }
@@ -247,11 +255,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(links.closest_points(pos12, max_dist));
                 }
-                let inner = self.inner(pos12, g1, g2)?;
-                match ConvexPair::of(inner, pos12, g1, g2) {
-                    Some(pair) => pair.closest_points(max_dist),
-                    None => inner.closest_points(pos12, g1, g2, max_dist.max(0.0)),
-                }
+                let pair = IteratedPair::of(pos12, g1, g2)?;
+                let ([g1, g2], max_dist) = (pair.shapes(), pair.length(max_dist));
+                let points = match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
+                    Some(convex) => convex.closest_points(max_dist)?,
+                    None => self.0.closest_points(&pair.pos12, g1, g2, max_dist.max(0.0))?,
+                };
+                Ok(pair.restore_points(points))
             }
         }
     }
@@ -398,10 +408,21 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
         if let Some(links) = LinkPair::of(pos12, g1, g2)? {
             return Ok(links.contact(pos12, prediction));
         }
-        let inner = self.inner(pos12, g1, g2)?;
-        match ConvexPair::of(inner, pos12, g1, g2) {
-            Some(pair) => Ok(pair.contact(prediction)?.map(|contact| pair.shallowest(contact))),
-            None => inner.contact(pos12, g1, g2, prediction),
+        let pair = IteratedPair::of(pos12, g1, g2)?;
+        let contact = self.contact_of_iterated(&pair, pair.length(prediction))?;
+        Ok(contact.map(|contact| pair.restore(contact)))
+    }
+
+    /// The contact of a pair that the inner dispatcher is asked about, in the pair's unit.
+    pub(super) fn contact_of_iterated(
+        &self,
+        pair: &IteratedPair,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        let [g1, g2] = pair.shapes();
+        match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
+            Some(convex) => Ok(convex.contact(prediction)?.map(|contact| convex.shallowest(contact))),
+            None => self.0.contact(&pair.pos12, g1, g2, prediction),
         }
     }
 }

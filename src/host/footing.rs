@@ -37,28 +37,28 @@ pub(super) fn faces_flat(link: &ModifiedCylinder, normal: Vector, end: usize) ->
     link.caps()[end] == Cap::Flat && normal.dot(outward(link, end)) >= FACING
 }
 
-/// The points and their names, handed one by one to `consider`.
+/// The points and their names, handed one by one to `consider`: those of flat caps first, then one
+/// for each end, in the order of the ends. A link that rocks keeps the order. (A host that has to
+/// choose among points as good as each other takes the first.)
 pub(super) fn points(
     link: &ModifiedCylinder,
     normal: Vector,
     mut consider: impl FnMut(Vector, PackedFeatureId),
 ) {
     let radius = link.radius();
-    for end in 0..2 {
-        let centre = centre(link, end);
-        if leans_round(link, normal, end) {
-            consider(centre + normal * radius, crest_end(end));
-        } else if faces_flat(link, normal, end) {
-            let first = perpendicular(link.axis());
-            let second = link.axis().cross(first);
-            for (corner, way) in [first, second, -first, -second].into_iter().enumerate() {
-                consider(centre + way * radius, feature::square_corner(end, corner));
-            }
+    for end in (0..2).filter(|&end| faces_flat(link, normal, end)) {
+        let first = perpendicular(link.axis());
+        let second = link.axis().cross(first);
+        for (corner, way) in [first, second, -first, -second].into_iter().enumerate() {
+            consider(centre(link, end) + way * radius, feature::square_corner(end, corner));
         }
     }
-    let Some(lateral) = lateral(link, normal) else { return };
-    for end in (0..2).filter(|&end| !leans_round(link, normal, end)) {
-        consider(centre(link, end) + lateral * radius, crest_end(end));
+    let lateral = lateral(link, normal);
+    for end in 0..2 {
+        let way = if leans_round(link, normal, end) { Some(normal) } else { lateral };
+        if let Some(way) = way {
+            consider(centre(link, end) + way * radius, crest_end(end));
+        }
     }
 }
 

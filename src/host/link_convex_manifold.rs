@@ -4,25 +4,26 @@
 //! The contact's own points are among the manifold's, and none is deeper: the polygons only stand for what is round. (parry's
 //! routine asks GJK and EPA anew, from where the last step left them, and need not come to the same contact.)
 
-use parry3d_f64::math::{Pose, Real};
-use parry3d_f64::query::{ContactManifold, QueryDispatcher, TrackedContact, Unsupported};
-use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, Shape};
+use super::iterated::IteratedPair;
+use parry3d_f64::query::{Contact, ContactManifold, TrackedContact, Unsupported};
+use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature};
 
-/// Brings the manifold up to date, if both shapes have polygons to stand for them. Returns whether they have.
+/// Brings the manifold up to date, if both shapes have polygons to stand for them. Returns whether
+/// they have. `contact` gives their contact, in the pair's unit.
 ///
 /// # Errors
-/// [`Unsupported`] for what `dispatcher` refuses.
+/// [`Unsupported`] for what `contact` refuses.
 pub(super) fn update<M, C: Default + Copy>(
-    dispatcher: &impl QueryDispatcher,
-    pos12: &Pose,
-    (g1, g2): (&dyn Shape, &dyn Shape),
-    prediction: Real,
+    pair: &IteratedPair,
+    contact: impl FnOnce() -> Result<Option<Contact>, Unsupported>,
     manifold: &mut ContactManifold<M, C>,
 ) -> Result<bool, Unsupported> {
+    let (pos12, unit) = (&pair.pos12, pair.unit);
+    let [g1, g2] = pair.shapes();
     let polygons = (g1.as_polygonal_feature_map(), g2.as_polygonal_feature_map());
     let (Some((polygons1, border1)), Some((polygons2, border2))) = polygons else { return Ok(false) };
     let before = std::mem::take(&mut manifold.points);
-    let Some(contact) = dispatcher.contact(pos12, g1, g2, prediction)? else { return Ok(true) };
+    let Some(contact) = contact()? else { return Ok(true) };
     let (normal1, normal2) = (contact.normal1, contact.normal2);
     let (mut feature1, mut feature2) = (PolygonalFeature::default(), PolygonalFeature::default());
     polygons1.local_support_feature_toward(normal1, contact.point1 - normal1 * border1, &mut feature1);
@@ -51,6 +52,11 @@ pub(super) fn update<M, C: Default + Copy>(
         names[1],
         contact.dist,
     ));
+    for point in &mut manifold.points {
+        point.local_p1 *= unit;
+        point.local_p2 *= unit;
+        point.dist *= unit;
+    }
     (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
     manifold.match_contacts(&before);
     Ok(true)

@@ -42,7 +42,8 @@ pub(super) fn update<M, C: Default + Copy>(
     };
     footing::points(link, down, |on_link, name| manifold.points.push(point_at(on_link, name)));
     let lowest = link.local_support_point_toward(down);
-    let nearest = height_of(lowest);
+    // Rounded as `contact` rounds it.
+    let nearest = plane.dot(link.transformed(&pose).local_support_point_toward(-plane));
     let stands_for_it = manifold.points.iter_mut().min_by(|a, b| a.dist.total_cmp(&b.dist));
     let share = SAME_POINT * (link.length() + link.radius());
     match stands_for_it.filter(|point| point.dist - nearest <= share) {

@@ -36,7 +36,7 @@ pub(super) fn update<M, C: Default + Copy>(
 ) -> Result<bool, Unsupported> {
     let Some(pair) = LinkPair::of(pos12, g1, g2)? else { return Ok(false) };
     let before = std::mem::take(&mut manifold.points);
-    let Some(touch) = pair.touch(prediction) else { return Ok(true) };
+    let Some(touch) = pair.touch_within(prediction) else { return Ok(true) };
     let LinkPair { links: [first, second], extent, .. } = pair;
     let normal = touch.normal;
     let mut meeting = LinkLinkMeeting { points: Vec::new(), extent };

@@ -17,10 +17,13 @@ use super::link_triangle::LinkContact;
 use super::range::in_range;
 use crate::distance::Scalar;
 use crate::pair::{NearestOfLinks, PlacedLink};
-use crate::robot::ModifiedCylinder;
+use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
 use parry3d_f64::shape::{Shape, TypedShape};
+
+/// By how much a closed form and the narrow phase can differ, as a share of the largest coordinate.
+const ROUNDING: Real = 16.0 * Real::EPSILON;
 
 /// Two links in one frame.
 pub(super) struct LinkPair {
@@ -86,7 +89,7 @@ impl LinkPair {
     /// Their contact, if they are at most `prediction` apart.
     pub fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         // An overlap is found first, then measured.
-        let touch = self.touch(prediction.max(0.0))?;
+        let touch = self.touch_within(prediction.max(0.0))?;
         let (point1, dist) = (self.place(touch.on_first), self.length(touch.dist));
         let point2 = self.place(touch.on_first + touch.normal * touch.dist);
         let normal2 = pos12.rotation.inverse() * -touch.normal;
@@ -103,9 +106,34 @@ impl LinkPair {
         Some(LinkContact { distance: self.length(touch.dist), on_link, on_other, normal: touch.normal })
     }
 
-    /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in the shapes' unit and 0 at
-    /// least. What is about as far may be found or not.
-    pub fn touch(&self, margin: Real) -> Option<Touch> {
+    /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in
+    /// the shapes' unit and 0 at least. Of what is about as far the [distance](Self::distance)
+    /// decides: the closed forms are rounded in other ways.
+    pub fn touch_within(&self, margin: Real) -> Option<Touch> {
+        let rounding = self.rounding();
+        let mut touch = self.touch(margin + self.length(rounding))?;
+        let within = margin / self.unit;
+        if touch.dist > within {
+            if touch.dist > within + rounding || self.distance() > margin {
+                return None;
+            }
+            touch.dist = within;
+        }
+        Some(touch)
+    }
+
+    /// By how much [`links`](Self::links) can be farther apart than the links that the distance is
+    /// measured of. Another origin rounds their ends, which turns a flat cap by the rounding over
+    /// the length.
+    fn rounding(&self) -> Real {
+        let flat = self.links.iter().filter(|link| link.caps().contains(&Cap::Flat));
+        let turn = flat.map(|link| link.radius() / link.length()).fold(0.0, Real::max);
+        ROUNDING * self.extent * (1.0 + turn)
+    }
+
+    /// Where they meet, if they are no further apart than `margin`. What is about as far may be
+    /// found or not.
+    fn touch(&self, margin: Real) -> Option<Touch> {
         let [first, second] = &self.links;
         let margin = margin / self.unit;
         match link_link::touch(first, second, self.extent, margin) {

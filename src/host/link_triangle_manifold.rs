@@ -10,35 +10,92 @@
 //! 3. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
 //!    edge across a cap.
 //!
-//! Points that coincide are one, the nearest of them, so that the least `dist` is the contact's own. Where it is within
-//! the prediction, all count, so that the host sees what a fast link is about to reach. Tolerances are relative to the link, so the unit of length does not
-//! matter. Nothing is kept from one call to the next but what the host stores with its points, which are
+//! Points that coincide are one, the nearest of them, so that the least `dist` is the contact's
+//! own. Where it is within the prediction, all count, so that the host sees what a fast link is
+//! about to reach. Tolerances are relative to the link, so the unit of length does not matter.
+//! Nothing is kept from one call to the next but what the host stores with its points, which are
 //! matched by feature.
+//!
+//! **Constraints turn the normal and never remove the contact:**
+//!
+//! 1. At a *free edge*, which no other triangle shares, there is nothing to constrain. parry gives
+//!    such an edge the face's own normal, as if a coplanar neighbour continued it. The contact
+//!    keeps its normal.
+//! 2. A normal that the constraints refuse comes *from behind* a one-sided surface. It is led
+//!    through the mirrored constraints, as parry does for a two-sided one.
+//! 3. Where a constraint has turned the normal, the points along it may all lie beyond the contact,
+//!    or there may be none. Then the closest points stand at the end of the list, with the
+//!    contact's distance. The caller, who knows the contacts with other triangles, decides whether
+//!    they count ([`Met`]).
 
 use super::axial::unit;
 use super::link_triangle::{LinkTrianglePair, Local};
-use super::meeting::Meeting;
+use super::meeting::{Meeting, ROUNDING};
 use super::{crest, feature, footing, rim};
-use parry3d_f64::math::{Pose, Real};
+use crate::distance::{Vec3, segment_segment};
+use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
+use parry3d_f64::shape::PackedFeatureId;
 
 /// How much deeper than the overlap a point may be where a constraint has turned the normal; as in parry.
 const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
 
-/// Brings the manifold of the pair up to date.
+/// By how much rounding can put a contact beyond the prediction that `contact` finds it within, as
+/// a share of the largest coordinate.
+const BEYOND: Real = 16.0 * Real::EPSILON;
+
+/// What a surface says of one of its triangles.
+pub(super) struct TriangleRules<'a> {
+    pub constraints: (Option<&'a dyn NormalConstraints>, Option<&'a dyn NormalConstraints>),
+    /// Whether no other triangle shares the edge from this corner to the next.
+    pub is_free: &'a dyn Fn(usize) -> bool,
+}
+
+/// A contact within the prediction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    /// What `contact` says of the pair.
+    pub dist: Real,
+    /// Whether the constraints refuse the contact's own normal.
+    pub is_from_behind: bool,
+    /// Whether the constraints have turned it; the last point of the manifold is the closest then.
+    pub is_turned: bool,
+}
+
+impl Met {
+    /// Keeps the closest points of a contact with a turned normal. Nothing is deeper than
+    /// `deepest`.
+    pub fn keep_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
+        for point in manifold.points.iter_mut().filter(|_| self.is_turned) {
+            point.dist = point.dist.max(deepest);
+        }
+    }
+
+    /// Takes the closest points of a contact with a turned normal away. Nothing is deeper than
+    /// `deepest`.
+    pub fn drop_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
+        if self.is_turned {
+            manifold.points.pop();
+        }
+        self.keep_closest(deepest, manifold);
+    }
+}
+
+/// Brings the manifold of the pair up to date. Returns what they meet in, if it is within the
+/// prediction.
 ///
 /// # Errors
 /// [`Unsupported`] for numbers out of range.
 pub(super) fn update<M, C: Default + Copy>(
     pos12: &Pose,
     pair: &LinkTrianglePair,
-    constraints: (Option<&dyn NormalConstraints>, Option<&dyn NormalConstraints>),
+    rules: &TriangleRules,
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
-) -> Result<(), Unsupported> {
+) -> Result<Option<Met>, Unsupported> {
     let link_is_first = pair.link_is_first;
     let to_link = |p| if link_is_first { pos12 * p } else { pos12.inverse_transform_point(p) };
     let to_triangle = |p| if link_is_first { pos12.inverse_transform_point(p) } else { pos12 * p };
@@ -46,28 +103,33 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let before = std::mem::take(&mut manifold.points);
     let margin = prediction / local.unit;
-    // An overlap is found first, then measured.
-    let found = local.contact_within(margin.max(0.0)).filter(|found| found.distance <= margin);
-    let Some(found) = found else { return Ok(()) };
+    // An overlap is found first, then measured. Coordinates of the local problem are at most 1.
+    let found = local.contact_within(margin.max(0.0) + BEYOND);
+    let Some(mut found) = found.filter(|found| found.distance <= margin + BEYOND) else { return Ok(None) };
+    found.distance = found.distance.min(margin);
     let rotation = pos12.rotation;
-    let (mut n1, mut n2) = if link_is_first {
-        (found.normal, rotation.inverse() * -found.normal)
-    } else {
-        (rotation * -found.normal, found.normal)
+    let in_order = |normal: Vector| {
+        if link_is_first { (normal, rotation.inverse() * -normal) } else { (rotation * -normal, normal) }
     };
-    if !constraints.project_local_normals(pos12, &mut n1, &mut n2) {
-        return Ok(());
+    let own = in_order(found.normal);
+    let mut constrained = constrained(pos12, rules.constraints, own);
+    let of_link = |(n1, n2): (Vector, Vector)| {
+        let normal = if link_is_first { n1 } else { n2 };
+        // A rotation that is not quite of unit length is not to be taken for a turn.
+        unit(normal).unwrap_or(normal)
+    };
+    let has_turned = |normals| (of_link(normals) - found.normal).length() > TURNED;
+    if (constrained.is_from_behind || has_turned(constrained.normals))
+        && edges_at(local.triangle, found.on_other).any(rules.is_free)
+    {
+        constrained = Constrained { normals: own, is_from_behind: false };
     }
-    let normal = if link_is_first { n1 } else { n2 };
-    // A rotation that is not quite of unit length is not to be taken for a turn.
-    let normal = unit(normal).unwrap_or(normal);
-    let is_turned = (normal - found.normal).length() > TURNED;
+    let Constrained { normals, is_from_behind } = constrained;
+    let is_turned = has_turned(normals);
+    let normal = if is_turned { of_link(normals) } else { found.normal };
 
-    // Coordinates of the local problem are at most 1.
-    let mut meeting =
-        Meeting::new(&local.link, local.triangle, if is_turned { normal } else { found.normal }, 1.0);
+    let mut meeting = Meeting::new(&local.link, local.triangle, normal, 1.0);
     rim::collect(&mut meeting);
-    let normal = meeting.normal;
     footing::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));
     crest::collect(&mut meeting);
     if !is_turned {
@@ -75,19 +137,60 @@ pub(super) fn update<M, C: Default + Copy>(
     }
     let deepest = if is_turned { DEEPER * found.distance.min(0.0) } else { Real::NEG_INFINITY };
     let deepest = deepest - feature::SAME_POINT * meeting.size;
+    let place = |point: Vector| local.origin + point * local.unit;
     for point in meeting.points.iter().filter(|point| point.dist >= deepest) {
-        let on_link = local.origin + point.on_link * local.unit;
-        let on_triangle = local.origin + (point.on_link + meeting.normal * point.dist) * local.unit;
         manifold.points.push(TrackedContact::flipped(
-            on_link,
-            to_triangle(on_triangle),
+            place(point.on_link),
+            to_triangle(place(point.on_link + meeting.normal * point.dist)),
             point.of_link,
             point.of_triangle,
             point.dist * local.unit,
             !link_is_first,
         ));
     }
-    (manifold.local_n1, manifold.local_n2) = (n1, n2);
+    let dist = found.distance * local.unit;
+    if is_turned {
+        manifold.points.push(TrackedContact::flipped(
+            place(found.on_link),
+            to_triangle(place(found.on_other)),
+            PackedFeatureId::UNKNOWN,
+            PackedFeatureId::UNKNOWN,
+            dist,
+            !link_is_first,
+        ));
+    }
+    (manifold.local_n1, manifold.local_n2) = normals;
     manifold.match_contacts(&before);
-    Ok(())
+    Ok(Some(Met { dist, is_from_behind, is_turned }))
+}
+
+/// What constraints make of a normal.
+struct Constrained {
+    /// Out of the first shape and out of the second, each in its frame.
+    normals: (Vector, Vector),
+    is_from_behind: bool,
+}
+
+fn constrained(
+    pos12: &Pose,
+    constraints: (Option<&dyn NormalConstraints>, Option<&dyn NormalConstraints>),
+    normals: (Vector, Vector),
+) -> Constrained {
+    let project = |(mut n1, mut n2): (Vector, Vector)| {
+        constraints.project_local_normals(pos12, &mut n1, &mut n2).then_some((n1, n2))
+    };
+    if let Some(normals) = project(normals) {
+        return Constrained { normals, is_from_behind: false };
+    }
+    let mirrored = project((-normals.0, -normals.1)).map(|(n1, n2)| (-n1, -n2));
+    Constrained { normals: mirrored.unwrap_or(normals), is_from_behind: true }
+}
+
+/// The edges that a point of a triangle is on, to rounding, for coordinates up to 1.
+fn edges_at(triangle: [Vector; 3], point: Vector) -> impl Iterator<Item = usize> {
+    let is_on = move |edge: &usize| {
+        let ends = [triangle[*edge], triangle[(edge + 1) % 3]].map(Vec3::from);
+        segment_segment(ends, [Vec3::from(point); 2]).distance <= ROUNDING
+    };
+    (0..3).filter(is_on)
 }

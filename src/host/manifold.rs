@@ -1,8 +1,9 @@
 //! Contact manifolds: which pairs of parts meet, and who answers for each.
 //!
-//! A robot and a mesh are taken apart [here](super::robot_mesh_manifold). Other pairs are taken apart as everywhere in
-//! this folder, by parry's routines for the shapes that it knows, because they keep the manifolds of a pair from
-//! one step to the next. What is left is
+//! A robot and a mesh or a height field are taken apart [here](super::robot_surface_manifold).
+//! Other pairs are taken apart as everywhere in this folder, by parry's routines for the shapes
+//! that it knows, because they keep the manifolds of a pair from one step to the next. What is left
+//! is
 //! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
 //! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
 //! - two links, or a link and a ball, a capsule or a cylinder, answered [here](super::link_link_manifold), exactly;
@@ -13,8 +14,10 @@
 //!   shapes have changed.
 
 use super::dispatcher::ContinuumDispatcher;
+use super::iterated::IteratedPair;
 use super::joint::WhichShape;
 use super::link_triangle::LinkTrianglePair;
+use super::link_triangle_manifold::TriangleRules;
 use super::parts::{check_scale, has_parts};
 use super::range::{check_margin, check_pose};
 use super::robot_surface::links_of;
@@ -22,7 +25,7 @@ use super::thin::Thin;
 use super::watched::Watched;
 use super::{
     joint, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, range,
-    robot_mesh_manifold,
+    robot_surface_manifold,
 };
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
@@ -57,7 +60,7 @@ where
         let has_boxes = is_robot && (has_parts(g1) || has_parts(g2));
         let rounding = if has_boxes { range::rounding_of_boxes(pos12, g1, g2) } else { 0.0 };
         let loose = prediction.max(0.0) + rounding;
-        if !robot_mesh_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
+        if !robot_surface_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
             self.update_by_parts(pos12, (g1, g2), loose, manifolds, workspace)?;
             if is_robot || prediction < 0.0 {
                 leave_out_beyond(prediction, manifolds);
@@ -65,7 +68,8 @@ where
         }
         for (shape, side) in [(g1, WhichShape::First), (g2, WhichShape::Second)] {
             if let Some(chain) = shape.as_shape::<Chain>() {
-                joint::hide_inner_points(chain.links(), side, prediction, manifolds);
+                let rounding = range::rounding_of_depths(pos12, g1, g2);
+                joint::hide_inner_points(chain.links(), side, (prediction, rounding), manifolds);
             }
         }
         Ok(())
@@ -88,7 +92,13 @@ where
         let constraints = (normal_constraints1, normal_constraints2);
         let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
         if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
-            return link_triangle_manifold::update(pos12, &pair, constraints, prediction, manifold);
+            // Nobody knows what is beside the triangle.
+            let rules = TriangleRules { constraints, is_free: &|_| false };
+            let met = link_triangle_manifold::update(pos12, &pair, &rules, prediction, manifold)?;
+            if let Some(met) = met {
+                met.keep_closest(met.dist, manifold);
+            }
+            return Ok(());
         }
         if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
             return Ok(());
@@ -99,8 +109,9 @@ where
         let is_answered = is_free
             && (link_link_manifold::update(pos12, (g1, g2), within, manifold)?
                 || is_link && {
-                    self.inner(pos12, g1, g2)?;
-                    link_convex_manifold::update(self, pos12, (g1, g2), within, manifold)?
+                    let pair = IteratedPair::of(pos12, g1, g2)?;
+                    let contact = || self.contact_of_iterated(&pair, pair.length(within));
+                    link_convex_manifold::update(&pair, contact, manifold)?
                 });
         if !is_answered {
             let inner = self.inner(pos12, g1, g2)?;

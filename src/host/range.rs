@@ -6,9 +6,9 @@ use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{Shape, TypedShape};
 use std::ops::RangeInclusive;
 
-/// From 2^-200 to 2^50. Beyond, numbers lie so far apart that parry's iterations end on tetrahedra without volume.
-const ITERATED_RANGE: RangeInclusive<Real> =
-    Real::from_bits((1023 - 200) << 52)..=Real::from_bits((1023 + 50) << 52);
+/// The largest coordinate of a pair that is scaled for parry's iterations. Beyond, the power of two
+/// or what it makes of the smaller coordinates is out of the range of f64.
+const ITERATED_RANGE: RangeInclusive<Real> = 1.0 / COORDINATE_LIMIT..=COORDINATE_LIMIT;
 
 /// The least size of a shape beside the largest coordinate that iterations can tell from nothing: 2^-40.
 pub(super) const LEAST_SHARE: Real = Real::from_bits((1023 - 40) << 52);
@@ -47,6 +47,14 @@ pub(super) fn rounding_of_boxes(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) ->
     if largest <= COORDINATE_LIMIT { 16.0 * Real::EPSILON * largest } else { 0.0 }
 }
 
+/// Depths of contacts that differ by no more are equal: 16 u times the largest coordinate. A shape
+/// without bounds, such as a half-space, has no size of its own.
+pub(super) fn rounding_of_depths(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
+    let offset = pos12.translation.abs().max_element();
+    let sizes = [reach(g1), reach(g2), offset].into_iter().filter(|&size| size <= COORDINATE_LIMIT);
+    8.0 * Real::EPSILON * sizes.fold(0.0, Real::max)
+}
+
 /// No coordinate of a shape in its own frame is larger.
 fn reach(shape: &dyn Shape) -> Real {
     if let Some(chain) = shape.as_shape::<Chain>() {
@@ -56,9 +64,9 @@ fn reach(shape: &dyn Shape) -> Real {
     bounds.mins.abs().max(bounds.maxs.abs()).max_element()
 }
 
-/// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN: where squares of squares
-/// of lengths leave the range of f64, where the smaller shape is lost in the rounding of what is large, and where a
-/// number is not finite.
+/// Whether a pair is within the range of parry's iterations. Beyond it they panic or answer NaN:
+/// where the smaller shape is lost in the rounding of what is large, and where a number is not
+/// finite.
 pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool {
     let largest = largest(pos12, g1, g2);
     // Each in its own frame: a turned infinity is NaN, which the extremes of a box leave out.

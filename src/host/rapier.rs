@@ -35,10 +35,12 @@
 //! | `KinematicCharacterController` | it always asks parry's dispatcher | move a kinematic body and ask [`ContinuumDispatcher`] for the way that is free |
 //! | draw in the debug renderer | it draws boxes and contacts, and nothing for a custom shape itself | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
 //!
-//! A query pipeline takes its dispatcher when it is made: `broad_phase.as_query_pipeline(&dispatcher, ..)`, or
-//! `narrow_phase.query_dispatcher()` for the installed one. A kinematic robot and a fixed wall are compared only
-//! if one of their colliders has `ActiveCollisionTypes::KINEMATIC_FIXED`. A robot inside a closed mesh needs
-//! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: the one-sided flag discards every contact from within.
+//! A query pipeline takes its dispatcher when it is made:
+//! `broad_phase.as_query_pipeline(&dispatcher, ..)`, or `narrow_phase.query_dispatcher()` for the
+//! installed one. A kinematic robot and a fixed wall are compared only if one of their colliders
+//! has `ActiveCollisionTypes::KINEMATIC_FIXED`. For a robot inside a closed mesh take
+//! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: under the one-sided flag a contact from within
+//! yields to one from without that is as deep.
 #![cfg_attr(feature = "serde-serialize", doc = "")]
 #![cfg_attr(feature = "serde-serialize", doc = include_str!("../../docs/book/saving.md"))]
 

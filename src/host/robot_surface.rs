@@ -87,7 +87,11 @@ impl<'a> RobotSurface<'a> {
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
         let Some(nearest) = self.nearest(within(prediction)?, Until::Nearest)? else { return Ok(None) };
         let mut best = (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
-        if nearest.distance <= 0.0 {
+        // What is within the prediction is what the distance says.
+        if nearest.distance > 0.0 {
+            best.0.distance = nearest.distance;
+        } else {
+            best.0.distance = best.0.distance.min(0.0);
             // They overlap in more places than the search has to look at; the deepest counts.
             for link in 0..self.links.len() {
                 for triangle in self.triangles_near(link) {

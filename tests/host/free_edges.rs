@@ -1,10 +1,16 @@
-//! Links at the free edge of a thin wall that stands edge-on below them: the near edge counts, not the far one, which lies
-//! over the same point of the link.
+//! Links at the free edges of walls. Of a thin wall that stands edge-on below a link the near edge
+//! counts, not the far one, which lies over the same point of the link. The flags of a mesh or a
+//! height field turn normals and remove no contact.
 
-use crate::draw::CAPS;
+use crate::draw::{CAPS, Draw, scaled};
+use continuum_testing::Random;
+use continuum_testing::placements::Wall;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
-use parry_continuum::parry::shape::{Shape, TriMesh, Triangle};
+use parry_continuum::parry::shape::{
+    HeightField, HeightFieldCellStatus, HeightFieldFlags, Shape, SharedShape, TriMesh, TriMeshFlags, Triangle,
+};
+use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 /// What `contact` says, and the least `dist` of the manifolds.
@@ -81,4 +87,177 @@ fn the_least_distance_at_a_free_edge_does_not_depend_on_a_slight_tilt() {
         }
     }
     assert!(asked > 6000, "{asked}");
+}
+
+/// Every flag that constrains normals, and none.
+const FLAGS: [TriMeshFlags; 4] = [
+    TriMeshFlags::empty(),
+    TriMeshFlags::ORIENTED,
+    TriMeshFlags::FIX_INTERNAL_EDGES,
+    TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED,
+];
+
+/// The contact, and the least of the manifolds, in both orders; asserts that they are the same.
+fn agreed(
+    pose: &Pose,
+    robot: &dyn Shape,
+    wall: &dyn Shape,
+    prediction: Real,
+    slack: Real,
+    context: &str,
+) -> Real {
+    let mut contacts = [0.0; 2];
+    let orders = [(*pose, robot, wall), (pose.inverse(), wall, robot)];
+    for ((pos12, g1, g2), found) in orders.into_iter().zip(&mut contacts) {
+        let [contact, least] = contact_and_manifold(&pos12, g1, g2, prediction);
+        if contact < prediction - slack {
+            assert!((contact - least).abs() <= slack, "{context}: contact {contact:e}, manifold {least:e}");
+        }
+        *found = contact;
+    }
+    contacts[0]
+}
+
+/// Two plates with a slot between them, of either sense, whose triangles have any first corner.
+fn slot(width: Real, sense: bool, first: usize, flags: TriMeshFlags) -> TriMesh {
+    let corners = |x: Real, y: Real| [(x, -4.0), (y, -4.0), (y, 4.0), (x, 4.0)];
+    let vertices = [corners(-4.0, -0.5 * width), corners(0.5 * width, 4.0)].concat();
+    let vertices = vertices.into_iter().map(|(x, z)| Vector::new(x, 0.0, z)).collect();
+    let triangles = [[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6]].map(|triangle: [u32; 3]| {
+        let mut triangle = triangle;
+        triangle.rotate_left(first);
+        if sense { triangle } else { [triangle[1], triangle[0], triangle[2]] }
+    });
+    TriMesh::with_flags(vertices, triangles.to_vec(), flags).unwrap()
+}
+
+/// A rod that lies in a slot is held by the two free edges, under every flag.
+#[test]
+fn a_slot_holds_a_rod_under_every_flag() {
+    let width = 0.2;
+    for caps in CAPS {
+        for unit in [1.0, 1e-3, 1e-6] {
+            let rod = ModifiedCylinder::new(-Vector::Z, Vector::Z, 0.5, caps).unwrap();
+            let rod = scaled(&rod, unit);
+            for flags in FLAGS {
+                for (sense, first) in [(true, 0), (true, 1), (false, 0), (false, 2)] {
+                    let wall = slot_in(unit, width, sense, first, flags);
+                    for y in [0.2, 0.45, 0.485, 0.4898979485566356] {
+                        for x in [0.0, 0.01, -0.03] {
+                            let pose = Pose::from_translation(Vector::new(-x, -y, 0.3) * unit);
+                            let context = format!("{caps:?} {flags:?} {sense} {first} at {x} {y} in {unit}");
+                            let dist = agreed(&pose, &rod, &wall, 0.05 * unit, 1e-14 * unit, &context);
+                            let expected = [-0.1, 0.1].map(|edge: Real| (edge - x).hypot(y) - 0.5);
+                            let expected = expected[0].min(expected[1]) * unit;
+                            assert!((dist - expected).abs() < 1e-14 * unit, "{context}: {dist}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn slot_in(unit: Real, width: Real, sense: bool, first: usize, flags: TriMeshFlags) -> TriMesh {
+    let wall = slot(width, sense, first, TriMeshFlags::empty());
+    let vertices = wall.vertices().iter().map(|&vertex| vertex * unit).collect();
+    TriMesh::with_flags(vertices, wall.indices().to_vec(), flags).unwrap()
+}
+
+/// The same of a height field whose middle row of cells is missing, and of its outer edges.
+#[test]
+fn a_slot_of_a_height_field_holds_a_rod_under_every_flag() {
+    let mut counted = 0;
+    for flags in [HeightFieldFlags::empty(), HeightFieldFlags::FIX_INTERNAL_EDGES] {
+        for zigzag in [false, true] {
+            let heights = Array2::new(6, 6, vec![0.0; 36]);
+            // Cells of 0.2.
+            let mut field = HeightField::with_flags(heights, Vector::new(1.0, 1.0, 1.0), flags);
+            for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+                let mut status = HeightFieldCellStatus::empty();
+                status.set(HeightFieldCellStatus::CELL_REMOVED, j == 2);
+                status.set(HeightFieldCellStatus::ZIGZAG_SUBDIVISION, zigzag);
+                field.set_cell_status(i, j, status);
+            }
+            for caps in CAPS {
+                let rod = ModifiedCylinder::new(-0.3 * Vector::Z, 0.3 * Vector::Z, 0.5, caps).unwrap();
+                // Over the slot from -0.1 to 0.1, and beside the field, which ends at 0.5.
+                for (x, edge) in [(0.01, 0.1), (-0.02, -0.1), (0.6, 0.5), (-0.58, -0.5)] {
+                    for (y, side) in [(0.45, 1.0), (0.48, 1.0), (0.45, -1.0)] {
+                        let pose = Pose::from_translation(Vector::new(-x, -y * side, 0.0));
+                        let context = format!("{caps:?} {flags:?} {zigzag} at {x} {y} {side}");
+                        let dist = agreed(&pose, &rod, &field, 0.05, 1e-14, &context);
+                        let expected = (x - edge as Real).hypot(y) - 0.5;
+                        assert!((dist - expected).abs() < 1e-14, "{context}: {dist} for {expected}");
+                        counted += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(counted == 192, "{counted}");
+}
+
+/// Robots in aligned and in random placements at meshes, each under every flag and of either sense.
+#[test]
+fn a_flag_turns_normals_and_removes_no_contact() {
+    let mut random = Random::new(97);
+    let (mut near, mut turned) = ([0; 4], 0);
+    for round in 0..1500 {
+        let placement = random.placement(if round % 2 == 0 { Wall::BoxMesh } else { Wall::Plate });
+        let mesh = placement.wall.as_trimesh().unwrap();
+        let turn = if round % 3 == 0 { random.direction() * 0.3 } else { Vector::ZERO };
+        let pose = Pose::new(Vector::ZERO, turn) * placement.pose;
+        for (k, flags) in FLAGS.into_iter().enumerate() {
+            for sense in [false, true] {
+                let triangles =
+                    mesh.indices().iter().map(|&[a, b, c]| if sense { [a, b, c] } else { [a, c, b] });
+                let wall = TriMesh::with_flags(mesh.vertices().to_vec(), triangles.collect(), flags).unwrap();
+                let context =
+                    format!("{flags:?} {sense} {:?} {mesh:?} {pose:?}", placement.robot.0.shape_type());
+                let dist = agreed(&pose, &*placement.robot, &wall, 0.05, 1e-11, &context);
+                near[k] += usize::from(dist < 0.05);
+                turned += usize::from(wall.triangle_normal_constraints(0).is_some());
+            }
+        }
+    }
+    assert!(near.iter().all(|&n| n > 1000) && turned > 3000, "{near:?} {turned}");
+}
+
+/// Inside a closed mesh and outside, links are held under every flag; also a chain, and in small
+/// units.
+#[test]
+fn a_vessel_holds_a_robot_from_within_and_from_without() {
+    let mut random = Random::new(98);
+    let (vertices, triangles) = parry_continuum::parry::shape::Ball::new(5.0).to_trimesh(24, 12);
+    let mut held = 0;
+    for unit in [1.0, 1e-6] {
+        for flags in FLAGS {
+            let vertices: Vec<_> = vertices.iter().map(|&vertex| vertex * unit).collect();
+            let vessel = TriMesh::with_flags(vertices, triangles.clone(), flags).unwrap();
+            for _ in 0..20 {
+                let link = random.link();
+                let link = link.transformed(&Pose::from_translation(-link.local_aabb().center()));
+                let reach = link.local_aabb().half_extents().max_element();
+                let robot = SharedShape::new(scaled(&link, 0.5 / reach * unit));
+                let (turn, way) = (random.direction(), random.direction());
+                let at = |t: Real| Pose::new(way * t * unit, turn).inverse();
+                // Somewhat deeper than where it first touches, from within and from without.
+                for (mut free, mut met) in [(2.5, 5.5), (8.0, 4.5)] {
+                    for _ in 0..12 {
+                        let middle = 0.5 * (free + met);
+                        let dispatcher = ContinuumDispatcher::default();
+                        let apart = dispatcher.distance(&at(middle), &*robot, &vessel).unwrap().distance;
+                        *(if apart > 0.0 { &mut free } else { &mut met }) = middle;
+                    }
+                    let pose = at(met + 0.01 * (met - free).signum());
+                    let context =
+                        format!("{flags:?} {unit} {:?} {pose:?}", robot.as_shape::<ModifiedCylinder>());
+                    let dist = agreed(&pose, &*robot, &vessel, 0.05 * unit, 1e-11 * unit, &context);
+                    held += usize::from(dist <= 0.0);
+                }
+            }
+        }
+    }
+    assert!(held > 300, "{held}");
 }

@@ -7,10 +7,12 @@
 use crate::draw::Draw;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
+use parry_continuum::parry::query::{
+    ContactManifold, PersistentQueryDispatcher, QueryDispatcher, TrackedContact,
+};
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 type Manifold = ContactManifold<(), ()>;
 
@@ -182,4 +184,69 @@ fn a_chain_touches_as_deep_as_its_links_one_by_one() {
 #[ignore = "takes minutes"]
 fn a_chain_touches_as_deep_as_its_links_over_a_hundred_thousand_poses() {
     visit(102, 10_000);
+}
+
+/// The points of all manifolds by the parts and the features that they are of.
+fn identities(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> BTreeSet<[u32; 4]> {
+    let (mut manifolds, mut workspace): (Vec<Manifold>, _) = (vec![], None);
+    let dispatcher = ContinuumDispatcher::default();
+    dispatcher.contact_manifolds(pos12, g1, g2, PREDICTION, &mut manifolds, &mut workspace).unwrap();
+    let of_one = |manifold: &Manifold| {
+        let parts = [manifold.subshape1, manifold.subshape2];
+        let names = |point: &TrackedContact<()>| [parts[0], parts[1], point.fid1.0, point.fid2.0];
+        manifold.points.iter().map(names).collect::<Vec<_>>()
+    };
+    manifolds.iter().flat_map(of_one).collect()
+}
+
+/// Chains that lie or stand in a corner, neighbouring links equally deep: while the placement
+/// changes by rounding, the points that hold them stay the same.
+#[test]
+fn equally_deep_neighbours_keep_their_points() {
+    let mut random = Random::new(104);
+    let corner = {
+        let vertices = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)];
+        let floor = vertices.map(|(x, z)| Vector::new(x, 0.0, z));
+        let wall = vertices.map(|(x, y)| Vector::new(x, y, 0.0));
+        let faces = vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+        SharedShape::trimesh([floor, wall].concat(), faces).unwrap()
+    };
+    let plane = SharedShape::halfspace(Vector::Y);
+    let (mut changed, mut held, mut asked) = (0, 0, 0);
+    for round in 0..60 {
+        let radius = 0.3;
+        // A bend in a plane across the corner, so that the joint's ball is the lowest of both
+        // links, and straight chains.
+        let bend = [0.0, 0.4, -0.4, 0.0][round % 4];
+        let points: Vec<_> = (0..5).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect();
+        let radii = [radius; 4];
+        let chain = match round % 3 {
+            0 => Chain::capsules(&points, &radii),
+            1 => Chain::cylinders(&points, &radii),
+            _ => Chain::from_centreline(&points, &radii),
+        };
+        let chain = chain.unwrap();
+        // Along the corner, or with the bends down.
+        let turn = if round % 2 == 0 { Vector::ZERO } else { Vector::X * std::f64::consts::FRAC_PI_2 };
+        let turned = Pose::from_parts(Vector::ZERO, Pose::new(Vector::ZERO, turn).rotation);
+        let low = chain.compute_aabb(&turned).mins;
+        let depth = random.log_between(1e-4, 1e-2);
+        let place = Vector::new(2.0, -low.y - depth, -low.z - depth);
+        let at = |nudge: Vector, spin: Vector| {
+            Pose::from_parts(place + nudge, Pose::new(Vector::ZERO, spin).rotation * turned.rotation)
+        };
+        for wall in [&corner, &plane] {
+            let first = identities(&at(Vector::ZERO, Vector::ZERO), &**wall, &chain);
+            held += first.len();
+            for k in 0..20 {
+                // By rounding, and by what a body at rest trembles.
+                let size = if k % 2 == 0 { 1e-15 } else { 1e-8 };
+                let pose = at(random.vector(size), random.vector(size));
+                asked += 1;
+                changed += usize::from(identities(&pose, &**wall, &chain) != first);
+                changed += usize::from(identities(&pose.inverse(), &chain, &**wall).len() != first.len());
+            }
+        }
+    }
+    assert!(100 * changed <= asked && held > 500, "{changed} of {asked} changed, {held} points");
 }

@@ -5,7 +5,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::mass_properties::MassProperties;
 use parry_continuum::parry::math::{Matrix, Pose, Real, Rotation, Vector};
 use parry_continuum::parry::shape::{Ball, Capsule, Cylinder, Shape};
-use parry_continuum::{Cap, ModifiedCylinder};
+use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::f64::consts::PI;
 
 /// The integral of `f` by Simpson's rule.
@@ -135,5 +135,113 @@ fn no_size_gives_a_nan() {
                 assert!(numbers.iter().all(|x| !x.is_nan()), "{caps:?} {length} {radius}: {p:?}");
             }
         }
+    }
+}
+
+/// Chains whose tensors are of every kind: of a rod along an axis and anywhere, flat (two least
+/// moments equal, or all but), with three different moments, and about as thick as long.
+fn chains(random: &mut Random) -> Vec<(&'static str, Vec<Vector>, Real)> {
+    let (turn, along) = (random.pose(1.0).rotation, random.direction());
+    let plane = |angle: Real| turn * Vector::new(angle.cos(), angle.sin(), 0.0);
+    let ring = |count: usize| (0..=count).map(|k| plane(2.0 * PI * k as Real / count as Real)).collect();
+    let cross = |width: Real| {
+        let ends = [Vector::X, -Vector::X, Vector::ZERO, Vector::Y, -Vector::Y];
+        ends.map(|end| turn * (end * Vector::new(1.0, width, 1.0))).to_vec()
+    };
+    vec![
+        ("along y", vec![-Vector::Y, Vector::Y, 1.5 * Vector::Y], 0.02),
+        ("along x", vec![-Vector::X, Vector::ZERO, Vector::X], 0.02),
+        ("anywhere", vec![-along, along * 0.2, along], 0.05),
+        ("ring", ring(12), 0.1),
+        ("square", ring(4), 0.01),
+        ("cross", cross(1.0), 0.03),
+        ("nearly square", cross(1.0 + 1e-7), 0.03),
+        ("bent", (0..5).map(|_| random.vector(1.0)).collect(), 0.1),
+        ("thick", (0..3).map(|k| along * (0.1 * k as Real)).collect(), 0.5),
+    ]
+}
+
+/// In metres, micrometres and kilometres, near the origin and far from it, and as heavy as one
+/// likes.
+#[test]
+fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
+    let mut random = Random::new(4);
+    for unit in [1.0, 0.1, 1e-3, 1e-6, 1e3] {
+        for (name, points, radius) in chains(&mut random) {
+            for far in [0.0, 10.0] {
+                let shift = random.direction() * far;
+                let points: Vec<_> = points.iter().map(|&point| (point + shift) * unit).collect();
+                let radii = vec![radius * unit; points.len() - 1];
+                let density = random.log_between(1e-3, 1e3) / unit.powi(3);
+                let chain = if random.chance(0.5) {
+                    Chain::capsules(&points, &radii)
+                } else {
+                    Chain::cylinders(&points, &radii)
+                }
+                .unwrap();
+                let of_links: Vec<_> = chain
+                    .links()
+                    .iter()
+                    .map(|link| {
+                        let axis = (link.end() - link.start()) / link.length();
+                        let (mass, centre, axial, transverse) =
+                            by_slices(link.length() / unit, radius, link.caps(), density * unit.powi(3));
+                        let centre = link.start() / unit + axis * centre;
+                        (mass, centre, tensor(axis, axial, transverse))
+                    })
+                    .collect();
+                let mass: Real = of_links.iter().map(|link| link.0).sum();
+                let centre = of_links.iter().map(|link| link.1 * (link.0 / mass)).sum::<Vector>();
+                let mut inertia = Matrix::ZERO;
+                for (mass, at, own) in of_links {
+                    let d = at - centre;
+                    let outer = Matrix::from_cols(d * d.x, d * d.y, d * d.z);
+                    inertia +=
+                        own + (Matrix::from_diagonal(Vector::splat(d.length_squared())) - outer) * mass;
+                }
+                let found = chain.mass_properties(density);
+                let found = MassProperties {
+                    local_com: found.local_com / unit,
+                    inv_principal_inertia: found.inv_principal_inertia * unit * unit,
+                    ..found
+                };
+                println!("{name} {unit}");
+                assert_close(&found, mass, centre, inertia, 1e-11);
+            }
+        }
+    }
+}
+
+/// Multiplied by 2^k, with the mass kept, moments are 4^k times as large and the frame is the same,
+/// bit for bit.
+#[test]
+fn the_unit_of_length_turns_no_axes() {
+    let mut random = Random::new(5);
+    for (name, points, radius) in chains(&mut random) {
+        let at = |k: i32| {
+            let unit = 2.0_f64.powi(k);
+            let points: Vec<_> = points.iter().map(|&point| point * unit).collect();
+            let radii = vec![radius * unit; points.len() - 1];
+            Chain::from_centreline(&points, &radii).unwrap().mass_properties(7.0 * 8.0_f64.powi(-k))
+        };
+        let one = at(0);
+        for k in [-160, -20, -10, -1, 10, 160] {
+            let (other, unit) = (at(k), 2.0_f64.powi(k));
+            assert_eq!(other.inv_mass, one.inv_mass, "{name} {k}");
+            assert_eq!(other.local_com, one.local_com * unit, "{name} {k}");
+            let moments = other.inv_principal_inertia * unit * unit;
+            assert_eq!(moments, one.inv_principal_inertia, "{name} {k}");
+            assert_eq!(other.principal_inertia_local_frame, one.principal_inertia_local_frame, "{name} {k}");
+        }
+    }
+}
+
+#[test]
+fn a_chain_of_one_link_weighs_as_the_link() {
+    let mut random = Random::new(6);
+    for _ in 0..50 {
+        let points = [random.vector(1.0), random.vector(1.0)];
+        let chain = Chain::from_centreline(&points, &[random.between(0.1, 1.0)]).unwrap();
+        assert_eq!(chain.mass_properties(3.0), chain.links()[0].mass_properties(3.0));
     }
 }

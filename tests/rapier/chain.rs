@@ -7,6 +7,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use parry_continuum::{Chain, rapier};
 use rapier3d_f64::prelude::*;
+use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 /// The events of a step.
@@ -133,4 +134,94 @@ fn neighbouring_links_do_not_push_each_other() {
         assert_eq!(active.count(), 0);
     }
     assert!(bodies.iter().all(|&body| world.bodies[body].translation().length() < 1e-9));
+}
+
+/// The points of all contacts by the parts and the features that they are of.
+fn identities(drop: &crate::drop::Drop) -> BTreeSet<[u32; 4]> {
+    let mut found = BTreeSet::new();
+    for pair in drop.world.contact_pairs_with(drop.collider) {
+        for manifold in pair.rigid().iter().flat_map(|contacts| &contacts.manifolds) {
+            let parts = [manifold.subshape1, manifold.subshape2];
+            found
+                .extend(manifold.points.iter().map(|point| [parts[0], parts[1], point.fid1.0, point.fid2.0]));
+        }
+    }
+    found
+}
+
+/// Pushed into a corner where neighbouring links are equally deep, a chain comes to rest on points
+/// that stay the same.
+#[test]
+fn a_chain_in_a_corner_comes_to_rest() {
+    let vertices = [(-9.0, 0.0), (9.0, 0.0), (9.0, 9.0), (-9.0, 9.0)];
+    let floor = vertices.map(|(x, z)| Vector::new(x, 0.0, z));
+    let wall = vertices.map(|(x, y)| Vector::new(x, y, 0.0));
+    let faces = vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+    let zigzag =
+        |bend: Real| (0..6).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect::<Vec<_>>();
+    for (name, points) in [("straight", zigzag(0.0)), ("zigzag", zigzag(0.3)), ("steep", zigzag(-0.8))] {
+        for robot in [Chain::from_centreline(&points, &[0.3; 5]), Chain::capsules(&points, &[0.3; 5])] {
+            let mesh = TriMesh::with_flags([floor, wall].concat(), faces.clone(), flags).unwrap();
+            let mut world = crate::drop::world(1.0);
+            world.gravity = Vector::new(0.0, -7.0, -7.0);
+            let pose = Pose::from_translation(Vector::new(-2.5, 0.301, 1.2));
+            let ground = ColliderBuilder::new(SharedShape::new(mesh));
+            let mut drop = crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
+            for _ in 0..200 {
+                drop.world.step();
+                drop.world.bodies[drop.body].wake_up(true);
+            }
+            let (mut before, mut changes, mut fastest) = (identities(&drop), 0, 0.0_f64);
+            for _ in 0..200 {
+                drop.world.step();
+                drop.world.bodies[drop.body].wake_up(true);
+                let now = identities(&drop);
+                changes += usize::from(now != before);
+                before = now;
+                fastest = fastest.max(drop.world.bodies[drop.body].linvel().length());
+            }
+            println!("{name}: {changes} changes, speed {fastest:e}, {} points", before.len());
+            assert!(
+                changes <= 2 && fastest < 1e-3 && before.len() > 2,
+                "{name}: {changes} changes, speed {fastest}"
+            );
+        }
+    }
+}
+
+/// Over a slot whose edges have no neighbours a rod lies still, under every flag of the mesh.
+#[test]
+fn rods_do_not_fall_through_a_slot() {
+    let plate = |from: Real, to: Real| [(from, -4.0), (to, -4.0), (to, 4.0), (from, 4.0)];
+    let vertices = [plate(-4.0, -0.2), plate(0.2, 4.0)].concat();
+    let vertices: Vec<_> = vertices.into_iter().map(|(x, z)| Vector::new(x, 0.0, z)).collect();
+    for flags in
+        [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED]
+    {
+        for round in [true, false] {
+            for size in [1.0, 1e-3] {
+                let points = [-1.5, -0.5, 0.6, 1.5].map(|z| Vector::Z * z * size);
+                let radii = [0.5 * size; 3];
+                let robot =
+                    if round { Chain::capsules(&points, &radii) } else { Chain::cylinders(&points, &radii) };
+                let vertices = vertices.iter().map(|&vertex| vertex * size).collect();
+                let faces = vec![[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6]];
+                let mesh = TriMesh::with_flags(vertices, faces, flags).unwrap();
+                let pose = Pose::from_translation(Vector::new(0.02, 0.48, 0.1) * size);
+                let ground = ColliderBuilder::new(SharedShape::new(mesh));
+                let world = crate::drop::world(size);
+                let mut drop = crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
+                for _ in 0..500 {
+                    drop.world.step();
+                }
+                let height = drop.pose().translation.y / size;
+                let expected = (0.25_f64 - 0.04).sqrt();
+                let context =
+                    format!("{flags:?} {round} {size}: {height} for {expected}, {}", drop.is_asleep());
+                println!("{context}");
+                assert!((height - expected).abs() < 0.01 && drop.is_asleep(), "{context}");
+            }
+        }
+    }
 }

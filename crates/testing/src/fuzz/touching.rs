@@ -8,7 +8,7 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,
 };
-use parry_continuum::parry::shape::{Shape, TriMeshFlags};
+use parry_continuum::parry::shape::Shape;
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder};
 
 /// What is asked: a wall, a robot, and how exact the answers for them must be. All lengths are about 1.
@@ -21,8 +21,6 @@ struct Pair<'a> {
     overlapping: f64,
     /// Casts end so far off at most.
     early: f64,
-    /// Contacts of manifolds lie along the contact's own normal.
-    is_free: bool,
 }
 
 /// Touching and aligned placements, in both orders.
@@ -39,9 +37,7 @@ pub fn touching(bytes: &[u8]) {
     // What parry's iterations answer is stated in the dispatcher's table, for shapes of size one.
     let (apart, overlapping) = if is_exact { (1e-11, 1e-9) } else { (1e-4, 0.1) };
     let early = if is_exact { 1e-8 } else { 1e-4 };
-    let constraints = TriMeshFlags::FIX_INTERNAL_EDGES;
-    let is_free = wall.as_trimesh().is_none_or(|mesh| !mesh.flags().contains(constraints));
-    let pair = |g1, g2| Pair { g1, g2, apart, overlapping, early, is_free };
+    let pair = |g1, g2| Pair { g1, g2, apart, overlapping, early };
     let there = pair(&*robot, &*wall).ask(&mut source, &pose);
     let back = pair(&*wall, &*robot).ask(&mut source, &pose.inverse());
     // A pose and its inverse are not the same to the last digit.
@@ -126,10 +122,10 @@ impl Pair<'_> {
         let check = |pose: &Pose, least: Option<f64>, whole: f64| {
             let problem = || self.problem(pose);
             assert!(least.is_none_or(|least| least.is_finite()), "a contact of {least:?}{}", problem());
-            if self.is_free && whole < prediction - self.slack(whole) {
+            if whole < prediction - self.slack(whole) {
                 assert!(least.is_some(), "no contact within {prediction}, but {whole}{}", problem());
             }
-            if let Some(least) = least.filter(|_| self.is_free) {
+            if let Some(least) = least {
                 let off = (least - whole).abs();
                 assert!(off <= self.slack(whole), "{least} in the manifold, {whole}{}", problem());
                 assert!(least <= prediction + self.slack(whole), "{least} beyond {prediction}{}", problem());

@@ -1,0 +1,118 @@
+//! A pair that parry's iterations answer, in the unit that suits them.
+//!
+//! GJK and EPA stop at absolute tolerances: a squared length, area or height of 2e-15. In metres
+//! these are a large share of a thin link. So the pair is scaled by the power of two that brings
+//! its largest coordinate to [`SIZE`], and the answers are scaled back. Powers of two round
+//! nothing, so a pair that is 2^k times as large has answers 2^k times as large, bit for bit.
+
+use super::range::{self, largest};
+use super::robot_surface::links_of;
+use crate::distance::Scalar;
+use crate::robot::ModifiedCylinder;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
+use parry3d_f64::shape::{Cone, Cylinder, RoundShape, Shape, TypedShape};
+
+/// Where the largest coordinate of a pair is brought: from here to twice as much. (Measured with
+/// `tests/host/parrys.rs`: at 1 errors are up to 2e-4 of a link's radius, from 64 to 2^24 up to
+/// 2e-6.)
+const SIZE: Real = 4096.0;
+
+/// Two shapes of which the inner dispatcher is asked.
+pub(super) struct IteratedPair<'a> {
+    /// In the pair's unit.
+    pub pos12: Pose,
+    shapes: [&'a dyn Shape; 2],
+    images: Option<[Box<dyn Shape>; 2]>,
+    /// What 1 is in the shapes' unit: a power of two.
+    pub unit: Real,
+}
+
+impl<'a> IteratedPair<'a> {
+    /// The pair. Only a pair with a link is scaled, and only if its other shape has an image: each
+    /// of parry's has one.
+    ///
+    /// # Errors
+    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or
+    /// answer NaN.
+    pub fn of(pos12: &Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
+        let as_it_is = Self { pos12: *pos12, shapes: [g1, g2], images: None, unit: 1.0 };
+        if links_of(g1).or(links_of(g2)).is_none() {
+            return Ok(as_it_is);
+        }
+        if !range::is_iterated(pos12, g1, g2) {
+            return Err(Unsupported);
+        }
+        let scale = SIZE * largest(pos12, g1, g2).power_of_two_to_unity();
+        let (Some(first), Some(second)) = (image(g1, scale), image(g2, scale)) else { return Ok(as_it_is) };
+        let pos12 = Pose::from_parts(pos12.translation * scale, pos12.rotation);
+        Ok(Self { pos12, images: Some([first, second]), unit: 1.0 / scale, ..as_it_is })
+    }
+
+    pub fn shapes(&self) -> [&dyn Shape; 2] {
+        match &self.images {
+            Some([first, second]) => [&**first, &**second],
+            None => self.shapes,
+        }
+    }
+
+    /// A length in the pair's unit.
+    pub fn length(&self, length: Real) -> Real {
+        (length / self.unit).clamp(-Real::MAX, Real::MAX)
+    }
+
+    /// A contact in the shapes' unit.
+    pub fn restore(&self, contact: Contact) -> Contact {
+        Contact {
+            point1: contact.point1 * self.unit,
+            point2: contact.point2 * self.unit,
+            dist: contact.dist * self.unit,
+            ..contact
+        }
+    }
+
+    /// Closest points in the shapes' unit.
+    pub fn restore_points(&self, points: ClosestPoints) -> ClosestPoints {
+        match points {
+            ClosestPoints::WithinMargin(point1, point2) => {
+                ClosestPoints::WithinMargin(point1 * self.unit, point2 * self.unit)
+            }
+            other => other,
+        }
+    }
+}
+
+/// The scaled shape. (parry's `scale_dyn` leaves the border of a round shape as it is.)
+fn image(shape: &dyn Shape, scale: Real) -> Option<Box<dyn Shape>> {
+    if let Some(link) = shape.as_shape::<ModifiedCylinder>() {
+        let (start, end) = (link.start() * scale, link.end() * scale);
+        return Some(Box::new(ModifiedCylinder::unchecked(start, end, link.radius() * scale, link.caps())));
+    }
+    let all = Vector::splat(scale);
+    Some(match shape.as_typed_shape() {
+        TypedShape::RoundCuboid(round) => rounded(round.inner_shape.scaled(all), round.border_radius * scale),
+        TypedShape::RoundTriangle(round) => {
+            rounded(round.inner_shape.scaled(all), round.border_radius * scale)
+        }
+        TypedShape::RoundCylinder(round) => {
+            let inner =
+                Cylinder::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
+            rounded(inner, round.border_radius * scale)
+        }
+        TypedShape::RoundCone(round) => {
+            let inner = Cone::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
+            rounded(inner, round.border_radius * scale)
+        }
+        TypedShape::RoundConvexPolyhedron(round) => {
+            rounded(round.inner_shape.clone().scaled(all)?, round.border_radius * scale)
+        }
+        _ => return shape.scale_dyn(all, 0),
+    })
+}
+
+fn rounded<S>(inner_shape: S, border_radius: Real) -> Box<dyn Shape>
+where
+    RoundShape<S>: Shape,
+{
+    Box::new(RoundShape { inner_shape, border_radius })
+}
