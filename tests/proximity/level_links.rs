@@ -58,7 +58,8 @@ fn tubes_and_motions_at_rest_touch() {
             let decision = tubes.tubes_clear(&a, &here, &b, &here, 0.0, resolution).unwrap();
             assert_eq!(decision, Decision::Contact, "{resolution}: {pair:?}");
             let found = tubes.clearance(&a, &here, &b, &here, resolution).unwrap();
-            assert_eq!([found.lower, found.upper], [0.0; 2], "{resolution}: {pair:?}");
+            assert_eq!(found.lower, 0.0, "{resolution}: {pair:?}");
+            assert!(found.upper <= resolution, "{resolution}: {pair:?}");
             let [one, two] = [&a, &b].map(|tube| RigidMotion::new(tube.clone(), [here; 2]).unwrap());
             let answer = tubes.clears_motion(&one, &two, 0.0, resolution).unwrap();
             assert_eq!(answer.decision, Decision::Contact, "{resolution}: {pair:?}");

@@ -135,11 +135,11 @@ fn losing(count: usize, seed: u64) {
         let Ok(motion) = LinearMotion::chain(&from, &to, &radii) else { continue };
         let mut search = point(place(random.point() * 3.0, Vector::ZERO));
         let distances: Vec<_> = (0..=STEPS)
-            .filter_map(|step| {
+            .map(|step| {
                 let t = Real::from(step) / Real::from(STEPS);
                 let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
                 let pose = motion.shape(t, &mut tube).unwrap();
-                Some(search.clearance(&tube, &pose, 1e-9 * unit).unwrap().upper)
+                search.clearance(&tube, &pose, 1e-9 * unit).unwrap().upper
             })
             .collect();
         let least = distances.iter().copied().fold(Real::INFINITY, Real::min);

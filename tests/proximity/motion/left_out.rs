@@ -193,11 +193,14 @@ impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
     }
 }
 
+/// The share whose speed is stated for a range.
+type Stated = fn([Real; 2]) -> Real;
+
 /// What is stated of a range must hold for all of it: a bound that looks at one of its ends, at its
 /// middle or at its length is too low for a place alone, or for the whole section, or for neither.
 #[test]
 fn a_bound_for_a_part_of_a_range_is_missed() {
-    let understated: [(&str, fn([Real; 2]) -> Real); 6] = [
+    let understated: [(&str, Stated); 6] = [
         ("the nearer end", |shares| shares[0]),
         ("the middle", |shares| 0.5 * (shares[0] + shares[1])),
         ("the length", |shares| shares[1] - shares[0]),
