@@ -205,7 +205,6 @@ fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
                     inv_principal_inertia: found.inv_principal_inertia * unit * unit,
                     ..found
                 };
-                println!("{name} {unit}");
                 assert_close(&found, mass, centre, inertia, 1e-11);
             }
         }
