@@ -187,7 +187,7 @@ fn a_slot_of_a_height_field_holds_a_rod_under_every_flag() {
                         let pose = Pose::from_translation(Vector::new(-x, -y * side, 0.0));
                         let context = format!("{caps:?} {flags:?} {zigzag} at {x} {y} {side}");
                         let dist = agreed(&pose, &rod, &field, 0.05, 1e-14, &context);
-                        let expected = (x - edge as Real).hypot(y) - 0.5;
+                        let expected = Real::hypot(x - edge, y) - 0.5;
                         assert!((dist - expected).abs() < 1e-14, "{context}: {dist} for {expected}");
                         counted += 1;
                     }

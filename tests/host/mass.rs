@@ -167,7 +167,7 @@ fn chains(random: &mut Random) -> Vec<(&'static str, Vec<Vector>, Real)> {
 fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
     let mut random = Random::new(4);
     for unit in [1.0, 0.1, 1e-3, 1e-6, 1e3] {
-        for (name, points, radius) in chains(&mut random) {
+        for (_, points, radius) in chains(&mut random) {
             for far in [0.0, 10.0] {
                 let shift = random.direction() * far;
                 let points: Vec<_> = points.iter().map(|&point| (point + shift) * unit).collect();
@@ -205,7 +205,6 @@ fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
                     inv_principal_inertia: found.inv_principal_inertia * unit * unit,
                     ..found
                 };
-                println!("{name} {unit}");
                 assert_close(&found, mass, centre, inertia, 1e-11);
             }
         }

@@ -181,7 +181,6 @@ fn a_chain_in_a_corner_comes_to_rest() {
                 before = now;
                 fastest = fastest.max(drop.world.bodies[drop.body].linvel().length());
             }
-            println!("{name}: {changes} changes, speed {fastest:e}, {} points", before.len());
             assert!(
                 changes <= 2 && fastest < 1e-3 && before.len() > 2,
                 "{name}: {changes} changes, speed {fastest}"
@@ -219,7 +218,6 @@ fn rods_do_not_fall_through_a_slot() {
                 let expected = (0.25_f64 - 0.04).sqrt();
                 let context =
                     format!("{flags:?} {round} {size}: {height} for {expected}, {}", drop.is_asleep());
-                println!("{context}");
                 assert!((height - expected).abs() < 0.01 && drop.is_asleep(), "{context}");
             }
         }
