@@ -581,6 +581,11 @@ impl Divided for OwnTube<'_> {
         *pair
     }
 
+    fn place(&self, pair: &OwnPair) -> [u32; 4] {
+        let [one, two] = pair.pieces;
+        [one.section, one.from, two.section, two.from]
+    }
+
     fn check_finite(&self, pair: &OwnPair, _: &OwnPair) -> Result<(), ProximityError> {
         let mut of_each = pair.pieces.iter().zip(&pair.outers);
         of_each.try_for_each(|(piece, outer)| self.tube().check_finite(piece, outer))

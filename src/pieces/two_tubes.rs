@@ -74,6 +74,10 @@ impl Bound for FoundBetween {
     fn triangle(&self) -> Option<u32> {
         None
     }
+
+    fn tie(&self) -> [u32; 2] {
+        self.sections
+    }
 }
 
 impl Part<TwoTubes<'_>> for PiecePair {
@@ -239,6 +243,11 @@ impl Divided for TwoTubes<'_> {
 
     fn body(&self, pair: &PiecePair) -> [Outer; 2] {
         pair.outers
+    }
+
+    fn place(&self, pair: &PiecePair) -> [u32; 4] {
+        let [one, two] = pair.pieces;
+        [one.section, one.from, two.section, two.from]
     }
 
     fn check_finite(&self, pair: &PiecePair, bodies: &[Outer; 2]) -> Result<(), ProximityError> {

@@ -2,7 +2,7 @@
 
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
-use crate::pieces::{PlacedTube, TubeInMesh};
+use crate::pieces::{PendingPiece, PlacedTube, TubeInMesh};
 use crate::query::clearance::{TubeMemory, clearance, tube_clears};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::Tube;
@@ -165,7 +165,7 @@ impl BvhSearch {
 impl<'a> Context<'a> {
     fn clearance(self, tube: &'a Tube, pose: &Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
-        clearance(&mut tube, memory, tolerance, |_, _, _| ())
+        clearance(&mut tube, memory, tolerance)
     }
 
     fn clearance_pieces(
@@ -177,13 +177,11 @@ impl<'a> Context<'a> {
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let placed = tube.tube;
-        let answer = clearance(&mut tube, memory, tolerance, |piece, outer, lower| {
-            out.push(placed.report(piece, outer, lower));
-        })?;
-        while let Some(piece) = memory.pieces.pop() {
-            let outer = placed.outer(&piece);
-            placed.check_finite(&piece, &outer)?;
-            out.push(placed.report(&piece, &outer, 0.0));
+        let answer = clearance(&mut tube, memory, tolerance)?;
+        for PendingPiece { piece, lower, .. } in memory.pieces.all() {
+            let outer = placed.outer(piece);
+            placed.check_finite(piece, &outer)?;
+            out.push(placed.report(piece, &outer, *lower));
         }
         out.sort_unstable_by(|a, b| {
             let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
