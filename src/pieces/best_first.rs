@@ -8,7 +8,7 @@
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of its parent. A **distant**
 //!   piece is one within whose `lower` nothing was found: its distance is larger.
 //! - The **rank** of a measured piece: (`lower` + `doubt`, upper bound of `found`, place along the tube). The others rank
-//!   by their `lower`: open pieces before measured ones with the same bound, distant ones after them.
+//!   by their `lower`: open pieces as if their upper bound was 0, distant ones after all others with the same `lower`.
 //!
 //! # Claim
 //! Let a query only ever divide the measured piece of least rank, and only if it is the first of all pieces. Then the
@@ -36,21 +36,21 @@ pub(crate) const MOST_LEVELS: u8 = 2;
 
 /// How a piece has been examined.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum PieceState<F> {
+pub(crate) enum PieceState<B, F> {
     /// Not at all.
     Open,
     /// Nothing is as near as its `lower`.
     Distant,
-    /// It is measured, and this was found from it.
-    Measured(F),
+    /// It is measured: its body, and what was found from it.
+    Measured(B, F),
 }
 
 /// A piece and what is known of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PendingPiece<P, F> {
+pub(crate) struct PendingPiece<P, B, F> {
     pub piece: P,
     pub lower: Real,
-    pub state: PieceState<F>,
+    pub state: PieceState<B, F>,
     /// If its body is wider than this, it is divided before it is measured.
     pub narrow: Real,
     /// How often that may still be.
@@ -62,7 +62,7 @@ pub(crate) struct PendingPiece<P, F> {
 struct Rank {
     /// Its lower bound, the doubt of a measured piece included.
     least: Real,
-    /// Minus infinity if the piece is open, infinity if it is distant.
+    /// Infinity if the piece is distant, 0 if it is open: no bound is less.
     upper: Real,
     is_measured: bool,
     place: [u32; 4],
@@ -112,23 +112,23 @@ pub(crate) enum Examined<F> {
 
 /// The pieces of a query that are not divided, in memory that is used again.
 #[derive(Clone, Debug)]
-pub(crate) struct PendingPieces<P, F> {
-    pieces: Vec<PendingPiece<P, F>>,
+pub(crate) struct PendingPieces<P, B, F> {
+    pieces: Vec<PendingPiece<P, B, F>>,
     /// Places in `pieces` that are free.
     free: Vec<u32>,
     queue: BinaryHeap<Rank>,
     /// Measured pieces that cannot be divided.
-    whole: Vec<PendingPiece<P, F>>,
+    whole: Vec<PendingPiece<P, B, F>>,
 }
 
-impl<P, F> Default for PendingPieces<P, F> {
+impl<P, B, F> Default for PendingPieces<P, B, F> {
     fn default() -> Self {
         let (pieces, free, whole) = (Vec::new(), Vec::new(), Vec::new());
         Self { pieces, free, queue: BinaryHeap::new(), whole }
     }
 }
 
-impl<P: Copy, F: Bound> PendingPieces<P, F> {
+impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
     pub(crate) fn clear(&mut self) {
         self.pieces.clear();
         self.free.clear();
@@ -136,15 +136,15 @@ impl<P: Copy, F: Bound> PendingPieces<P, F> {
         self.whole.clear();
     }
 
-    pub(crate) fn push<T>(&mut self, tube: &T, piece: PendingPiece<P, F>)
+    pub(crate) fn push<T>(&mut self, tube: &T, piece: PendingPiece<P, B, F>)
     where
-        T: Divided<Piece = P, Found = F>,
+        T: Divided<Piece = P, Body = B, Found = F>,
     {
         let slot = self.free.pop().unwrap_or(self.pieces.len() as u32);
         let (doubt, upper, is_measured) = match &piece.state {
-            PieceState::Open => (0.0, Real::NEG_INFINITY, false),
+            PieceState::Open => (0.0, 0.0, false),
             PieceState::Distant => (0.0, Real::INFINITY, false),
-            PieceState::Measured(found) => (tube.doubt(&piece.piece), found.upper(), true),
+            PieceState::Measured(_, found) => (tube.doubt(&piece.piece), found.upper(), true),
         };
         let place = tube.place(&piece.piece);
         self.queue.push(Rank { least: piece.lower + doubt, upper, is_measured, place, slot });
@@ -155,7 +155,7 @@ impl<P: Copy, F: Bound> PendingPieces<P, F> {
     }
 
     /// Keeps a measured piece that cannot be divided.
-    pub(crate) fn push_whole(&mut self, piece: PendingPiece<P, F>) {
+    pub(crate) fn push_whole(&mut self, piece: PendingPiece<P, B, F>) {
         self.whole.push(piece);
     }
 
@@ -165,14 +165,14 @@ impl<P: Copy, F: Bound> PendingPieces<P, F> {
     }
 
     /// Takes the first piece.
-    pub(crate) fn pop(&mut self) -> Option<PendingPiece<P, F>> {
+    pub(crate) fn pop(&mut self) -> Option<PendingPiece<P, B, F>> {
         let rank = self.queue.pop()?;
         self.free.push(rank.slot);
         Some(self.pieces[rank.slot as usize])
     }
 
     /// All pieces: together they are the whole tube, but for those that the query dropped.
-    pub(crate) fn all(&self) -> impl Iterator<Item = &PendingPiece<P, F>> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = &PendingPiece<P, B, F>> {
         let queued = self.queue.iter().map(|rank| &self.pieces[rank.slot as usize]);
         queued.chain(&self.whole)
     }
@@ -185,13 +185,13 @@ impl<P: Copy, F: Bound> PendingPieces<P, F> {
     pub(crate) fn examine<T>(
         &mut self,
         tube: &mut T,
-        open: &PendingPiece<P, F>,
+        open: &PendingPiece<P, B, F>,
         bound: Real,
         start: Option<u32>,
-        width: impl Fn(&T::Body) -> Real,
+        width: impl Fn(&B) -> Real,
     ) -> Result<Examined<F>, ProximityError>
     where
-        T: Divided<Piece = P, Found = F>,
+        T: Divided<Piece = P, Body = B, Found = F>,
     {
         let body = tube.body(&open.piece);
         tube.check_finite(&open.piece, &body)?;
@@ -210,31 +210,26 @@ impl<P: Copy, F: Bound> PendingPieces<P, F> {
         let Some(nearest) = tube.nearest(&body, bound, start) else { return Ok(Examined::Away) };
         let found = tube.found(&open.piece, &body, &nearest);
         let lower = open.lower.max(T::distance(&nearest));
-        self.push(tube, PendingPiece { lower, state: PieceState::Measured(found), ..*open });
+        self.push(tube, PendingPiece { lower, state: PieceState::Measured(body, found), ..*open });
         Ok(Examined::Measured(found))
     }
 
     /// Divides a measured piece that was taken, and pushes its halves, which are open. False if it has none. A body of a
     /// half that is wider than `narrow` is divided before it is measured.
-    pub(crate) fn divide<T>(&mut self, tube: &T, piece: &PendingPiece<P, F>, narrow: Real) -> bool
+    pub(crate) fn divide<T>(
+        &mut self,
+        tube: &T,
+        piece: &PendingPiece<P, B, F>,
+        body: &B,
+        narrow: Real,
+    ) -> bool
     where
-        T: Divided<Piece = P, Found = F>,
+        T: Divided<Piece = P, Body = B, Found = F>,
     {
-        let body = tube.body(&piece.piece);
-        let Some(halves) = tube.halves(&piece.piece, &body, AIM_OF_HALVES * body.over()) else {
-            return false;
-        };
+        let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.over()) else { return false };
         for half in halves {
-            self.push(
-                tube,
-                PendingPiece {
-                    piece: half,
-                    lower: piece.lower,
-                    state: PieceState::Open,
-                    narrow,
-                    levels: MOST_LEVELS,
-                },
-            );
+            let (lower, state) = (piece.lower, PieceState::Open);
+            self.push(tube, PendingPiece { piece: half, lower, state, narrow, levels: MOST_LEVELS });
         }
         true
     }

@@ -85,12 +85,9 @@ pub(crate) trait Divided {
 }
 
 /// What holds a piece, seen as what it holds too much.
-pub(crate) trait Body {
+pub(crate) trait Body: Copy {
     /// By how much, about, it is larger than the piece.
     fn over(&self) -> Real;
-
-    /// By how much it is wider, apart from how far it reaches ahead of its flat ends.
-    fn aside(&self) -> Real;
 }
 
 /// An upper bound on a clearance.

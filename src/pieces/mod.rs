@@ -1,4 +1,4 @@
-//! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
+//! A tube in pieces: convex bodies around them, points that are in them, and the two loops that divide them.
 
 mod best_first;
 mod divided;

@@ -111,10 +111,6 @@ impl Body for OwnPair {
     fn over(&self) -> Real {
         self.outers.over()
     }
-
-    fn aside(&self) -> Real {
-        self.outers.aside()
-    }
 }
 
 impl Part<OwnTube<'_>> for OwnPair {
@@ -234,7 +230,7 @@ impl<'a> OwnTube<'a> {
                     let tick = if end == 0 { section.first } else { section.last };
                     let piece = Piece { section: number as u32, from: tick, to: tick };
                     let body = self.body_of_face(&piece, end);
-                    bodies.push((piece, Outer { body, over: 0.0, aside: 0.0, narrows: 0.0 }, Some(end)));
+                    bodies.push((piece, Outer { body, over: 0.0, narrows: 0.0 }, Some(end)));
                 }
             }
         }

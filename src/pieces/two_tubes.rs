@@ -43,10 +43,6 @@ impl Body for [Outer; 2] {
     fn over(&self) -> Real {
         self[0].over + self[1].over
     }
-
-    fn aside(&self) -> Real {
-        self[0].aside + self[1].aside
-    }
 }
 
 /// An upper bound on how far two tubes are apart, and what realises it.

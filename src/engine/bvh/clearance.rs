@@ -19,6 +19,8 @@ impl BvhSearch {
     /// be too coarse for that, rounding may hide it, and a query ends after 65,536 pieces. What the tube states as its own
     /// error is in both bounds, and no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
     ///
+    /// The answer is the same to the last bit, whatever was asked before. A finer tolerance never gives looser bounds.
+    ///
     /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
     ///
     /// # Errors
@@ -39,7 +41,8 @@ impl BvhSearch {
     ///
     /// Together the pieces are the whole tube, without gap or overlap: few and long far from the wall, short near it. The
     /// least of their `lower` is that of the answer, unless it is the answer's `upper`. Once a common point with the mesh
-    /// is found, pieces stay as they are, and their `lower` is 0. `out` is cleared first.
+    /// is found, pieces stay as they are. The `lower` of pieces that are farther away depends on earlier queries. `out`
+    /// is cleared first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -92,7 +95,8 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, or as [`clearance`](Self::clearance).
+    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
+    /// [`clearance`](Self::clearance). A contact that is found is the answer, whatever samples allow elsewhere.
     pub fn tube_clears(
         &mut self,
         tube: &Tube,

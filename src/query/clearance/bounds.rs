@@ -1,7 +1,7 @@
 //! The clearance of a tube, between bounds: best first.
 //!
 //! # Algorithm
-//! 1. Measure the pieces to begin with.
+//! 1. Begin with pieces that turn by 1 rad at most, and measure them.
 //! 2. Take the measured piece of least rank (`pieces::best_first`). What was found from it improves the upper bound.
 //! 3. Stop if its `lower` + `doubt` is not below the upper bound by more than `aim`. Otherwise divide it, and measure its
 //!    halves. Repeat from 2.
@@ -54,7 +54,7 @@ pub(crate) fn clearance(
     memory.pieces.clear();
     let mut bounds = BoundsSearch::new(tube, &mut memory.pieces, hint, tolerance);
     while let Some(piece) = memory.begun.pop() {
-        bounds.begin(piece)?;
+        bounds.begin(piece);
     }
     bounds.run(Real::INFINITY)?;
     let best = bounds.best;
@@ -90,7 +90,7 @@ pub(crate) struct BetweenBounds {
 /// How near the tube is at the least and at the most, as far as its pieces have been looked at.
 pub(crate) struct BoundsSearch<'a, T: Divided> {
     pub tube: &'a mut T,
-    pieces: &'a mut PendingPieces<T::Piece, T::Found>,
+    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
     hint: Hint,
     tolerance: Real,
     /// How far apart the bounds may stay.
@@ -104,7 +104,7 @@ pub(crate) struct BoundsSearch<'a, T: Divided> {
 impl<'a, T: Divided> BoundsSearch<'a, T> {
     pub(crate) fn new(
         tube: &'a mut T,
-        pieces: &'a mut PendingPieces<T::Piece, T::Found>,
+        pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
         hint: Hint,
         tolerance: Real,
     ) -> Self {
@@ -114,12 +114,9 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
     }
 
     /// Adds a piece of the tube.
-    ///
-    /// # Errors
-    /// The curve is not finite there.
-    pub(crate) fn begin(&mut self, piece: T::Piece) -> Result<(), ProximityError> {
+    pub(crate) fn begin(&mut self, piece: T::Piece) {
         let (state, narrow) = (PieceState::Open, Real::INFINITY);
-        self.measure(PendingPiece { piece, lower: 0.0, state, narrow, levels: 0 })
+        self.pieces.push(self.tube, PendingPiece { piece, lower: 0.0, state, narrow, levels: 0 });
     }
 
     fn upper(&self) -> Real {
@@ -143,7 +140,7 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
                 return Ok(false);
             }
             let Some(piece) = self.pieces.pop() else { break };
-            let PieceState::Measured(found) = &piece.state else {
+            let PieceState::Measured(body, found) = &piece.state else {
                 self.measure(piece)?;
                 continue;
             };
@@ -155,11 +152,11 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
                 return Ok(true);
             }
             self.left -= 1;
-            if !self.pieces.divide(self.tube, &piece, Real::INFINITY) {
+            if !self.pieces.divide(self.tube, &piece, body, Real::INFINITY) {
                 self.pieces.push_whole(piece);
             }
         }
-        Ok(true)
+        Ok(limit >= self.upper() - self.aim)
     }
 
     fn improves(&self, found: &T::Found) -> bool {
@@ -170,7 +167,7 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
     }
 
     /// Measures a piece within the hint; or, if it is known to be farther away, within the upper bound.
-    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Found>) -> Result<(), ProximityError> {
+    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Body, T::Found>) -> Result<(), ProximityError> {
         let (hint, upper) = (self.hint.upper, self.upper());
         let is_open = matches!(piece.state, PieceState::Open);
         let bound = if is_open && piece.lower <= hint { hint.min(upper) } else { upper };

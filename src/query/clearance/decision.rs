@@ -57,7 +57,7 @@ pub(crate) struct Wanted {
 /// The curve is not finite, or its samples do not allow a decision at that resolution.
 pub(crate) fn keeps<T: Divided>(
     tube: &mut T,
-    pieces: &mut PendingPieces<T::Piece, T::Found>,
+    pieces: &mut PendingPieces<T::Piece, T::Body, T::Found>,
     begun: impl Iterator<Item = T::Piece>,
     best: Option<T::Found>,
     wanted: Wanted,
@@ -82,7 +82,7 @@ pub(crate) fn keeps<T: Divided>(
 
 struct DecisionSearch<'a, T: Divided> {
     tube: &'a mut T,
-    pieces: &'a mut PendingPieces<T::Piece, T::Found>,
+    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
     wanted: Wanted,
     best: Option<T::Found>,
     /// The least lower bound of a piece that cannot be divided, beside what was stated of it.
@@ -105,7 +105,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
                 break;
             }
             let Some(piece) = self.pieces.pop() else { break };
-            let PieceState::Measured(found) = &piece.state else {
+            let PieceState::Measured(body, found) = &piece.state else {
                 self.examine(&piece)?;
                 continue;
             };
@@ -119,7 +119,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
             }
             self.left -= 1;
             let narrow = 0.5 * self.tube.radius(&piece.piece).max(margin);
-            if !self.pieces.divide(self.tube, &piece, narrow) {
+            if !self.pieces.divide(self.tube, &piece, body, narrow) {
                 self.settle_whole(&piece, found);
             }
         }
@@ -145,7 +145,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
     }
 
     /// What an open piece shows; if it is farther away than the margin, it is dropped.
-    fn examine(&mut self, open: &PendingPiece<T::Piece, T::Found>) -> Result<(), ProximityError> {
+    fn examine(&mut self, open: &PendingPiece<T::Piece, T::Body, T::Found>) -> Result<(), ProximityError> {
         let Wanted { margin, start, .. } = self.wanted;
         let examined = self.pieces.examine(self.tube, open, margin, start, Body::over)?;
         if let Examined::Measured(found) = examined
@@ -156,7 +156,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
         Ok(())
     }
 
-    fn settle_whole(&mut self, piece: &PendingPiece<T::Piece, T::Found>, found: &T::Found) {
+    fn settle_whole(&mut self, piece: &PendingPiece<T::Piece, T::Body, T::Found>, found: &T::Found) {
         if self.tube.is_surely_asked(&piece.piece, found) {
             self.stuck = self.stuck.min(piece.lower + self.tube.stated(&piece.piece));
         } else {

@@ -131,12 +131,12 @@ pub(crate) struct MotionSearch<'a, M> {
 impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
     pub(crate) fn clears(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
-        let mut progress = Progress::default();
+        let (mut progress, mut too_fine) = (Progress::default(), None);
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_front() {
             let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
             if let Some(first) = progress.gives_up(self.shapes, left) {
-                return Ok(MotionAnswer::undecided(first));
+                return too_fine.map_or_else(|| Ok(MotionAnswer::undecided(first)), Err);
             }
             let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             progress.take(interval.times, &seen, self.shapes);
@@ -144,7 +144,11 @@ impl<M: Motion> MotionSearch<'_, M> {
                 // Of the shapes before it nothing is proven yet but what was asked first.
                 return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.middle(), &found)));
             }
+            too_fine = too_fine.or(seen.too_fine);
             self.memory.intervals.extend(interval.halves(still, is_left, &failed).into_iter().flatten());
+        }
+        if let Some(error) = too_fine {
+            return Err(error);
         }
         Ok(progress.undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -154,7 +158,7 @@ impl<M: Motion> MotionSearch<'_, M> {
     /// larger intervals first, and with patience.
     pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
-        let (mut clear_until, mut most) = (1.0, u64::MAX);
+        let (mut clear_until, mut most, mut too_fine) = (1.0, u64::MAX, None);
         self.begin();
         // The last one comes first.
         self.memory.intervals.make_contiguous().reverse();
@@ -183,10 +187,14 @@ impl<M: Motion> MotionSearch<'_, M> {
                 }
                 continue;
             }
+            too_fine = too_fine.or(seen.too_fine);
             let halves = interval.halves(still, is_left, &failed);
             self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
         let Some((t, found)) = contact else {
+            if let Some(error) = too_fine {
+                return Err(error);
+            }
             return Ok(undecided.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
         };
         let clear_until = undecided.map_or(clear_until, |interval| interval[0].min(clear_until));

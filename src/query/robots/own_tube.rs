@@ -12,7 +12,7 @@ pub(crate) struct OwnTubeMemory {
     turns: TubeTurns,
     beginning: OwnBeginning,
     pairs: Vec<OwnPair>,
-    pending: PendingPieces<OwnPair, FoundBetween>,
+    pending: PendingPieces<OwnPair, OwnPair, FoundBetween>,
 }
 
 /// Whether the parts of a tube that can meet keep more than the margin.

@@ -1,7 +1,9 @@
 //! The questions about two tubes: how near they are, between bounds, and whether they keep a margin.
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
-use crate::pieces::{Beginning, FoundBetween, PendingPieces, PiecePair, PlacedTube, TwoTubes};
+use crate::pieces::{
+    Beginning, Divided, FoundBetween, Outer, PendingPieces, PiecePair, PlacedTube, TwoTubes,
+};
 use crate::query::clearance::{BetweenBounds, BoundsSearch, Hint, Wanted, keeps};
 use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
@@ -11,7 +13,7 @@ use parry3d_f64::math::{Pose, Real};
 pub(crate) struct TubesMemory {
     beginning: Beginning,
     pairs: Vec<PiecePair>,
-    pending: PendingPieces<PiecePair, FoundBetween>,
+    pending: PendingPieces<PiecePair, [Outer; 2], FoundBetween>,
     /// The sections and arc lengths where a query ended.
     last: Option<([u32; 2], [Real; 2])>,
 }
@@ -57,22 +59,26 @@ pub(crate) fn clearance_between(
     hint.take(&memory.first_bound(tubes));
     let TubesMemory { beginning, pairs, pending, last } = memory;
     let best = loop {
-        let limit = hint.upper;
+        // So that rounding of the bounds does not ask for more pairs.
+        let limit = hint.upper + 4.0 * tubes.slack();
         tubes.begin(Real::INFINITY, limit, usize::MAX, beginning, pairs)?;
         pending.clear();
         let mut bounds = BoundsSearch::new(tubes, pending, hint, tolerance);
         while let Some(pair) = pairs.pop() {
-            bounds.begin(pair)?;
+            bounds.begin(pair);
         }
-        if bounds.run(limit)? {
-            break bounds.best.map(|best| (best, bounds.answer(best.upper)));
+        if bounds.run(limit)?
+            && let Some(best) = bounds.best
+        {
+            break (best, bounds.answer(best.upper));
+        }
+        if limit == Real::INFINITY {
+            return Err(ProximityError::EmptyTube);
         }
         // Pairs that are farther apart than the hint are needed too.
         hint.upper = Real::INFINITY;
     };
-    let Some((best, BetweenBounds { lower, resolved, uncertainty })) = best else {
-        return Err(ProximityError::EmptyTube);
-    };
+    let (best, BetweenBounds { lower, resolved, uncertainty }) = best;
     let FoundBetween { upper, sections, arcs, points: [on_first, on_second] } = best;
     *last = Some((sections, arcs));
     Ok(RobotClearance {
