@@ -16,6 +16,9 @@ pub(crate) trait Divided {
 
     fn body(&self, piece: &Self::Piece) -> Self::Body;
 
+    /// Where a piece is: an order of pieces that do not overlap.
+    fn place(&self, piece: &Self::Piece) -> [u32; 4];
+
     /// (Apart from [`body`](Self::body), whose answer is large: a `Result` of it would be copied once more for each piece.)
     ///
     /// # Errors
@@ -82,12 +85,9 @@ pub(crate) trait Divided {
 }
 
 /// What holds a piece, seen as what it holds too much.
-pub(crate) trait Body {
+pub(crate) trait Body: Copy {
     /// By how much, about, it is larger than the piece.
     fn over(&self) -> Real;
-
-    /// By how much it is wider, apart from how far it reaches ahead of its flat ends.
-    fn aside(&self) -> Real;
 }
 
 /// An upper bound on a clearance.
@@ -96,4 +96,7 @@ pub(crate) trait Bound: Copy {
 
     /// The triangle that realises it, if one does.
     fn triangle(&self) -> Option<u32>;
+
+    /// Of equal bounds the one with the least of these is the answer: triangle and section, or two sections.
+    fn tie(&self) -> [u32; 2];
 }

@@ -1,5 +1,6 @@
-//! A tube in pieces: convex bodies around them, points that are in them, and the one loop that divides them.
+//! A tube in pieces: convex bodies around them, points that are in them, and the two loops that divide them.
 
+mod best_first;
 mod divided;
 mod nearest_pairs;
 mod on_loose_tube;
@@ -17,6 +18,7 @@ mod tests;
 mod tube_in_mesh;
 mod two_tubes;
 
+pub(crate) use best_first::{Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState};
 pub(crate) use divided::{Body, Bound, Divided};
 pub(crate) use outer::Outer;
 pub(crate) use own_moves::{MOST_GROWTH, Moved, OwnMoves};

@@ -49,8 +49,6 @@ pub(crate) struct Outer {
     pub body: PlacedLink,
     /// By how much, about, it is larger than the piece. Only for the choice of what to do next, as all below.
     pub over: Real,
-    /// By how much it is wider, apart from how far it reaches ahead of its flat ends.
-    pub aside: Real,
     /// How much smaller, about, the bodies of its halves are.
     pub narrows: Real,
 }
@@ -64,10 +62,6 @@ impl Outer {
 impl Body for Outer {
     fn over(&self) -> Real {
         self.over
-    }
-
-    fn aside(&self) -> Real {
-        self.aside
     }
 }
 
@@ -154,7 +148,6 @@ impl PlacedTube<'_> {
                 return Outer {
                     body: PlacedLink::between(ends[0], ends[1], section.radius + wider, flat),
                     over,
-                    aside: sideways + face.tilt * length,
                     // What the face's direction leaves open stays.
                     narrows: over - face.tilt * section.radius,
                 };
@@ -218,6 +211,6 @@ impl PlacedTube<'_> {
         // The ends of a chord may be off to either side; what turns a flat body about them puts its wall off once more.
         let errors = if flat == [false; 2] { error } else { 2.0 * error };
         let radius = section.radius + over + errors + self.slack;
-        Outer { body: PlacedLink::between(start, end, radius, flat), over: wider, aside: over, narrows }
+        Outer { body: PlacedLink::between(start, end, radius, flat), over: wider, narrows }
     }
 }

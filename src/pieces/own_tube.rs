@@ -116,10 +116,6 @@ impl Body for OwnPair {
     fn over(&self) -> Real {
         self.outers.over()
     }
-
-    fn aside(&self) -> Real {
-        self.outers.aside()
-    }
 }
 
 impl Part<OwnTube<'_>> for OwnPair {
@@ -239,7 +235,7 @@ impl<'a> OwnTube<'a> {
                     let tick = if end == 0 { section.first } else { section.last };
                     let piece = Piece { section: number as u32, from: tick, to: tick };
                     let body = self.body_of_face(&piece, end);
-                    bodies.push((piece, Outer { body, over: 0.0, aside: 0.0, narrows: 0.0 }, Some(end)));
+                    bodies.push((piece, Outer { body, over: 0.0, narrows: 0.0 }, Some(end)));
                 }
             }
         }
@@ -746,6 +742,11 @@ impl Divided for OwnTube<'_> {
 
     fn body(&self, pair: &OwnPair) -> OwnPair {
         *pair
+    }
+
+    fn place(&self, pair: &OwnPair) -> [u32; 4] {
+        let [one, two] = pair.pieces;
+        [one.section, one.from, two.section, two.from]
     }
 
     fn check_finite(&self, pair: &OwnPair, _: &OwnPair) -> Result<(), ProximityError> {

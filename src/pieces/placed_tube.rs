@@ -56,6 +56,11 @@ impl<'a> PlacedTube<'a> {
         Ok(Self { tube, pose, slack: slack_for(reach + mesh_reach), reach, is_moving: false })
     }
 
+    /// Whether rounding may be less where the mesh is near.
+    pub(super) fn gains_from_sharpening(&self) -> bool {
+        slack_for(2.0 * self.reach) < 0.5 * self.slack
+    }
+
     /// Takes less for rounding where no triangle matters that is farther than `away`, if that is less.
     pub(super) fn sharpen(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
         let least = slack_for(2.0 * self.reach + away);

@@ -1,4 +1,4 @@
-//! The loop that divides a tube no finer than a question needs.
+//! The loop that divides a tube in the shape of one moment, no finer than a question about a motion needs.
 //!
 //! The centreline is taken in pieces, each in a convex body that is searched like a link. A body that keeps away settles
 //! its piece; one that does not gives a triangle, whose nearest point bounds the clearance from above, and the piece is

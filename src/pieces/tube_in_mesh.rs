@@ -33,6 +33,10 @@ impl Bound for Found {
     fn triangle(&self) -> Option<u32> {
         Some(self.witness.triangle)
     }
+
+    fn tie(&self) -> [u32; 2] {
+        [self.witness.triangle, self.section]
+    }
 }
 
 impl Part<TubeInMesh<'_>> for Piece {
@@ -53,6 +57,10 @@ impl Divided for TubeInMesh<'_> {
 
     fn body(&self, piece: &Piece) -> Outer {
         self.tube.outer(piece)
+    }
+
+    fn place(&self, piece: &Piece) -> [u32; 4] {
+        [piece.section, piece.from, 0, 0]
     }
 
     fn check_finite(&self, piece: &Piece, outer: &Outer) -> Result<(), ProximityError> {
@@ -123,11 +131,19 @@ impl TubeInMesh<'_> {
         self.tube.begin(scale.max(0.25 * self.tube.widest()), pieces);
     }
 
-    /// Takes less for rounding if only triangles matter that are at most so far away. Whether it is less by far.
-    pub(crate) fn sharpen(&mut self, away: Real) -> bool {
-        let before = self.tube.slack();
+    /// The pieces to begin with, none of which turns by more than 1 rad.
+    pub(crate) fn begin_coarse(&self, pieces: &mut Vec<Piece>) {
+        self.tube.begin(Real::INFINITY, pieces);
+    }
+
+    /// Whether rounding may be less if the mesh is near.
+    pub(crate) fn gains_from_sharpening(&self) -> bool {
+        self.tube.gains_from_sharpening()
+    }
+
+    /// Takes less for rounding if only triangles matter that are at most so far away.
+    pub(crate) fn sharpen(&mut self, away: Real) {
         self.tube.sharpen(away, || self.search.hierarchy.longest());
-        self.tube.slack() < 0.5 * before
     }
 
     /// A first upper bound: from the triangle nearest to the longest section's chord.

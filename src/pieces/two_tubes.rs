@@ -46,10 +46,6 @@ impl Body for [Outer; 2] {
     fn over(&self) -> Real {
         self[0].over + self[1].over
     }
-
-    fn aside(&self) -> Real {
-        self[0].aside + self[1].aside
-    }
 }
 
 /// An upper bound on how far two tubes are apart, and what realises it.
@@ -83,6 +79,10 @@ impl Bound for FoundBetween {
 
     fn triangle(&self) -> Option<u32> {
         None
+    }
+
+    fn tie(&self) -> [u32; 2] {
+        self.sections
     }
 }
 
@@ -249,6 +249,11 @@ impl Divided for TwoTubes<'_> {
 
     fn body(&self, pair: &PiecePair) -> [Outer; 2] {
         pair.outers
+    }
+
+    fn place(&self, pair: &PiecePair) -> [u32; 4] {
+        let [one, two] = pair.pieces;
+        [one.section, one.from, two.section, two.from]
     }
 
     fn check_finite(&self, pair: &PiecePair, bodies: &[Outer; 2]) -> Result<(), ProximityError> {

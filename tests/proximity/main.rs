@@ -29,6 +29,7 @@ mod prominence;
 mod proofs;
 mod rings;
 mod robots;
+mod same_answers;
 mod scene_memory;
 mod scenes;
 mod side;

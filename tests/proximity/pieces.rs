@@ -199,7 +199,7 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
             counts[1] <= 10 * counts[0].max(4) && counts[2] <= 10 * counts[1],
             "{length} {bend}: {counts:?}"
         );
-        many += usize::from(counts[2] > 15);
+        many += usize::from(counts[2] > counts[0]);
         assert!(counts[2] < 600, "{length} {bend}: {counts:?}");
     }
     assert!(many > 10, "{many}");

@@ -2,7 +2,7 @@
 
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
-use crate::pieces::{PlacedTube, TubeInMesh};
+use crate::pieces::{PendingPiece, PlacedTube, TubeInMesh};
 use crate::query::clearance::{TubeMemory, clearance, tube_clears};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::Tube;
@@ -18,6 +18,8 @@ impl BvhSearch {
     /// There are always bounds. [`resolved`](Clearance::resolved) says whether they are as close as was asked for: samples may
     /// be too coarse for that, rounding may hide it, and a query ends after 65,536 pieces. What the tube states as its own
     /// error is in both bounds, and no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
+    ///
+    /// The answer is the same to the last bit, whatever was asked before. A finer tolerance never gives looser bounds.
     ///
     /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
     ///
@@ -39,7 +41,8 @@ impl BvhSearch {
     ///
     /// Together the pieces are the whole tube, without gap or overlap: few and long far from the wall, short near it. The
     /// least of their `lower` is that of the answer, unless it is the answer's `upper`. Once a common point with the mesh
-    /// is found, pieces stay as they are, and their `lower` is 0. `out` is cleared first.
+    /// is found, pieces stay as they are. The `lower` of pieces that are farther away depends on earlier queries. `out`
+    /// is cleared first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -92,7 +95,8 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, or as [`clearance`](Self::clearance).
+    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
+    /// [`clearance`](Self::clearance). A contact that is found is the answer, whatever samples allow elsewhere.
     pub fn tube_clears(
         &mut self,
         tube: &Tube,
@@ -165,7 +169,7 @@ impl BvhSearch {
 impl<'a> Context<'a> {
     fn clearance(self, tube: &'a Tube, pose: &Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
-        clearance(&mut tube, memory, tolerance, |_, _, _| ())
+        clearance(&mut tube, memory, tolerance)
     }
 
     fn clearance_pieces(
@@ -177,13 +181,11 @@ impl<'a> Context<'a> {
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let placed = tube.tube;
-        let answer = clearance(&mut tube, memory, tolerance, |piece, outer, lower| {
-            out.push(placed.report(piece, outer, lower));
-        })?;
-        while let Some(piece) = memory.pieces.pop() {
-            let outer = placed.outer(&piece);
-            placed.check_finite(&piece, &outer)?;
-            out.push(placed.report(&piece, &outer, 0.0));
+        let answer = clearance(&mut tube, memory, tolerance)?;
+        for PendingPiece { piece, lower, .. } in memory.pieces.all() {
+            let outer = placed.outer(piece);
+            placed.check_finite(piece, &outer)?;
+            out.push(placed.report(piece, &outer, *lower));
         }
         out.sort_unstable_by(|a, b| {
             let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));

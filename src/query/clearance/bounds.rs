@@ -1,20 +1,36 @@
-//! The clearance of a tube, between bounds.
+//! The clearance of a tube, between bounds: best first.
+//!
+//! # Algorithm
+//! 1. Begin with pieces that turn by 1 rad at most, and measure them.
+//! 2. Take the measured piece of least rank (`pieces::best_first`). What was found from it improves the upper bound.
+//! 3. Stop if its `lower` + `doubt` is not below the upper bound by more than `aim`. Otherwise divide it, and measure its
+//!    halves. Repeat from 2.
+//! 4. The lower bound is the least `lower` of all pieces.
+//!
+//! # What an earlier query leaves
+//! A place that was near bounds the clearance from above, which is the `hint`. Bodies are searched for within the hint.
+//! What was not found there is searched for again, farther away, before its rank is reached. So the hint only spares
+//! searches. The upper bound of the answer comes from step 2 alone.
+//!
+//! # Claim
+//! The answer depends neither on the hint nor on where searches start. The bounds of a finer tolerance are never looser.
+//!
+//! **Proof.** Steps 2 to 4 depend on the sequence of divisions, the same whatever is hinted (`pieces::best_first`). A
+//! tolerance only decides when step 3 stops. A piece that cannot be divided keeps its `lower`, and never stops the
+//! sequence. Along the sequence no `lower` falls and the upper bound never rises.
 
 use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
-use crate::pieces::{
-    Body, Bound, Divided, Found, Look, Near, Outer, Part, Piece, Question, TubeInMesh, Verdict, refine,
-};
+use crate::pieces::{Bound, Divided, Examined, Found, PendingPiece, PendingPieces, PieceState, TubeInMesh};
 use parry3d_f64::math::Real;
 
-/// After so many pieces none is halved any more, and the bounds are what they are, or a margin stays undecided: a limit on the
-/// time that a query takes, far above what any tolerance needs that the samples allow.
-pub(super) const MOST_PIECES: u32 = 1 << 16;
+/// After so many divisions the bounds are what they are: a limit on the time that a query takes, far above what any
+/// tolerance needs that the samples allow. Each makes two pieces.
+pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 
 /// The clearance, with bounds no farther apart than the tolerance where the tube allows that.
 ///
-/// Each piece that is settled is handed over, with its body and how far away that is at least. Those that were not
-/// needed, because the tube touches the mesh, are left in the memory.
+/// Its pieces are left in the memory, each with a lower bound on its clearance.
 ///
 /// # Errors
 /// The curve of the tube is not finite.
@@ -22,136 +38,165 @@ pub(crate) fn clearance(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
     tolerance: Real,
-    settled: impl FnMut(&Piece, &Outer, Real),
 ) -> Result<Clearance, ProximityError> {
-    let last = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len());
-    let mut best = match last {
-        Some(last) => tube.bound_at(last.section, last.arc, last.triangle),
-        None => tube.first_bound(),
-    };
-    // Rounding is the less the nearer the mesh is known to be.
-    if tube.sharpen(best.upper) {
-        let again = tube.bound_at(best.section, best.witness.arc_length, best.witness.triangle);
-        best = if again.upper < best.upper { again } else { best };
+    let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
+    // Where the mesh is much larger than the tube, rounding is the less the nearer the mesh is known to be. The bound for
+    // that must not depend on earlier queries.
+    if tube.gains_from_sharpening() {
+        let first = tube.first_bound();
+        tube.sharpen(first.upper);
+        hint.take(&tube.bound_at(first.section, first.witness.arc_length, first.witness.triangle));
     }
-    tube.begin(best.upper.max(tolerance), &mut memory.pieces);
-    let found = between_bounds(tube, &mut memory.pieces, best, tolerance, settled)?;
-    let BetweenBounds { lower, best: Found { upper, section, witness }, resolved, uncertainty } = found;
-    memory.last = Some((&found.best).into());
+    if let Some(last) = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len()) {
+        hint.take(&tube.bound_at(last.section, last.arc, last.triangle));
+    }
+    tube.begin_coarse(&mut memory.begun);
+    memory.pieces.clear();
+    let mut bounds = BoundsSearch::new(tube, &mut memory.pieces, hint, tolerance);
+    while let Some(piece) = memory.begun.pop() {
+        bounds.begin(piece);
+    }
+    bounds.run(Real::INFINITY)?;
+    let best = bounds.best;
+    let best = best.unwrap_or_else(|| bounds.tube.first_bound());
+    let BetweenBounds { lower, resolved, uncertainty } = bounds.answer(best.upper);
+    memory.last = Some((&best).into());
+    let Found { upper, section, witness } = best;
     Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
 }
 
-/// A clearance between bounds, and what realises the upper one.
-pub(crate) struct BetweenBounds<F> {
+/// What bounds the clearance from above, wherever it comes from, and a triangle that is likely to be near.
+#[derive(Clone, Copy)]
+pub(crate) struct Hint {
+    pub upper: Real,
+    pub triangle: Option<u32>,
+}
+
+impl Hint {
+    pub(crate) fn take(&mut self, found: &impl Bound) {
+        if found.upper() < self.upper {
+            *self = Self { upper: found.upper(), triangle: found.triangle() };
+        }
+    }
+}
+
+/// A clearance between bounds.
+pub(crate) struct BetweenBounds {
     pub lower: Real,
-    pub best: F,
     pub resolved: bool,
     pub uncertainty: Real,
 }
 
-/// The clearance of all pieces, from a first upper bound on. Each piece that is settled is handed over, with its body and how far
-/// away that is at least. Those that were not needed are left in `pieces`.
-///
-/// # Errors
-/// The curve is not finite.
-pub(crate) fn between_bounds<T: Divided<Piece: Part<T>>>(
-    tube: &mut T,
-    pieces: &mut Vec<T::Piece>,
-    best: T::Found,
-    tolerance: Real,
-    settled: impl FnMut(&T::Piece, &T::Body, Real),
-) -> Result<BetweenBounds<T::Found>, ProximityError> {
-    let uncertainty = tube.uncertainty();
-    // So that the bounds of the answer are no farther apart than asked for after they are rounded.
-    let aim = (tolerance + uncertainty - 4.0 * tube.slack()).max(0.0);
-    let doubtful = Doubtful { lower: Real::INFINITY, doubt: 0.0 };
-    let mut bounds = Bounds { aim, best, lower: Real::INFINITY, doubtful, left: MOST_PIECES, settled };
-    refine(tube, pieces, &mut bounds)?;
-    let Bounds { best, lower, doubtful, .. } = bounds;
-    let upper = best.upper();
-    let lower = if pieces.is_empty() { lower.min(upper) } else { 0.0 };
-    let doubt = if doubtful.lower < upper - aim { doubtful.doubt } else { 0.0 };
-    let uncertainty = uncertainty + doubt;
-    let resolved = upper - lower <= tolerance + uncertainty;
-    Ok(BetweenBounds { lower, best, resolved, uncertainty })
-}
-
 /// How near the tube is at the least and at the most, as far as its pieces have been looked at.
-struct Bounds<F, S> {
+pub(crate) struct BoundsSearch<'a, T: Divided> {
+    pub tube: &'a mut T,
+    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
+    hint: Hint,
+    tolerance: Real,
     /// How far apart the bounds may stay.
     aim: Real,
-    best: F,
-    lower: Real,
-    /// The part of that where it is not known which way a face stands.
-    doubtful: Doubtful,
-    /// How many pieces may still be halved.
+    /// What bounds the clearance from above: of the pieces that had their turn.
+    pub best: Option<T::Found>,
+    /// How many pieces may still be divided.
     left: u32,
-    settled: S,
 }
 
-/// What is settled although its bounds are farther apart, because more is not known.
-struct Doubtful {
-    lower: Real,
-    /// How much farther.
-    doubt: Real,
-}
-
-impl<F, S> Bounds<F, S> {
-    fn settle<P, B>(&mut self, piece: &P, outer: &B, apart: Real)
-    where
-        S: FnMut(&P, &B, Real),
-    {
-        self.lower = self.lower.min(apart);
-        (self.settled)(piece, outer, apart);
-    }
-}
-
-impl<T, S> Question<T, T::Piece> for Bounds<T::Found, S>
-where
-    T: Divided,
-    S: FnMut(&T::Piece, &T::Body, Real),
-{
-    const NEARER_FIRST: bool = true;
-
-    /// Nothing below 0 is left to be found.
-    fn is_answered(&self) -> bool {
-        let upper = self.best.upper();
-        upper - self.aim < 0.0 || upper <= 0.0
+impl<'a, T: Divided> BoundsSearch<'a, T> {
+    pub(crate) fn new(
+        tube: &'a mut T,
+        pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
+        hint: Hint,
+        tolerance: Real,
+    ) -> Self {
+        // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+        let aim = (tolerance + tube.uncertainty() - 4.0 * tube.slack()).max(0.0);
+        Self { tube, pieces, hint, tolerance, aim, best: None, left: MOST_DIVISIONS }
     }
 
-    fn look(&mut self, _: &T, _: &T::Piece, _: &T::Piece, outer: &T::Body) -> Result<Look, ProximityError> {
-        let Self { aim, best, left, .. } = self;
-        *left = left.saturating_sub(1);
-        // How far it reaches ahead of its flat ends tells little: behind a face that is mostly into what is before it.
-        let is_wide = *left > 0 && outer.aside() > 2.0 * *aim && outer.aside() > 0.25 * best.upper();
-        Ok(Look { bound: best.upper() - *aim, is_wide, aim: *aim, start: best.triangle() })
+    /// Adds a piece of the tube.
+    pub(crate) fn begin(&mut self, piece: T::Piece) {
+        let (state, narrow) = (PieceState::Open, Real::INFINITY);
+        self.pieces.push(self.tube, PendingPiece { piece, lower: 0.0, state, narrow, levels: 0 });
     }
 
-    fn keeps_away(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real) {
-        self.settle(piece, outer, bound);
+    fn upper(&self) -> Real {
+        self.best.as_ref().map_or(Real::INFINITY, Bound::upper)
     }
 
-    fn judge(&mut self, tube: &T, near: &Near<T, T::Piece>) -> Result<Verdict, ProximityError> {
-        if near.found.upper() < self.best.upper() {
-            self.best = *near.found;
+    /// Divides pieces until the bounds are as near one another as wanted. False if that needs pieces whose lower bound is
+    /// larger than `limit`.
+    ///
+    /// # Errors
+    /// The curve is not finite.
+    pub(crate) fn run(&mut self, limit: Real) -> Result<bool, ProximityError> {
+        while let Some(first) = self.pieces.first() {
+            let upper = self.upper();
+            // A piece that is not measured may still have the least lower bound.
+            let can_wait = first.is_measured || first.least >= upper;
+            if can_wait && first.least >= upper - self.aim {
+                return Ok(true);
+            }
+            if first.least > limit {
+                return Ok(false);
+            }
+            let Some(piece) = self.pieces.pop() else { break };
+            let PieceState::Measured(body, found) = &piece.state else {
+                self.measure(piece)?;
+                continue;
+            };
+            if self.improves(found) {
+                self.best = Some(*found);
+            }
+            if first.least >= self.upper() - self.aim || self.left == 0 {
+                self.pieces.push(self.tube, piece);
+                return Ok(true);
+            }
+            self.left -= 1;
+            if !self.pieces.divide(self.tube, &piece, body, Real::INFINITY) {
+                self.pieces.push_whole(piece);
+            }
         }
-        let (apart, wanted) = (T::distance(near.nearest), self.best.upper() - self.aim);
-        let doubt = tube.doubt(near.piece);
-        if doubt > 0.0 && apart >= wanted - doubt {
-            let Doubtful { lower, doubt: most } = self.doubtful;
-            self.doubtful = Doubtful { lower: lower.min(apart), doubt: most.max(doubt) };
-            self.settle(near.piece, near.outer, apart);
-            return Ok(Verdict::Settled);
-        }
-        if apart >= wanted || self.left == 0 {
-            self.settle(near.piece, near.outer, apart);
-            return Ok(Verdict::Settled);
-        }
-        Ok(Verdict::Halve(self.aim))
+        Ok(limit >= self.upper() - self.aim)
     }
 
-    fn judge_whole(&mut self, _: &T, near: &Near<T, T::Piece>) -> Result<(), ProximityError> {
-        self.settle(near.piece, near.outer, T::distance(near.nearest));
+    fn improves(&self, found: &T::Found) -> bool {
+        self.best.as_ref().is_none_or(|best| {
+            let is_equal = found.upper() <= best.upper();
+            found.upper() < best.upper() || is_equal && found.tie() < best.tie()
+        })
+    }
+
+    /// Measures a piece within the hint; or, if it is known to be farther away, within the upper bound.
+    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Body, T::Found>) -> Result<(), ProximityError> {
+        let (hint, upper) = (self.hint.upper, self.upper());
+        let is_open = matches!(piece.state, PieceState::Open);
+        let bound = if is_open && piece.lower <= hint { hint.min(upper) } else { upper };
+        match self.pieces.examine(self.tube, &piece, bound, self.hint.triangle, |_| 0.0)? {
+            Examined::Away => {
+                let (lower, state) = (piece.lower.max(bound), PieceState::Distant);
+                self.pieces.push(self.tube, PendingPiece { lower, state, ..piece });
+            }
+            Examined::Divided => {}
+            Examined::Measured(found) => self.hint.take(&found),
+        }
         Ok(())
+    }
+
+    /// The answer, with this upper bound.
+    pub(crate) fn answer(&self, upper: Real) -> BetweenBounds {
+        let mut lower = upper;
+        let mut doubt: Real = 0.0;
+        for piece in self.pieces.all() {
+            if piece.lower > lower {
+                continue;
+            }
+            let of_piece = self.tube.doubt(&piece.piece);
+            doubt = if piece.lower < lower { of_piece } else { doubt.max(of_piece) };
+            lower = piece.lower;
+        }
+        // Doubt matters only where it keeps the bounds apart.
+        let doubt = if lower < upper - self.aim { doubt } else { 0.0 };
+        let uncertainty = self.tube.uncertainty() + doubt;
+        BetweenBounds { lower, resolved: upper - lower <= self.tolerance + uncertainty, uncertainty }
     }
 }

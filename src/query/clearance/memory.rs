@@ -1,6 +1,6 @@
 //! What a query about a tube leaves for the next.
 
-use crate::pieces::{Found, Piece};
+use crate::pieces::{Found, Outer, PendingPieces, Piece};
 use parry3d_f64::math::Real;
 
 /// Where a query ended, for the next to begin.
@@ -21,7 +21,9 @@ impl From<&Found> for Start {
 /// What a query about a tube leaves for the next.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
-    pub pieces: Vec<Piece>,
+    pub pieces: PendingPieces<Piece, Outer, Found>,
+    /// The pieces that a query begins with.
+    pub begun: Vec<Piece>,
     pub last: Option<Start>,
 }
 

@@ -4,6 +4,6 @@ mod bounds;
 mod decision;
 mod memory;
 
-pub(crate) use bounds::{BetweenBounds, between_bounds, clearance};
-pub(crate) use decision::{keeps, tube_clears};
+pub(crate) use bounds::{BetweenBounds, BoundsSearch, Hint, clearance};
+pub(crate) use decision::{Wanted, keeps, tube_clears};
 pub(crate) use memory::TubeMemory;

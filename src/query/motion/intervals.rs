@@ -17,10 +17,10 @@ pub(super) fn clear(
     intervals: &mut VecDeque<[Real; 2]>,
     mut judge: impl FnMut([Real; 2]) -> Result<(Seen<FoundBetween>, Real), ProximityError>,
 ) -> Result<RobotMotionAnswer, ProximityError> {
-    let (mut progress, mut shapes) = (Progress::default(), 0);
+    let (mut progress, mut shapes, mut too_fine) = (Progress::default(), 0, None);
     while let Some(times) = intervals.pop_front() {
         if let Some(first) = progress.gives_up(shapes, intervals.iter().copied().chain([times])) {
-            return Ok(RobotMotionAnswer::undecided(first));
+            return too_fine.map_or_else(|| Ok(RobotMotionAnswer::undecided(first)), Err);
         }
         let (seen, still) = judge(times)?;
         shapes += 1;
@@ -30,7 +30,11 @@ pub(super) fn clear(
             let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
             return Ok(RobotMotionAnswer::contact(contact));
         }
+        too_fine = too_fine.or(seen.too_fine);
         intervals.extend(rests(times, still).into_iter().flatten());
+    }
+    if let Some(error) = too_fine {
+        return Err(error);
     }
     Ok(progress.undecided().map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
 }

@@ -28,13 +28,15 @@ pub(crate) struct Seen<F> {
     pub is_near: bool,
     /// Whether it was not looked at to the end, nor is any other shape to be.
     pub gives_up: bool,
+    /// Why samples do not allow a decision for a piece. A contact elsewhere counts more.
+    pub too_fine: Option<ProximityError>,
 }
 
 impl<F> Seen<F> {
     /// Nothing, before anything is looked at.
     pub(super) fn nothing() -> Self {
         let (is_fine, is_undecided, is_near, gives_up) = (false, false, false, false);
-        Self { contact: None, is_fine, is_undecided, is_near, gives_up }
+        Self { contact: None, is_fine, is_undecided, is_near, gives_up, too_fine: None }
     }
 }
 
@@ -99,7 +101,12 @@ impl<D: Divided, P, V: Moves<D, P>> Question<D, P> for Moment<V, D::Found> {
         let (may_open, resolution) = (tube.may_open(near.piece), self.wanted.resolution);
         if self.is_fine() && !may_open && tube.is_surely_asked(near.piece, near.found) {
             let stated = tube.stated(near.piece);
-            tube.check_resolved(near.found.upper() - D::distance(near.nearest) - stated, resolution)?;
+            let possible = near.found.upper() - D::distance(near.nearest) - stated;
+            if let Err(error) = tube.check_resolved(possible, resolution) {
+                self.seen.too_fine.get_or_insert(error);
+                (self.seen.is_undecided, self.seen.is_near) = (true, true);
+                return Ok(());
+            }
         }
         let moved = self.pace.reach().max(self.pace.opening);
         let is_open_end_decided = moved <= resolution / 128.0 || self.pace.opens_too_fast(resolution);

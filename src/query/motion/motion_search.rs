@@ -139,12 +139,12 @@ pub(crate) struct MotionSearch<'a, M> {
 impl<M: Motion> MotionSearch<'_, M> {
     /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
     pub(crate) fn clears(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
-        let mut progress = Progress::default();
+        let (mut progress, mut too_fine) = (Progress::default(), None);
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_front() {
             let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
             if let Some(first) = progress.gives_up(self.shapes, left) {
-                return Ok(MotionAnswer::undecided(first));
+                return too_fine.map_or_else(|| Ok(MotionAnswer::undecided(first)), Err);
             }
             let Judged { seen, still, is_left, failed } = self.judge(&interval, wanted)?;
             progress.take(interval.times, &seen, self.shapes);
@@ -152,7 +152,11 @@ impl<M: Motion> MotionSearch<'_, M> {
                 // Of the shapes before it nothing is proven yet but what was asked first.
                 return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.middle(), &found)));
             }
+            too_fine = too_fine.or(seen.too_fine);
             self.memory.intervals.extend(interval.halves(still, is_left, &failed).into_iter().flatten());
+        }
+        if let Some(error) = too_fine {
+            return Err(error);
         }
         Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
@@ -163,7 +167,7 @@ impl<M: Motion> MotionSearch<'_, M> {
     /// where the rest does.
     pub(crate) fn first_contact(&mut self, wanted: Wanted) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, Found)>);
-        let (mut clear_until, mut most) = (1.0, MOST_SHAPES);
+        let (mut clear_until, mut most, mut too_fine) = (1.0, MOST_SHAPES, None);
         self.begin();
         // The last one comes first.
         self.memory.intervals.make_contiguous().reverse();
@@ -192,12 +196,16 @@ impl<M: Motion> MotionSearch<'_, M> {
                 }
                 continue;
             }
+            too_fine = too_fine.or(seen.too_fine);
             let halves = interval.halves(still, is_left, &failed);
             self.memory.intervals.extend(halves.into_iter().rev().flatten());
         }
         let left = self.memory.intervals.iter().map(|interval| interval.times);
         let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
         let Some((t, found)) = contact else {
+            if let Some(error) = too_fine {
+                return Err(error);
+            }
             let near = undecided.map(|interval| (interval, UndecidedReason::Near));
             let first = near.or(left.map(|interval| (interval, UndecidedReason::Work)));
             return Ok(first.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));

@@ -1,8 +1,8 @@
 //! The questions about a tube beside itself: whether it keeps a margin to itself.
 
 use crate::answer::{Decision, ProximityError};
-use crate::pieces::{OwnBeginning, OwnPair, OwnTube};
-use crate::query::clearance::keeps;
+use crate::pieces::{FoundBetween, OwnBeginning, OwnPair, OwnTube, PendingPieces};
+use crate::query::clearance::{Wanted, keeps};
 use crate::robot::{Tube, TubeTurns};
 use parry3d_f64::math::Real;
 
@@ -12,6 +12,7 @@ pub(crate) struct OwnTubeMemory {
     turns: TubeTurns,
     beginning: OwnBeginning,
     pairs: Vec<OwnPair>,
+    pending: PendingPieces<OwnPair, OwnPair, FoundBetween>,
 }
 
 /// Whether the parts of a tube that can meet keep more than the margin.
@@ -24,10 +25,11 @@ pub(crate) fn own_tube_clears(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    let OwnTubeMemory { turns, beginning, pairs } = memory;
+    let OwnTubeMemory { turns, beginning, pairs, pending } = memory;
     tube.measure_turns(turns)?;
     let mut own = OwnTube::new(tube, turns)?;
     own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
-    let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;
+    let wanted = Wanted { margin, resolution, start: None };
+    let (decision, _) = keeps(&mut own, pending, pairs.drain(..), None, wanted)?;
     Ok(decision)
 }

@@ -1,8 +1,10 @@
 //! The questions about two tubes: how near they are, between bounds, and whether they keep a margin.
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
-use crate::pieces::{Beginning, FoundBetween, PiecePair, PlacedTube, TwoTubes};
-use crate::query::clearance::{BetweenBounds, between_bounds, keeps};
+use crate::pieces::{
+    Beginning, Divided, FoundBetween, Outer, PendingPieces, PiecePair, PlacedTube, TwoTubes,
+};
+use crate::query::clearance::{BetweenBounds, BoundsSearch, Hint, Wanted, keeps};
 use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
@@ -11,6 +13,7 @@ use parry3d_f64::math::{Pose, Real};
 pub(crate) struct TubesMemory {
     beginning: Beginning,
     pairs: Vec<PiecePair>,
+    pending: PendingPieces<PiecePair, [Outer; 2], FoundBetween>,
     /// The sections and arc lengths where a query ended.
     last: Option<([u32; 2], [Real; 2])>,
 }
@@ -52,11 +55,30 @@ pub(crate) fn clearance_between(
     memory: &mut TubesMemory,
     tolerance: Real,
 ) -> Result<RobotClearance, ProximityError> {
-    let best = memory.first_bound(tubes);
-    let TubesMemory { beginning, pairs, last } = memory;
-    tubes.begin(best.upper.max(tolerance), best.upper, usize::MAX, beginning, pairs)?;
-    let found = between_bounds(tubes, pairs, best, tolerance, |_, _, _| ())?;
-    let BetweenBounds { lower, resolved, uncertainty, best } = found;
+    let mut hint = Hint { upper: Real::INFINITY, triangle: None };
+    hint.take(&memory.first_bound(tubes));
+    let TubesMemory { beginning, pairs, pending, last } = memory;
+    let best = loop {
+        // So that rounding of the bounds does not ask for more pairs.
+        let limit = hint.upper + 4.0 * tubes.slack();
+        tubes.begin(Real::INFINITY, limit, usize::MAX, beginning, pairs)?;
+        pending.clear();
+        let mut bounds = BoundsSearch::new(tubes, pending, hint, tolerance);
+        while let Some(pair) = pairs.pop() {
+            bounds.begin(pair);
+        }
+        if bounds.run(limit)?
+            && let Some(best) = bounds.best
+        {
+            break (best, bounds.answer(best.upper));
+        }
+        if limit == Real::INFINITY {
+            return Err(ProximityError::EmptyTube);
+        }
+        // Pairs that are farther apart than the hint are needed too.
+        hint.upper = Real::INFINITY;
+    };
+    let (best, BetweenBounds { lower, resolved, uncertainty }) = best;
     let FoundBetween { upper, sections, arcs, points: [on_first, on_second] } = best;
     *last = Some((sections, arcs));
     Ok(RobotClearance {
@@ -81,15 +103,12 @@ pub(crate) fn tubes_clear(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    let best = memory.first_bound(tubes);
-    if best.upper <= margin {
-        memory.last = Some((best.sections, best.arcs));
-        return Ok(Decision::Contact);
-    }
-    let TubesMemory { beginning, pairs, last } = memory;
-    // Tubes that are far apart are seen to be so in few pieces.
-    tubes.begin(best.upper.max(resolution), margin, usize::MAX, beginning, pairs)?;
-    let (decision, found) = keeps(tubes, pairs, margin, resolution, None)?;
+    // The decision must not depend on where an earlier query ended.
+    let best = tubes.first_bound();
+    let TubesMemory { beginning, pairs, pending, last } = memory;
+    tubes.begin(Real::INFINITY, margin, usize::MAX, beginning, pairs)?;
+    let wanted = Wanted { margin, resolution, start: None };
+    let (decision, found) = keeps(tubes, pending, pairs.drain(..), Some(best), wanted)?;
     if let Some(FoundBetween { sections, arcs, .. }) = found {
         *last = Some((sections, arcs));
     }
