@@ -2,7 +2,7 @@
 
 use super::crowds::Crowd;
 use super::curve::CurveBound;
-use super::own_samples::{Bend, OwnSamples};
+use super::own_samples::{Bend, Hat, OwnSamples};
 use super::section::{Section, stretch};
 use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::steps::is_same;
@@ -127,6 +127,7 @@ impl Open {
         last: usize,
         rounding: Real,
         so_far: &SoFar,
+        hats: &mut Vec<Hat>,
         bounds: &mut Vec<CurveBound>,
     ) -> Result<(Section, Option<usize>), Bend> {
         let SoFar { points, arcs, crowds } = *so_far;
@@ -140,13 +141,12 @@ impl Open {
             rounding,
             first,
             crowds,
-            shortest: 0.0,
         };
         let (mut sharpest, mut crowding) = (None, None);
         if self.is_uneven {
             bounds.resize(first, CurveBound::default());
             let least = if self.turns < 2 { self.at_ends } else { 0.0 };
-            (sharpest, crowding) = own.bound_unevenly(least, bounds);
+            (sharpest, crowding) = own.bound_unevenly(least, hats, bounds);
             self.section.bound_by(&bounds[first..], &arcs[first..=last]);
             if self.loosest > 0.0 {
                 // The chords are longer by that share, and what they turn by is, in the square.
