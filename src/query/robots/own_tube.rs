@@ -14,7 +14,7 @@ pub(crate) struct OwnTubeMemory {
     pairs: Vec<OwnPair>,
 }
 
-/// Whether the parts of a tube that can meet keep more than the margin.
+/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no answer worse.
 ///
 /// # Errors
 /// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
@@ -26,8 +26,17 @@ pub(crate) fn own_tube_clears(
 ) -> Result<Decision, ProximityError> {
     let OwnTubeMemory { turns, beginning, pairs } = memory;
     tube.measure_turns(turns)?;
-    let mut own = OwnTube::new(tube, turns)?;
-    own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
-    let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;
-    Ok(decision)
+    let own = OwnTube::new(tube, turns)?;
+    let mut clears = |mut own: OwnTube| -> Result<Decision, ProximityError> {
+        own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
+        let (decision, _) = keeps(&mut own, pairs, margin, resolution, None)?;
+        Ok(decision)
+    };
+    match own.less_known() {
+        Some(less_known) => {
+            let decision = clears(less_known);
+            Decision::better_of(decision, || clears(own))
+        }
+        None => clears(own),
+    }
 }

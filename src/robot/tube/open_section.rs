@@ -8,9 +8,6 @@ use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
-/// Samples of a section are uneven where a segment is so many times as long as its neighbour.
-const UNEVEN: Real = 4.0;
-
 /// All samples so far.
 pub(super) struct SoFar<'a> {
     pub points: &'a [Vector],
@@ -85,7 +82,7 @@ impl Open {
     #[inline(always)]
     pub(super) fn bend(&mut self, at: usize, before: &Segment, segment: &Segment) {
         self.turns += 1;
-        self.is_uneven |= before.length > UNEVEN * segment.length || segment.length > UNEVEN * before.length;
+        self.is_uneven |= segment.is_uneven(before);
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
         // Most turns are no larger than the largest so far, which is seen without a root and a division.

@@ -37,6 +37,9 @@
 //! 2. |b - t| <= e. If b >= e, b + e >= t. Otherwise 2 b >= t holds if |b - t| <= t / 2.
 //! 3. The curvature in the segment is that of one side or of the other.
 //!
+//! How bends change is looked at in the whole chain only from one hat to another whose two segments are about as long, as in
+//! a section whose samples lie evenly.
+//!
 //! A counted bend is at most 2 b, so samples that show nothing but rounding cost no more than what they show. For their own
 //! two segments b + e counts in full. In the wide chain the noise is that of the closest samples in it.
 
@@ -91,6 +94,8 @@ pub(super) struct Hat {
     bend: Option<Vector>,
     /// By how much it may be off because samples crowd.
     doubt: Real,
+    /// Whether its bend changes evenly towards its neighbours, as far as anybody knows.
+    is_even: bool,
     /// How large it counts.
     shown: Real,
     /// The curvature around the sample, what its neighbours show included.
@@ -112,16 +117,16 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
     /// The curvature around a sample that shows `most`, but for what is beyond an end.
     fn around(&self, place: usize, most: Real) -> Real {
         let mut curvature = most;
-        let Hat { bend, doubt, .. } = (self.hat)(place);
-        if let Some(here) = bend {
+        let Hat { bend, doubt, is_even, .. } = (self.hat)(place);
+        if let Some(here) = bend.filter(|_| is_even) {
             // By how much bends fall towards an end, and by how much they turn.
             let side = |end: usize| {
                 let next = self.next(place, end)?;
-                let Hat { bend, doubt: own, .. } = (self.hat)(next);
-                let bend = bend?;
+                let Hat { bend, doubt: own, is_even, .. } = (self.hat)(next);
+                let bend = bend.filter(|_| is_even)?;
                 let fall = (here.length() - bend.length()).abs() + doubt + own;
                 let next_fall = self.next(next, end).and_then(|beyond| {
-                    let beyond = (self.hat)(beyond);
+                    let beyond = Some((self.hat)(beyond)).filter(|beyond| beyond.is_even)?;
                     let fall = (bend.length() - beyond.bend?.length()).abs();
                     Some(fall + own + beyond.doubt)
                 });
@@ -165,7 +170,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         let size = bend.length() + doubt;
         let second = inwards(first);
         let Some((next, next_doubt)) = second.and_then(|second| {
-            let next = (self.hat)(second);
+            let next = Some((self.hat)(second)).filter(|next| next.is_even)?;
             Some((next.bend?, next.doubt))
         }) else {
             return size;
@@ -253,20 +258,20 @@ impl OwnSamples<'_> {
             let gap = sum(|segment| segment.length - segment.least);
             doubt = (2.0 * sum(|segment| segment.noise) + size * gap) / sum(|segment| segment.least);
         }
-        Hat { sample, bend, doubt, shown: 0.0, around: 0.0 }
+        Hat { sample, bend, doubt, is_even: true, shown: 0.0, around: 0.0 }
     }
 
     /// Adds the hats of a chain of samples.
     fn collect(
         &self,
         is_in: impl Fn(usize) -> bool,
-        shown: impl Fn(&Hat, Option<Segment>, Option<Segment>) -> Real,
+        show: impl Fn(&mut Hat, Option<Segment>, Option<Segment>),
         hats: &mut Vec<Hat>,
     ) {
         let (mut here, mut before) = (0, None);
         let mut take = |sample: usize, before: Option<Segment>, behind: Option<Segment>| {
             let mut hat = self.hat(sample, before, behind);
-            hat.shown = shown(&hat, before, behind);
+            show(&mut hat, before, behind);
             hats.push(hat);
         };
         for next in (1..=self.last()).filter(|&sample| is_in(sample)) {
@@ -345,18 +350,19 @@ impl OwnSamples<'_> {
             sample == last || (!is_close(sample) && self.arcs[last] - self.arcs[sample] >= shortest)
         };
         hats.clear();
-        let shown_widely = |hat: &Hat, _: Option<Segment>, _: Option<Segment>| {
-            hat.bend.map_or(0.0, |bend| bend.length() + noise / shortest) + hat.doubt
+        let show_widely = |hat: &mut Hat, _: Option<Segment>, _: Option<Segment>| {
+            hat.shown = hat.bend.map_or(0.0, |bend| bend.length() + noise / shortest) + hat.doubt;
         };
-        self.collect(is_in, shown_widely, hats);
+        self.collect(is_in, show_widely, hats);
         let most = hats.iter().fold(0.0, |most: Real, hat| most.max(hat.shown));
         let count = hats.len();
         if count <= last {
-            let shown = |hat: &Hat, before: Option<Segment>, behind: Option<Segment>| {
+            let show = |hat: &mut Hat, before: Option<Segment>, behind: Option<Segment>| {
                 let [own, rounding] = self.own_bend(hat.sample, before, behind);
-                own.min(2.0 * (own - rounding).max(0.0))
+                hat.shown = own.min(2.0 * (own - rounding).max(0.0));
+                hat.is_even = before.zip(behind).is_none_or(|(one, other)| !one.is_uneven(&other));
             };
-            self.collect(|_| true, shown, hats);
+            self.collect(|_| true, show, hats);
         }
         let (wide, whole) = hats.split_at_mut(count);
         let mut wide = Sweep::over(wide, self.points);

@@ -287,5 +287,53 @@ fn bends_count_however_close_the_samples_lie() {
         wrong_rounds.len(),
         &wrong[..wrong.len().min(5)]
     );
-    println!("{asked:?} {refused:?} {known:?} {close_by:?}");
+    // All kinds are visited, few are refused, most are known closely, and many walls are near.
+    let each = ROUNDS * 4 / KINDS.len();
+    for kind in 0..KINDS.len() {
+        let counts = [asked[kind], refused[kind], known[kind], close_by[kind]];
+        assert!(asked[kind] > each / 2 && 5 * refused[kind] < each, "{kind} {counts:?}");
+        assert!(5 * known[kind] > 4 * asked[kind] && 5 * close_by[kind] > asked[kind], "{kind} {counts:?}");
+    }
+}
+
+/// Three samples of an S-curve that leaves the origin along z, a long and a short segment: two points, the direction at the tip, the
+/// radius and the true distance, and the wall.
+#[test]
+fn a_short_segment_at_the_tip_shows_how_the_long_one_bends() {
+    let cases = [
+        (
+            [
+                [0.0029904384581193166, 0.0, 0.9999599990040907],
+                [0.0025029736691547454, 0.0, 1.0312463020831122],
+            ],
+            [-0.016305050279763672, 0.0, 0.9998670638316748],
+            [0.8463216559682865, 0.05497648949635725],
+            [0.9064670236163008, 0.0, 0.5857788043138724],
+        ),
+        (
+            [[0.02335030562478964, 0.0, 0.9996673566181065], [0.023451224971835105, 0.0, 1.0058112380806774]],
+            [0.016225769060715566, 0.0, 0.9998683535437994],
+            [1.082832838746682, 0.0016374913625238907],
+            [-1.0732501925496014, 0.0, 0.6102091477625886],
+        ),
+        (
+            [
+                [0.022733798844672904, 0.0, 0.9996836702607902],
+                [0.022789184839837478, 0.0, 1.0040491938769485],
+            ],
+            [0.012538316128468157, 0.0, 0.9999213922247401],
+            [1.9477850187091583, 0.0394337221661758],
+            [-1.9825934970620505, 0.0, 0.3936701605985672],
+        ),
+    ];
+    for ([middle, tip], tangent, [radius, truth], wall) in cases {
+        let points = [Vector::ZERO, Vector::from(middle), Vector::from(tip)];
+        let tangents = Some([Vector::Z, Vector::from(tangent)]);
+        let tube = Tube::with_constant_radius(&points, radius, tangents).unwrap();
+        let mut wall = super::speck(Vector::from(wall));
+        let found = wall.clearance(&tube, &Pose::IDENTITY, 1e-6).unwrap();
+        assert!(found.lower <= truth && truth <= found.upper, "{truth} {found:?}");
+        let decision = wall.tube_clears(&tube, &Pose::IDENTITY, truth * (1.0 + 1e-9), 1e-6);
+        assert_ne!(decision, Ok(Decision::Clear), "{truth}");
+    }
 }
