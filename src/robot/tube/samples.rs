@@ -5,8 +5,8 @@
 //! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
 //! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
 //! a section that has fewer than two of its own. What means over two segments hide of a curvature that changes evenly is
-//! added (`between_samples`). Where samples lie unevenly, those that are close together count only for the segments next to
-//! them (`own_samples`).
+//! added (`between_samples`). Where samples lie unevenly, what a sample shows counts for the two segments on either side of it
+//! (`own_samples`).
 //!
 //! With that curvature k, and h the length of a segment:
 //! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
