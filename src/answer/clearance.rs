@@ -27,6 +27,15 @@ pub struct Clearance {
 }
 
 impl Clearance {
+    /// What two answers to one question say together.
+    pub(crate) fn and(self, other: Self, tolerance: Real) -> Self {
+        let nearer = if other.upper < self.upper { other } else { self };
+        let lower = self.lower.max(other.lower);
+        let uncertainties = [self.uncertainty, other.uncertainty];
+        let (resolved, uncertainty) = resolve(nearer.upper - lower, uncertainties, tolerance);
+        Self { lower, resolved, uncertainty, ..nearer }
+    }
+
     /// What stands in the place of an answer until its turn comes.
     pub(crate) fn unanswered() -> Self {
         Self {
@@ -38,6 +47,12 @@ impl Clearance {
             witness: Witness::none(),
         }
     }
+}
+
+/// Whether the bounds of two answers to one question are as close together as was asked for, and the uncertainty that it takes.
+pub(super) fn resolve(apart: Real, [one, other]: [Real; 2], tolerance: Real) -> (bool, Real) {
+    let (least, most) = (one.min(other), one.max(other));
+    if apart <= tolerance + least { (true, least) } else { (apart <= tolerance + most, most) }
 }
 
 impl Deref for Clearance {

@@ -24,3 +24,21 @@ pub enum UndecidedReason {
     /// several parts.
     Work,
 }
+
+impl Decision {
+    /// The better of two answers to one question: one that decides, or else one that is no error. The second is asked for only if
+    /// the first does not decide.
+    ///
+    /// # Errors
+    /// Both are errors.
+    pub(crate) fn better_of<E>(
+        first: Result<Self, E>,
+        second: impl FnOnce() -> Result<Self, E>,
+    ) -> Result<Self, E> {
+        match first {
+            Ok(Self::Undecided) => Ok(second().unwrap_or(Self::Undecided)),
+            Ok(decided) => Ok(decided),
+            Err(_) => second(),
+        }
+    }
+}

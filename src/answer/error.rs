@@ -107,7 +107,8 @@ pub enum ProximityError {
     /// are neighbours.
     #[error(
         "near the arc length {arc_length} the tube has the curvature {curvature} and the radius {radius}; their product must be \
-         below 1, so check the unit of length, or smooth the points"
+         below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
+         (`Tube::fit`)"
     )]
     BendsWithinRadius {
         /// Where it may bend so sharply: from there on.
@@ -139,8 +140,8 @@ pub enum ProximityError {
     },
     /// The bounds of a tube cannot come as close as was asked for.
     #[error(
-        "the bounds are {possible} apart at best, not {tolerance}; give more samples and the tangents at the ends, or \
-         a larger {parameter}"
+        "the bounds are {possible} apart at best, not {tolerance}; give a larger {parameter}; of a curve through samples, give more of \
+         them and the tangents at the ends; if coordinates are so large that rounding is {possible}, move the origin to the robot"
     )]
     ToleranceTooFine {
         /// The parameter, as the function that was called names it: a tolerance or a resolution.

@@ -1,5 +1,6 @@
 //! An answer about two tubes.
 
+use super::clearance::resolve;
 use parry3d_f64::math::{Real, Vector};
 
 /// How near two tubes are, between bounds, in the frame and unit of the poses.
@@ -25,6 +26,17 @@ pub struct RobotClearance {
     pub on_second: Vector,
     /// Where along each tube's centreline, from the base.
     pub arc_lengths: [Real; 2],
+}
+
+impl RobotClearance {
+    /// What two answers to one question say together.
+    pub(crate) fn and(self, other: Self, tolerance: Real) -> Self {
+        let nearer = if other.upper < self.upper { other } else { self };
+        let lower = self.lower.max(other.lower);
+        let uncertainties = [self.uncertainty, other.uncertainty];
+        let (resolved, uncertainty) = resolve(nearer.upper - lower, uncertainties, tolerance);
+        Self { lower, resolved, uncertainty, ..nearer }
+    }
 }
 
 #[cfg(feature = "serde-serialize")]

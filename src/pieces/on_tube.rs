@@ -73,7 +73,7 @@ impl PlacedTube<'_> {
                 return best;
             }
         }
-        for (end, face) in self.tube.faces(section).iter().enumerate() {
+        for (end, face) in self.all_faces(section).iter().enumerate() {
             let Some(face) = face.as_ref().filter(|_| limits[end].is_none()) else { continue };
             let face = self.face(face);
             let offset = x - face.centre;

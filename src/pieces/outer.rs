@@ -30,9 +30,10 @@
 //! the rest both ends lie farther out by x = min(e / A, sqrt(e)) with e = r slack / 16: the body is then longer than
 //! A + x, and e / (A + x) is at most x. The back moves aside by less than a slack.
 //!
-//! Points of the discs are known to `error`: everything is `error` wider. What is led by the chord may also be where the
-//! centreline's points are off, which turns the chord by up to 2 error / |chord|. Where directions may be off by a stated
-//! turn, w reaches as much farther along d.
+//! Points of the discs are known to `error`: everything is `error` wider. Of that, what is stated for the curve that was given
+//! (its own error, the deviation of a fit) moves discs whose chord is known. The rest, `loose`, is how far the ticks may be from the
+//! curve, and what was taken for one; it may turn the chord by up to 2 loose / |chord|, which puts the wall of a flat body off
+//! by `loose` once more. Where directions may be off by a stated turn, w reaches as much farther along d.
 
 use super::divided::Body;
 use super::piece::Piece;
@@ -166,6 +167,7 @@ impl PlacedTube<'_> {
     ) -> Outer {
         let [mut start, mut end] = [piece.from, piece.to].map(|tick| self.point(section, tick));
         let (error, curvature) = (self.tube.error() + known.off, known.curvature);
+        let loose = self.tube.merged() + known.off;
         let along = end - start;
         let mut over = 0.125 * curvature * length * length;
         let mut shift = Vector::ZERO;
@@ -192,11 +194,11 @@ impl PlacedTube<'_> {
         let (mut wider, mut narrows) = (over, 0.75 * over);
         let chord = along.length();
         // A chord that is mere rounding has no direction.
-        let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
+        let flat = if chord > 4.0 * (loose + self.slack) { flat } else { [false; 2] };
         if flat != [false; 2] {
             let unit = along / chord;
             let bend = 0.5 * curvature * length;
-            let tilt = bend + 2.0 * (error + self.slack) / chord + self.tube.turn();
+            let tilt = bend + 2.0 * (loose + self.slack) / chord + self.turn();
             // The halves bend half as much, and rounding turns their chords twice as far.
             narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
             let beyond = section.radius * tilt + error + self.slack;
@@ -208,8 +210,7 @@ impl PlacedTube<'_> {
                 end += unit * beyond;
             }
         }
-        // The ends of a chord may be off to either side; what turns a flat body about them puts its wall off once more.
-        let errors = if flat == [false; 2] { error } else { 2.0 * error };
+        let errors = if flat == [false; 2] { error } else { error + loose };
         let radius = section.radius + over + errors + self.slack;
         Outer { body: PlacedLink::between(start, end, radius, flat), over: wider, narrows }
     }

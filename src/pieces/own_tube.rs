@@ -147,6 +147,12 @@ impl<'a> OwnTube<'a> {
         Ok(Self { both: TwoTubes::new([placed; 2]), turns, moves: None })
     }
 
+    /// The same tube as if its turn had not been stated, if that is another one. All bounds of that one hold for this one.
+    pub(crate) fn less_known(&self) -> Option<Self> {
+        let less = self.tube().without_turn()?;
+        Some(Self { both: TwoTubes { tubes: [less; 2] }, ..*self })
+    }
+
     /// A tube that moves, in the shape at the middle of an interval of time.
     ///
     /// # Errors

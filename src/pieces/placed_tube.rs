@@ -32,6 +32,8 @@ pub(crate) struct PlacedTube<'a> {
     reach: Real,
     /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
     is_moving: bool,
+    /// How far directions near flat ends may be off from the tube's, if that is known.
+    turn: Option<Real>,
 }
 
 /// What rounding can do where no coordinate is larger than `reach`.
@@ -53,7 +55,14 @@ impl<'a> PlacedTube<'a> {
         if tube.sections().is_empty() {
             return Err(ProximityError::EmptyTube);
         }
-        Ok(Self { tube, pose, slack: slack_for(reach + mesh_reach), reach, is_moving: false })
+        Ok(Self {
+            tube,
+            pose,
+            slack: slack_for(reach + mesh_reach),
+            reach,
+            is_moving: false,
+            turn: tube.turn(),
+        })
     }
 
     /// Whether rounding may be less where the mesh is near.
@@ -80,11 +89,27 @@ impl<'a> PlacedTube<'a> {
         Self { is_moving: true, ..self }
     }
 
+    /// The same tube as if its turn had not been stated, if that is another tube of which less is known. All bounds of that
+    /// one hold for this one.
+    pub(crate) fn without_turn(self) -> Option<Self> {
+        self.tube.is_turn_all_that_is_known().then_some(Self { turn: None, ..self })
+    }
+
+    /// How far directions near flat ends may be off from the tube's, as far as that is known.
+    pub(super) fn turn(&self) -> Real {
+        self.turn.unwrap_or(0.0)
+    }
+
+    /// The flat ends of a section, with what is known of their directions.
+    pub(super) fn all_faces(&self, section: &Section) -> [Option<Face>; 2] {
+        self.tube.faces(section, self.turn)
+    }
+
     /// The flat ends of a section that bodies may end with.
     pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
         let lasts = |face: &Face| !self.is_moving || face.lasting.is_safe() && !section.fades;
         let is_sure = |face: &Face| lasts(face) && face.tilt < Real::INFINITY;
-        self.tube.faces(section).map(|face| face.filter(is_sure))
+        self.all_faces(section).map(|face| face.filter(is_sure))
     }
 
     /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
@@ -97,7 +122,7 @@ impl<'a> PlacedTube<'a> {
         }
         let near = 2.0 * (section.radius + self.tube.error());
         let away = [arcs[0] - section.start, section.end - arcs[1]];
-        let of = |end: usize| if away[end] <= near { self.tube.doubt(section, end) } else { 0.0 };
+        let of = |end: usize| if away[end] <= near { self.tube.doubt(section, end, self.turn) } else { 0.0 };
         of(0).max(of(1))
     }
 

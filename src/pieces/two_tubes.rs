@@ -123,6 +123,16 @@ impl<'a> TwoTubes<'a> {
         Self { tubes }
     }
 
+    /// The same tubes as if the turn of one of them, or of both, had not been stated, where that is other tubes. All bounds of
+    /// those hold for these.
+    pub(crate) fn less_known(&self) -> impl Iterator<Item = Self> + use<'a> {
+        let [first, second] = self.tubes;
+        let less = [first.without_turn(), second.without_turn()];
+        let both = less[0].zip(less[1]).map(|(first, second)| [first, second]);
+        let one = [less[0].map(|first| [first, second]), less[1].map(|second| [first, second])];
+        both.into_iter().chain(one.into_iter().flatten()).map(|tubes| Self { tubes })
+    }
+
     /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
     pub(crate) fn stretches<'p>(&self, pair: &'p PiecePair) -> [Stretch<'p>; 2] {
         [0, 1].map(|k: usize| self.tubes[k].stretch(&pair.pieces[k], &pair.outers[k]))

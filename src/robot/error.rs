@@ -269,8 +269,9 @@ pub enum RobotError {
     /// Samples turn more sharply than what is known of a curve between them.
     #[error(
         "the centreline turns so sharply at point {index} that it may turn by {turn} rad between point {after} and the next; if the \
-         robot bends so, give more points there; if the points are measured, use `Tube::fit`; check the end tangents if there are \
-         any; give frames at one place one direction; for a robot of straight links use a Chain"
+         robot bends so, give more points there; if the points are measured, fit them with a `deviation` as large as their noise \
+         (`Tube::fit`); check the end tangents if there are any; give frames at one place one direction; for a robot of straight \
+         links use a Chain"
     )]
     TurnsTooSharply {
         /// Position in the input of the point where it turns most.
@@ -283,7 +284,8 @@ pub enum RobotError {
     /// The discs of a section would stick out of its flat end.
     #[error(
         "the section from {index} has a flat end, the curvature {curvature} and the radius {radius}; their product must \
-         be below 1, so check the unit of length, or smooth the points"
+         be below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
+         (`Tube::fit`)"
     )]
     BendsWithinRadius {
         /// Position of the section's first point; of a function, of the section.

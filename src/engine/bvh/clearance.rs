@@ -166,10 +166,27 @@ impl BvhSearch {
     }
 }
 
+/// The clearance of a tube of whose flat ends nothing is known but a turn, as if that had not been stated; none of any other
+/// tube. Bodies with flat ends are wider beside them than those with round ends, so that either may tell more.
+fn clearance_without_turn(
+    tube: &mut TubeInMesh,
+    memory: &mut TubeMemory,
+    tolerance: Real,
+) -> Result<Option<Clearance>, ProximityError> {
+    let placed = tube.tube;
+    let Some(less_known) = placed.without_turn() else { return Ok(None) };
+    tube.tube = less_known;
+    let answer = clearance(tube, memory, tolerance);
+    tube.tube = placed;
+    answer.map(Some)
+}
+
 impl<'a> Context<'a> {
     fn clearance(self, tube: &'a Tube, pose: &Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
-        clearance(&mut tube, memory, tolerance)
+        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
+        let answer = clearance(&mut tube, memory, tolerance)?;
+        Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
     fn clearance_pieces(
@@ -181,6 +198,7 @@ impl<'a> Context<'a> {
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let placed = tube.tube;
+        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
         let answer = clearance(&mut tube, memory, tolerance)?;
         for PendingPiece { piece, lower, .. } in memory.pieces.all() {
             let outer = placed.outer(piece);
@@ -191,7 +209,7 @@ impl<'a> Context<'a> {
             let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
             a.section.cmp(&b.section).then(from).then(to)
         });
-        Ok(answer)
+        Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
     fn tube_clears(
@@ -202,7 +220,14 @@ impl<'a> Context<'a> {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
-        tube_clears(&mut tube, memory, margin, resolution)
+        let placed = tube.tube;
+        let Some(less_known) = placed.without_turn() else {
+            return tube_clears(&mut tube, memory, margin, resolution);
+        };
+        tube.tube = less_known;
+        let decision = tube_clears(&mut tube, memory, margin, resolution);
+        tube.tube = placed;
+        Decision::better_of(decision, || tube_clears(&mut tube, memory, margin, resolution))
     }
 
     /// The tube in the mesh, and what the last query about a tube left.

@@ -52,7 +52,7 @@ fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving:
     let is_face =
         |end: usize| section.faces[end].is_some_and(|face| !is_moving || face.lasting == Lasting::Always);
     // What was stated in place alone says nothing of directions.
-    let is_certain = tube.tube.error() == 0.0 && tube.tube.turn() == 0.0;
+    let is_certain = tube.tube.error() == 0.0 && tube.tube.turn().unwrap_or(0.0) == 0.0;
     // Near a face a round end would stick out of it.
     let exposed = tube.exposed(section, arcs);
     let flat = [0, 1].map(|end| is_straight && is_certain && exposed[end] && is_face(end));

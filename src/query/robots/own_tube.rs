@@ -15,7 +15,7 @@ pub(crate) struct OwnTubeMemory {
     pending: PendingPieces<OwnPair, OwnPair, FoundBetween>,
 }
 
-/// Whether the parts of a tube that can meet keep more than the margin.
+/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no answer worse.
 ///
 /// # Errors
 /// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
@@ -27,9 +27,18 @@ pub(crate) fn own_tube_clears(
 ) -> Result<Decision, ProximityError> {
     let OwnTubeMemory { turns, beginning, pairs, pending } = memory;
     tube.measure_turns(turns)?;
-    let mut own = OwnTube::new(tube, turns)?;
-    own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
+    let own = OwnTube::new(tube, turns)?;
     let wanted = Wanted { margin, resolution, start: None };
-    let (decision, _) = keeps(&mut own, pending, pairs.drain(..), None, wanted)?;
-    Ok(decision)
+    let mut clears = |mut own: OwnTube| -> Result<Decision, ProximityError> {
+        own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
+        let (decision, _) = keeps(&mut own, pending, pairs.drain(..), None, wanted)?;
+        Ok(decision)
+    };
+    match own.less_known() {
+        Some(less_known) => {
+            let decision = clears(less_known);
+            Decision::better_of(decision, || clears(own))
+        }
+        None => clears(own),
+    }
 }

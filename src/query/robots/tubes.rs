@@ -46,11 +46,26 @@ pub(crate) fn place_tubes<'a>(
     Ok(TwoTubes::new([placed(0)?, placed(1)?]))
 }
 
-/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow that.
+/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow that. A stated turn makes no
+/// bound worse.
 ///
 /// # Errors
 /// A curve is not finite.
 pub(crate) fn clearance_between(
+    tubes: &mut TwoTubes,
+    memory: &mut TubesMemory,
+    tolerance: Real,
+) -> Result<RobotClearance, ProximityError> {
+    let mut known = None::<RobotClearance>;
+    for mut less_known in tubes.less_known() {
+        let answer = clearance_as_stated(&mut less_known, memory, tolerance)?;
+        known = Some(known.map_or(answer, |known| known.and(answer, tolerance)));
+    }
+    let answer = clearance_as_stated(tubes, memory, tolerance)?;
+    Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
+}
+
+fn clearance_as_stated(
     tubes: &mut TwoTubes,
     memory: &mut TubesMemory,
     tolerance: Real,
@@ -93,11 +108,32 @@ pub(crate) fn clearance_between(
     })
 }
 
-/// Whether two tubes keep more than the margin.
+/// Whether two tubes keep more than the margin. A stated turn makes no answer worse.
 ///
 /// # Errors
 /// A curve is not finite, or samples do not allow a decision at that resolution.
 pub(crate) fn tubes_clear(
+    tubes: &mut TwoTubes,
+    memory: &mut TubesMemory,
+    margin: Real,
+    resolution: Real,
+) -> Result<Decision, ProximityError> {
+    let mut decision = None;
+    for mut less_known in tubes.less_known() {
+        let mut clear = || clear_as_stated(&mut less_known, memory, margin, resolution);
+        decision = Some(match decision {
+            Some(known) => Decision::better_of(known, clear),
+            None => clear(),
+        });
+    }
+    let mut clear = || clear_as_stated(tubes, memory, margin, resolution);
+    match decision {
+        Some(known) => Decision::better_of(known, clear),
+        None => clear(),
+    }
+}
+
+fn clear_as_stated(
     tubes: &mut TwoTubes,
     memory: &mut TubesMemory,
     margin: Real,

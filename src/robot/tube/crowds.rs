@@ -11,9 +11,9 @@
 //! - *What is taken to be.* The first of them stays. Let g be how far the others are from it at most, the gap. The curve passes
 //!   within g of the one that stays, and bends no more than the samples show that are on the curve: those that do not
 //!   crowd, and for each crowd the place within the gap where the curve is. Or else the curve goes through all of them, and
-//!   in the segments before and behind bends no more than they show. That is left out if it would be by more than 1 rad
-//!   or within the radius, for which the tube would be refused. Where a tube that was good would be refused because of a crowd,
-//!   that is none.
+//!   in the two segments before and the two behind bends no more than they show (`own_samples`). A bend is left out that would
+//!   be by more than 1 rad or within the radius, for which the tube would be refused. Where a tube that was good would be
+//!   refused because of a crowd, that is none.
 //! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every chord to it; all bodies and
 //!   witnesses count g. A chord l long between samples with the gaps g1 and g2 has an end moved by g1 and another by g2. Of
 //!   two vectors v and w with |v - w| <= g = g1 + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g)
@@ -21,7 +21,7 @@
 //!   seems by no more than that for each of its segments, half of their lengths together is less by no more than half of
 //!   their g, and the curve between them is longer by no more than the share g / l.
 
-use super::segment::{Segment, curvature_between};
+use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
@@ -45,7 +45,16 @@ pub(super) struct Crowd {
     /// How far the others are from the first at most.
     pub gap: Real,
     /// What the segments before them and behind them bend, if the curve goes through all of them.
-    pub bends: [Real; 2],
+    pub bends: [Through; 2],
+}
+
+/// The bends that samples which crowd show, if the curve goes through all of them, for the two segments on one side.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Through {
+    /// For the segment beside them: what its turn into each segment between them shows, and what the second sample shows.
+    beside: [Real; 2],
+    /// For the segment beyond that one: what the first sample shows.
+    beyond: Real,
 }
 
 /// Finds the crowds that are as close together as two of the samples around `at`, or a few times as far. Whether there are
@@ -53,6 +62,7 @@ pub(super) struct Crowd {
 pub(super) fn find(
     samples: &[Vector],
     radii: &[Real],
+    tangents: Option<[Vector; 2]>,
     at: usize,
     one_place: Real,
     crowds: &mut Vec<Crowd>,
@@ -66,7 +76,7 @@ pub(super) fn find(
     let known = left_out(crowds);
     let mut within = closest;
     for _ in 0..=MOST_DOUBLINGS {
-        find_within(samples, radii, within, one_place, crowds);
+        find_within(samples, radii, tangents, [within, one_place], crowds);
         if left_out(crowds) > known {
             return true;
         }
@@ -76,7 +86,13 @@ pub(super) fn find(
 }
 
 /// Finds all crowds that are no farther than this from the first of them.
-fn find_within(samples: &[Vector], radii: &[Real], within: Real, one_place: Real, crowds: &mut Vec<Crowd>) {
+fn find_within(
+    samples: &[Vector],
+    radii: &[Real],
+    tangents: Option<[Vector; 2]>,
+    [within, one_place]: [Real; 2],
+    crowds: &mut Vec<Crowd>,
+) {
     crowds.clear();
     let (mut first, mut before, mut previous) = (0, Real::INFINITY, None);
     while first < samples.len() {
@@ -98,11 +114,13 @@ fn find_within(samples: &[Vector], radii: &[Real], within: Real, one_place: Real
         if is_crowd {
             let point = if first == 0 { 0 } else { usize::MAX };
             let here = &samples[first..next];
-            let ends = [
-                previous.map(|k: usize| (samples[k], here[0])),
-                samples.get(next).map(|&to| (here[here.len() - 1], to)),
-            ];
-            let bends = ends.map(|ends| ends.map_or(0.0, |ends| bend_beside(here, ends, one_place)));
+            let neighbours = [previous.map(|k: usize| samples[k]), samples.get(next).copied()];
+            let tangents = tangents.map(|[start, end]| [-start, end]);
+            let bends = [0, 1].map(|end| {
+                let ends = [neighbours[end], neighbours[1 - end]];
+                let tangent = tangents.map(|tangents| tangents[1 - end]);
+                through(end, here, ends, tangent, one_place)
+            });
             crowds.push(Crowd { first, last: next - 1, point, gap, bends });
         } else {
             // Samples at one place are dropped elsewhere.
@@ -116,24 +134,57 @@ fn find_within(samples: &[Vector], radii: &[Real], within: Real, one_place: Real
     }
 }
 
-/// How much a segment next to samples that crowd bends at most, if the curve goes through all of them: as if they did not crowd.
-fn bend_beside(samples: &[Vector], (from, to): (Vector, Vector), one_place: Real) -> Real {
-    let Some(beside) = Segment::between(from, to, one_place) else { return 0.0 };
-    let (mut most, mut last): (Real, _) = (0.0, samples[0]);
-    for &sample in &samples[1..] {
+/// What samples that crowd show of the segments towards an end, if the curve goes through all of them: as if they did not
+/// crowd. `near` is the next sample at that end and `far` the one at the other, where the curve ends along `tangent` if there is
+/// none.
+fn through(
+    end: usize,
+    samples: &[Vector],
+    [near, far]: [Option<Vector>; 2],
+    tangent: Option<Vector>,
+    one_place: Real,
+) -> Through {
+    let sample = |k: usize| if end == 0 { samples[k] } else { samples[samples.len() - 1 - k] };
+    let Some(beside) = near.and_then(|near| Segment::between(near, sample(0), one_place)) else {
+        return Through::default();
+    };
+    let (mut most, mut last): (Real, _) = (0.0, sample(0));
+    let mut first_two = [None; 2];
+    let mut take = |segment: Segment| match first_two {
+        [None, _] => first_two[0] = Some(segment),
+        [_, None] => first_two[1] = Some(segment),
+        _ => {}
+    };
+    for k in 1..samples.len() {
         // Between samples at one place there is no direction.
-        let Some(segment) = Segment::between(last, sample, one_place) else { continue };
+        let Some(segment) = Segment::between(last, sample(k), one_place) else { continue };
         if segment.length > one_place {
             most = most.max(curvature_between(&segment, &beside));
-            last = sample;
+            take(segment);
+            last = sample(k);
         }
     }
-    most
+    if let Some(onwards) = far.and_then(|far| Segment::between(last, far, one_place)) {
+        take(onwards);
+    }
+    let [first, second] = first_two;
+    let beyond = first.map_or(0.0, |first| curvature_between(&beside, &first));
+    let second = match (first, second, tangent) {
+        (Some(first), Some(second), _) => curvature_between(&first, &second),
+        (Some(first), None, Some(tangent)) => curvature_from(tangent, &first),
+        _ => 0.0,
+    };
+    Through { beside: [most, second], beyond }
 }
 
 /// What a segment next to a point that stands for samples bends, if the curve goes through all of them.
-pub(super) fn bend_at(crowds: &[Crowd], point: usize, end: usize) -> Real {
-    crowd_at(crowds, point).map_or(0.0, |crowd| crowd.bends[end])
+pub(super) fn bend_at(crowds: &[Crowd], point: usize, end: usize) -> [Real; 2] {
+    crowd_at(crowds, point).map_or([0.0; 2], |crowd| crowd.bends[end].beside)
+}
+
+/// The same of the segment beyond that one.
+pub(super) fn beyond_at(crowds: &[Crowd], point: usize, end: usize) -> Real {
+    crowd_at(crowds, point).map_or(0.0, |crowd| crowd.bends[end].beyond)
 }
 
 fn crowd_at(crowds: &[Crowd], point: usize) -> Option<&Crowd> {

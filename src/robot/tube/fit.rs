@@ -139,7 +139,7 @@ fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
 /// residual may be.
 fn within(
     deviation: Real,
-    spline: SmoothingSpline,
+    mut spline: SmoothingSpline,
     knots: &[Real],
     points: &[Vector],
     mut weight: Real,
@@ -148,27 +148,30 @@ fn within(
         return spline;
     }
     let wanted = deviation * (1.0 - 1.0 / 64.0);
+    let (mut forces, mut ahead) = (vec![Vector::ZERO; points.len()], vec![Vector::ZERO; points.len()]);
     for _ in 0..MOST_SOFTENED {
         let smoother = Smoother::new(knots, weight);
         // A softer spline gives way to smaller forces; and where it is far too stiff, forces would only bend it in jerks.
         weight /= 16.0;
-        if smoother.spline(points).largest_residual(points) > 4.0 * deviation {
+        smoother.fill(points.iter().copied(), &mut spline);
+        if spline.largest_residual(points) > 4.0 * deviation {
             continue;
         }
-        let mut forces = vec![Vector::ZERO; points.len()];
-        let mut ahead = forces.clone();
+        forces.fill(Vector::ZERO);
+        ahead.fill(Vector::ZERO);
         let mut pace: Real = 1.0;
         for _ in 0..MOST_STEPS {
-            let moved: Vec<_> = points.iter().zip(&ahead).map(|(point, force)| *point + *force).collect();
-            let spline = smoother.spline(&moved);
+            let moved = points.iter().zip(&ahead).map(|(point, force)| *point + *force);
+            smoother.fill(moved, &mut spline);
             if spline.largest_residual(points) <= deviation {
                 return spline;
             }
             let next_pace = 0.5 * (1.0 + (1.0 + 4.0 * pace * pace).sqrt());
             let onward = (pace - 1.0) / next_pace;
             pace = next_pace;
-            for (k, (force, ahead)) in forces.iter_mut().zip(&mut ahead).enumerate() {
-                let pulled = *ahead + points[k] - spline.values[k];
+            let both = points.iter().zip(&spline.values);
+            for ((force, ahead), (point, value)) in forces.iter_mut().zip(&mut ahead).zip(both) {
+                let pulled = *ahead + *point - *value;
                 let size = pulled.length();
                 let next = if size > wanted { pulled * (1.0 - wanted / size) } else { Vector::ZERO };
                 *ahead = next + (next - *force) * onward;

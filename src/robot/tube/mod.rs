@@ -35,6 +35,7 @@ use super::{Cap, RobotError};
 use crowds::Crowd;
 pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
+use own_samples::Hat;
 use parry3d_f64::math::{Real, Vector};
 
 /// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius for each section.
@@ -92,6 +93,8 @@ pub struct Tube {
     reach: Real,
     /// Memory for samples that crowd.
     crowds: [Vec<Crowd>; 2],
+    /// Memory for what samples show.
+    hats: Vec<Hat>,
     /// Memory for the next links: their ends and caps.
     ends: Vec<Vector>,
     caps: Vec<[Cap; 2]>,
@@ -268,6 +271,7 @@ impl Tube {
             merged: 0.0,
             reach: 0.0,
             crowds: Default::default(),
+            hats: Vec::new(),
             ends: Vec::new(),
             caps: Vec::new(),
         }

@@ -2,14 +2,11 @@
 
 use super::crowds::Crowd;
 use super::curve::CurveBound;
-use super::own_samples::{Bend, OwnSamples};
+use super::own_samples::{Bend, Hat, OwnSamples};
 use super::section::{Section, stretch};
 use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
-
-/// Samples of a section are uneven where a segment is so many times as long as its neighbour.
-const UNEVEN: Real = 4.0;
 
 /// All samples so far.
 pub(super) struct SoFar<'a> {
@@ -85,7 +82,7 @@ impl Open {
     #[inline(always)]
     pub(super) fn bend(&mut self, at: usize, before: &Segment, segment: &Segment) {
         self.turns += 1;
-        self.is_uneven |= before.length > UNEVEN * segment.length || segment.length > UNEVEN * before.length;
+        self.is_uneven |= segment.is_uneven(before);
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
         // Most turns are no larger than the largest so far, which is seen without a root and a division.
@@ -127,6 +124,7 @@ impl Open {
         last: usize,
         rounding: Real,
         so_far: &SoFar,
+        hats: &mut Vec<Hat>,
         bounds: &mut Vec<CurveBound>,
     ) -> Result<(Section, Option<usize>), Bend> {
         let SoFar { points, arcs, crowds } = *so_far;
@@ -140,13 +138,12 @@ impl Open {
             rounding,
             first,
             crowds,
-            shortest: 0.0,
         };
         let (mut sharpest, mut crowding) = (None, None);
         if self.is_uneven {
             bounds.resize(first, CurveBound::default());
             let least = if self.turns < 2 { self.at_ends } else { 0.0 };
-            (sharpest, crowding) = own.bound_unevenly(least, bounds);
+            (sharpest, crowding) = own.bound_unevenly(least, hats, bounds);
             self.section.bound_by(&bounds[first..], &arcs[first..=last]);
             if self.loosest > 0.0 {
                 // The chords are longer by that share, and what they turn by is, in the square.

@@ -5,8 +5,8 @@
 //! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
 //! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
 //! a section that has fewer than two of its own. What means over two segments hide of a curvature that changes evenly is
-//! added (`between_samples`). Where samples lie unevenly, those that are close together count only for the segments next to
-//! them (`own_samples`).
+//! added (`between_samples`). Where samples lie unevenly, what a sample shows counts for the two segments on either side of it
+//! (`own_samples`).
 //!
 //! With that curvature k, and h the length of a segment:
 //! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
@@ -26,6 +26,7 @@ use super::curve::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
 use super::lasting::Lasting;
 use super::open_section::{Open, SoFar};
+use super::own_samples::Hat;
 use super::section::{Face, Section};
 use super::segment::{Segment, curvature_between};
 use crate::distance::Scalar;
@@ -67,8 +68,9 @@ impl Tube {
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
         let given = Given { samples, radii, tangents, reach, one_place };
         let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
+        let mut hats = std::mem::take(&mut self.hats);
         crowds.clear();
-        let (mut result, mut crowding) = self.lay_samples(&given, &mut crowds);
+        let (mut result, mut crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
         for _ in 0..MOST_TRIED {
             let at = match result {
                 Err(RobotError::TurnsTooSharply { index, .. }) => Some(index),
@@ -77,17 +79,17 @@ impl Tube {
             };
             let is_good = result.is_ok();
             good.clone_from(&crowds);
-            if !at.is_some_and(|at| crowds::find(samples, radii, at, one_place, &mut crowds)) {
+            if !at.is_some_and(|at| crowds::find(samples, radii, tangents, at, one_place, &mut crowds)) {
                 break;
             }
-            (result, crowding) = self.lay_samples(&given, &mut crowds);
+            (result, crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
             if is_good && result.is_err() {
                 crowds.clone_from(&good);
-                (result, _) = self.lay_samples(&given, &mut crowds);
+                (result, _) = self.lay_samples(&given, &mut crowds, &mut hats);
                 break;
             }
         }
-        self.crowds = [crowds, good];
+        (self.crowds, self.hats) = ([crowds, good], hats);
         if result.is_ok() {
             self.lay_long_segments(tangents);
         }
@@ -100,15 +102,21 @@ impl Tube {
         &mut self,
         given: &Given,
         crowds: &mut [Crowd],
+        hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
         // Nearly always nothing crowds, and a loop that need not look is faster.
-        if crowds.is_empty() { self.lay::<false>(given, crowds) } else { self.lay::<true>(given, crowds) }
+        if crowds.is_empty() {
+            self.lay::<false>(given, crowds, hats)
+        } else {
+            self.lay::<true>(given, crowds, hats)
+        }
     }
 
     fn lay<const CROWD: bool>(
         &mut self,
         given: &Given,
         crowds: &mut [Crowd],
+        hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
         let Given { samples, radii, tangents, reach, one_place } = *given;
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
@@ -157,7 +165,7 @@ impl Tube {
                     let done = std::mem::replace(&mut open, Open::behind_step(last, arc, radius, turn));
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
                     let so_far = SoFar { points: &points, arcs: &arcs, crowds };
-                    match done.close(last, rounding + widest_gap, &so_far, &mut bounds) {
+                    match done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
                         Ok((section, near)) => {
                             self.sections.push(section);
                             crowding = crowding.or(near);
@@ -193,7 +201,7 @@ impl Tube {
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
         self.merged += crowds.iter().fold(0.0, |widest: Real, crowd| widest.max(crowd.gap));
         let so_far = SoFar { points: &points, arcs: &arcs, crowds };
-        match open.close(last, rounding + widest_gap, &so_far, &mut bounds) {
+        match open.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
             Ok((section, near)) => {
                 self.sections.push(section);
                 crowding = crowding.or(near);

@@ -2,6 +2,9 @@
 
 use parry3d_f64::math::{Real, Vector};
 
+/// Samples lie unevenly where a segment is so many times as long as its neighbour.
+const UNEVEN: Real = 4.0;
+
 /// A segment between two samples.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
@@ -35,6 +38,12 @@ impl Segment {
         } else {
             self
         }
+    }
+
+    /// Whether it is far longer or shorter than its neighbour.
+    #[inline(always)]
+    pub(super) fn is_uneven(&self, neighbour: &Self) -> bool {
+        neighbour.length > UNEVEN * self.length || self.length > UNEVEN * neighbour.length
     }
 
     /// The share of its length by which it may be longer.

@@ -117,35 +117,45 @@ pub(super) struct Smoother<'a> {
     knots: &'a [Real],
     weight: Real,
     factors: Option<Factors>,
+    /// The columns of Q.
+    columns: Vec<[Real; 3]>,
 }
 
 impl<'a> Smoother<'a> {
     pub(super) fn new(knots: &'a [Real], weight: Real) -> Self {
         // Two points are on a line.
         let factors = (knots.len() > 2).then(|| Factors::new(knots, weight));
-        Self { knots, weight, factors }
+        let columns = (2..knots.len()).map(|k| differences(knots, k - 2)).collect();
+        Self { knots, weight, factors, columns }
     }
 
     /// The spline near points.
     pub(super) fn spline(&self, points: &[Vector]) -> SmoothingSpline {
-        let (knots, count) = (self.knots, points.len());
-        let (values, seconds) = (points.to_vec(), vec![Vector::ZERO; count]);
-        let mut spline = SmoothingSpline { knots: knots.to_vec(), values, seconds };
-        let Some(factors) = &self.factors else { return spline };
-        let mut bends: Vec<_> = (0..count - 2)
-            .map(|k| {
-                let [a, b, c] = differences(knots, k);
-                points[k] * a + points[k + 1] * b + points[k + 2] * c
-            })
-            .collect();
-        factors.solve(&mut bends);
-        for (k, &bend) in bends.iter().enumerate() {
-            for (value, factor) in spline.values[k..].iter_mut().zip(differences(knots, k)) {
+        let mut spline =
+            SmoothingSpline { knots: self.knots.to_vec(), values: Vec::new(), seconds: Vec::new() };
+        self.fill(points.iter().copied(), &mut spline);
+        spline
+    }
+
+    /// Makes a spline at the same knots the one near points, in the memory that it has.
+    pub(super) fn fill(&self, points: impl ExactSizeIterator<Item = Vector>, spline: &mut SmoothingSpline) {
+        let SmoothingSpline { values, seconds, .. } = spline;
+        values.clear();
+        values.extend(points);
+        seconds.clear();
+        seconds.resize(values.len(), Vector::ZERO);
+        let Some(factors) = &self.factors else { return };
+        let last = values.len() - 1;
+        let bends = &mut seconds[1..last];
+        for ((bend, points), [a, b, c]) in bends.iter_mut().zip(values.windows(3)).zip(&self.columns) {
+            *bend = points[0] * *a + points[1] * *b + points[2] * *c;
+        }
+        factors.solve(bends);
+        for (k, (&bend, column)) in bends.iter().zip(&self.columns).enumerate() {
+            for (value, factor) in values[k..].iter_mut().zip(column) {
                 *value -= bend * (self.weight * factor);
             }
-            spline.seconds[k + 1] = bend;
         }
-        spline
     }
 
     /// How little its spline may be trusted: the score of cross-validation.

@@ -20,8 +20,8 @@ impl Tube {
     }
 
     /// The same tube, whose direction near a flat face may be off by up to `turn` (rad) from that of the centreline: within
-    /// two radii of the face, by arc length. Nothing is known of the directions of a tube by [`fit`](Self::fit) before; those
-    /// of any other are known that much less.
+    /// two radii of the face, by arc length. Nothing is known of the directions of a tube by [`fit`](Self::fit) before, so
+    /// that its bounds become closer and never looser; the directions of any other are known that much less.
     ///
     /// # Errors
     /// The turn is not finite or negative.
@@ -48,14 +48,28 @@ impl Tube {
         self.error + self.deviation + self.merged
     }
 
-    /// How far the centreline's directions near flat ends may be off, as far as somebody said so.
-    pub(crate) fn turn(&self) -> Real {
-        self.turn.unwrap_or(0.0)
+    /// By how much what was taken for one is apart.
+    pub(crate) fn merged(&self) -> Real {
+        self.merged
     }
 
-    /// The flat ends of a section, with what was stated of their directions.
-    pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
-        let tilt = |face: Face| match self.turn {
+    /// How far the centreline's directions near flat ends may be off, if that was stated.
+    pub(crate) fn turn(&self) -> Option<Real> {
+        self.turn
+    }
+
+    /// Whether nothing is known of the directions of flat ends but the turn that was stated.
+    pub(crate) fn is_turn_all_that_is_known(&self) -> bool {
+        let mut faces = self.sections.iter().flat_map(|section| section.faces).flatten().peekable();
+        self.turn.is_some()
+            && !self.is_loose()
+            && faces.peek().is_some()
+            && faces.all(|face| face.tilt == Real::INFINITY)
+    }
+
+    /// The flat ends of a section, whose directions may be off by a turn, if one is known.
+    pub(crate) fn faces(&self, section: &Section, turn: Option<Real>) -> [Option<Face>; 2] {
+        let tilt = |face: Face| match turn {
             Some(turn) if face.tilt < Real::INFINITY => face.tilt + turn,
             Some(turn) => turn,
             None => face.tilt,
@@ -63,10 +77,10 @@ impl Tube {
         section.faces.map(|face| face.map(|face| Face { tilt: tilt(face), ..face }))
     }
 
-    /// How far apart two bounds near a flat end of a section have to be because of what was stated of its direction, or
-    /// was not.
-    pub(crate) fn doubt(&self, section: &Section, end: usize) -> Real {
-        match (section.faces[end], self.turn) {
+    /// How far apart two bounds near a flat end of a section have to be because its direction may be off by a turn, or is
+    /// not known.
+    pub(crate) fn doubt(&self, section: &Section, end: usize, turn: Option<Real>) -> Real {
+        match (section.faces[end], turn) {
             (Some(_), Some(turn)) => section.radius * (2.0 * turn).min(1.0),
             (Some(Face { tilt: Real::INFINITY, .. }), None) => section.radius,
             _ => 0.0,

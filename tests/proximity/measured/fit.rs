@@ -3,8 +3,12 @@
 use super::{Discs, Seen, discs, judge};
 use continuum_testing::{Arcs, Random};
 use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{Decision, ProximityError, RobotPair};
 use parry_continuum::{RobotError, Tube};
 use std::f64::consts::{PI, TAU};
+
+/// How many fits are compared with and without a turn.
+const TUBES: usize = 120;
 
 /// Evenly spread in a ball.
 fn in_ball(random: &mut Random) -> Vector {
@@ -147,4 +151,90 @@ fn points_that_turn_back_are_refused() {
         let found = Tube::fit(&points, &[0.1 * scale; 3], scale);
         assert!(matches!(found, Err(RobotError::TurnsTooSharply { .. })), "{found:?}");
     }
+}
+
+/// Whether an answer is at least as good as another one: it decides the same, or it decides at all.
+fn is_no_worse(known: &Result<Decision, ProximityError>, before: &Result<Decision, ProximityError>) -> bool {
+    match before {
+        Ok(Decision::Undecided) => known.is_ok(),
+        Ok(decided) => known.as_ref().ok() == Some(decided),
+        Err(_) => true,
+    }
+}
+
+/// What is stated of directions never makes a bound looser, nor an answer less certain: beside a mesh, another tube and itself,
+/// near faces and far from them.
+#[test]
+fn a_stated_turn_never_makes_an_answer_worse() {
+    let (mut random, mut seen) = (Random::new(93), Seen::default());
+    let (mut better, mut decided, mut beside) = (0, 0, 0);
+    for round in 0..TUBES {
+        let arcs = if round % 2 == 0 {
+            let mut arcs = Arcs::from_frame(random.pose(5.0));
+            arcs.push(random.between(0.3, 2.0), &[(random.between(2.0, 20.0), Vector::ZERO)]);
+            arcs
+        } else {
+            robot(&mut random)
+        };
+        let unit = [1.0, 1e-3, 1e-6][random.below(3) as usize];
+        let deviation = [0.02, 0.25, 0.25, 1.0][random.below(4) as usize];
+        let (points, radii) = measured(&mut random, &arcs, 60, 0.0);
+        let points: Vec<_> = points.iter().map(|point| *point * unit).collect();
+        let radii: Vec<_> = radii.iter().map(|radius| radius * unit).collect();
+        let tube = Tube::fit(&points, &radii, deviation * unit).unwrap();
+        let turned = tube.clone().with_turn([0.0, 0.02, 0.02, 0.3, 2.0][random.below(5) as usize]).unwrap();
+        let curve = |s: f64| arcs.at(s);
+        for _ in 0..6 {
+            let point = super::near(&mut random, &discs(&arcs), &curve, 4.0);
+            let truth = super::distance(&discs(&arcs), &curve, point);
+            let tolerance = [0.0, 0.01, 0.1][random.below(3) as usize] * unit;
+            let ask = |tube: &Tube| super::speck(point * unit).clearance(tube, &Pose::IDENTITY, tolerance);
+            let [before, known] = [ask(&tube).unwrap(), ask(&turned).unwrap()];
+            assert!(before.lower <= known.lower && known.upper <= before.upper, "{before:?} {known:?}");
+            assert!(known.resolved || !before.resolved, "{before:?} {known:?}");
+            assert!(known.lower <= truth * unit * (1.0 + 1e-9) && truth * unit <= known.upper + 1e-9 * unit);
+            let margin = (truth + random.between(-1.0, 1.0) * (deviation + 1.0)).max(0.0) * unit;
+            let decide = |tube: &Tube| {
+                super::speck(point * unit).tube_clears(tube, &Pose::IDENTITY, margin, 1e-3 * unit)
+            };
+            let [before, known] = [decide(&tube), decide(&turned)];
+            assert!(is_no_worse(&known, &before), "{before:?} {known:?}");
+            seen.asked += 1;
+            better += usize::from(known.is_ok() && before.is_err());
+            decided += usize::from(matches!(before, Ok(Decision::Clear)));
+        }
+        if round % 8 == 0 {
+            let pose = Pose::from_parts(random.direction() * (5.0 * unit), random.pose(1.0).rotation);
+            let other = [&tube, &turned][random.below(2) as usize];
+            let ask = |tube: &Tube| {
+                RobotPair::new().clearance(tube, &Pose::IDENTITY, other, &pose, 0.1 * unit).unwrap()
+            };
+            let [before, known] = [ask(&tube), ask(&turned)];
+            assert!(before.lower <= known.lower && known.upper <= before.upper, "{before:?} {known:?}");
+            let margin = before.upper * random.between(0.2, 1.2);
+            let decide = |tube: &Tube| {
+                RobotPair::new().tubes_clear(tube, &Pose::IDENTITY, other, &pose, margin, 0.1 * unit)
+            };
+            let [before, known] = [decide(&tube), decide(&turned)];
+            assert!(is_no_worse(&known, &before), "{before:?} {known:?}");
+            let decide = |tube: &Tube| RobotPair::new().tube_self_clears(tube, 0.1 * unit, 0.05 * unit);
+            assert!(is_no_worse(&decide(&turned), &decide(&tube)));
+            beside += usize::from(before.is_ok());
+        }
+    }
+    assert!(seen.asked == 6 * TUBES && decided > TUBES / 2, "{seen:?} {better} {decided} {beside}");
+}
+
+/// What is refused is told in the words of the function that was called.
+#[test]
+fn what_is_refused_names_the_deviation() {
+    let zigzag: Vec<_> = (0..40).map(|k| Vector::new(f64::from(k % 2), 0.0, 0.1 * f64::from(k))).collect();
+    let error = Tube::fit(&zigzag, &[0.1; 39], 1e-3).unwrap_err();
+    assert!(matches!(error, RobotError::TurnsTooSharply { .. }), "{error}");
+    assert!(error.to_string().contains("a `deviation` as large as their noise"), "{error}");
+    let arc: Vec<_> =
+        (0..40).map(|k| 0.1 * f64::from(k)).map(|a| Vector::new(a.cos(), a.sin(), 0.0)).collect();
+    let error = Tube::from_samples(&arc, &[1.01; 39], None).unwrap_err();
+    assert!(matches!(error, RobotError::BendsWithinRadius { .. }), "{error}");
+    assert!(error.to_string().contains("`Tube::fit`"), "{error}");
 }
