@@ -171,6 +171,20 @@ impl JoinedLink {
         }
     }
 
+    /// How far two faces are apart at least, but for rounding: as far as the second is ahead of a flat
+    /// first one's plane. Its points are its centre and what is perpendicular to its normal, up to its
+    /// radius away; of a round one, up to its radius in all directions.
+    pub(crate) fn face_gap(&self, end: usize, other: &Self, other_end: usize) -> Real {
+        if !self.link.flat()[end] {
+            return 0.0;
+        }
+        let normal = self.outward(end);
+        let ahead = (other.centre(other_end) - self.centre(end)).dot(normal);
+        let sine =
+            if other.link.flat()[other_end] { normal.cross(other.outward(other_end)).length() } else { 1.0 };
+        ahead - other.link.radius() * sine
+    }
+
     /// The nearest points of two faces.
     pub(crate) fn face_to_face(&self, end: usize, other: &Self, other_end: usize) -> NearestOfLinks {
         match (self.link.flat()[end], other.link.flat()[other_end]) {

@@ -261,7 +261,8 @@ impl<'a> OneRobot<'a> {
             let [one, two] = &joined;
             let tolerance = one.tolerance(two);
             if look && one.is_face(1) && two.is_face(0) {
-                let may = one.ball(1).may_be_within(now + tolerance.0, &two.ball(0));
+                let may = one.face_gap(1, two, 0) <= now + tolerance.0
+                    && one.ball(1).may_be_within(now + tolerance.0, &two.ball(0));
                 if may {
                     let nearest = one.face_to_face(1, two, 0);
                     if one.faces_count(1, two, 0, &nearest, tolerance) {

@@ -29,6 +29,8 @@
 //! are at shoulders of which 3 holds: all links of one node have a shoulder at the end towards
 //! which the way leads.
 //!
+//! If all `w . t > 0`, the faces at ends of links look away, and if all `w . t < 0`, those at starts.
+//!
 //! A shoulder that the way comes to counts neither if the adjoining link holds its point
 //! (`least_covered`). The same tells of two faces that look at one another.
 //!
@@ -276,7 +278,8 @@ impl OwnFaces {
         }
         let from_one = two.seen_from(one, way, away, self.rounding);
         let from_two = one.seen_from(two, -way, away, self.rounding);
-        let may_count = one.has_face() && from_one.may_be_local || two.has_face() && from_two.may_be_local;
+        let may_count = one.may_see(&from_two) && from_one.may_be_local
+            || two.may_see(&from_one) && from_two.may_be_local;
         let at_shoulders =
             one.all[1] && from_two.forwards == Some(false) || two.all[0] && from_one.forwards == Some(true);
         in_band &= may_count || band == Band::All && !at_shoulders;
@@ -364,6 +367,15 @@ impl Node {
 
     fn has_face(&self) -> bool {
         self.some != [false; 2]
+    }
+
+    /// Whether some face of the node may look back to where the node is seen from.
+    fn may_see(&self, seen: &Seen) -> bool {
+        match seen.forwards {
+            Some(true) => self.some[0],
+            Some(false) => self.some[1],
+            None => self.has_face(),
+        }
     }
 
     /// How the node lies as seen from the faces of another, from whose centre `way` leads to this
