@@ -439,7 +439,7 @@ impl<'a> OwnTube<'a> {
             return false;
         }
         let chord_direction = (ends[1] - ends[0]) / chord;
-        let tilt = bend + 2.0 * errors / chord + tube.tube.turn();
+        let tilt = bend + 2.0 * errors / chord + tube.tube.turn().unwrap_or(0.0);
         let moved = [0, 1].map(|turning| self.moved(pair, turning));
         let turn = moved[0].turn + moved[1].turn;
         let at_face = tube.section(pair.pieces[k].section);

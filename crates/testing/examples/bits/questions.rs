@@ -47,8 +47,16 @@ impl Anatomy {
 
 /// One chain and the mesh.
 pub fn chains(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
-    let mut all =
-        records(["minimum", "per_link", "certify", "clears", "contacts", "derivatives", "exhaustive", "side"]);
+    let mut all = records([
+        "minimum",
+        "per_link",
+        "certify",
+        "clears",
+        "contacts",
+        "derivatives",
+        "exhaustive",
+        "side",
+    ]);
     let [minimum, per_link, certify, clears, contacts, derivatives, exhaustive, side] = &mut all;
     let random = &mut Random::new(7);
     let mut near = Anatomy::new(random, offset)?;
