@@ -37,14 +37,14 @@ impl Clearance {
     }
 
     /// What stands in the place of an answer until its turn comes.
-    pub(crate) fn unanswered() -> Self {
+    pub(crate) fn placeholder() -> Self {
         Self {
             lower: Real::NAN,
             upper: Real::NAN,
             resolved: false,
             uncertainty: Real::NAN,
             section: 0,
-            witness: Witness::none(),
+            witness: Witness::placeholder(),
         }
     }
 }

@@ -21,8 +21,8 @@ pub struct LinkProximity {
 
 impl LinkProximity {
     /// What stands in the place of an answer until its turn comes.
-    pub(crate) fn unanswered() -> Self {
-        Self { link: 0, distance: Real::NAN, witness: Witness::none() }
+    pub(crate) fn placeholder() -> Self {
+        Self { link: 0, distance: Real::NAN, witness: Witness::placeholder() }
     }
 }
 

@@ -26,7 +26,7 @@ pub struct Witness {
 
 impl Witness {
     /// What stands in a batch until its turn comes.
-    pub(crate) fn none() -> Self {
+    pub(crate) fn placeholder() -> Self {
         let nowhere = Vector::splat(Real::NAN);
         Self { on_robot: nowhere, on_mesh: nowhere, triangle: 0, arc_length: Real::NAN, segment: 0 }
     }

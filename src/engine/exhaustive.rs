@@ -4,9 +4,9 @@ use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
-use crate::query::contacts::{Asked, LocalMinima, RobotContacts, Wall};
+use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
 use crate::robot::Chain;
-use crate::search::exhaustive::{Kernels, Pass, Sought, Triangles};
+use crate::search::exhaustive::{Kernels, Pass, PassGoal, Triangles};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -128,7 +128,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
     fn run<'a>(
         &mut self,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
-        aim: Sought,
+        aim: PassGoal,
     ) {
         self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
     }
@@ -138,7 +138,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
     fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
-        aim: Sought,
+        aim: PassGoal,
         out: &mut [Result<A, ProximityError>],
         mut answer: impl FnMut(&Self, usize, &mut Result<A, ProximityError>),
     ) {
@@ -190,7 +190,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        self.run(once(Ok(robot)), Sought::EachLink);
+        self.run(once(Ok(robot)), PassGoal::EachLink);
         out.extend(self.pass.answers(0));
         Ok(())
     }
@@ -200,35 +200,41 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        self.run(once(Ok(robot)), Sought::Least(bound));
+        self.run(once(Ok(robot)), PassGoal::Least(bound));
         Ok(self.least(0))
     }
 
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
-        self.run(once(Ok(robot)), Sought::Within(margin));
+        self.run(once(Ok(robot)), PassGoal::Within(margin));
         Ok(self.pass.is_clear(0))
     }
 
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        asked: Asked,
+        query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
         let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
-        let mut contacts = RobotContacts::new(level, Wall::of(&triangles.mesh), robot, asked, minima, out);
+        let mut contacts = ContactCollector::new(level, Wall::of(&triangles.mesh), robot, query, minima, out);
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
             let end = first + count;
-            *work +=
-                pass.run(level, culling, triangles, once(Ok(robot)), first..end, Sought::Every(asked.margin));
+            *work += pass.run(
+                level,
+                culling,
+                triangles,
+                once(Ok(robot)),
+                first..end,
+                PassGoal::Every(query.margin),
+            );
             let Some(within) = pass.within() else {
                 count = count.div_ceil(2);
                 continue;
             };
             for pairs in within.chunk_by(|one, other| one.0 == other.0) {
                 let triangles = pairs.iter().map(|pair| pair.1);
-                contacts.add(first + pairs[0].0 as usize, |_, near| near.add_unknown(triangles));
+                contacts.add(first + pairs[0].0 as usize, |_, near| near.add_unclassified(triangles));
             }
             first = end;
         }
@@ -242,7 +248,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(Vec::new()));
-        self.run_batch(robots, Sought::EachLink, out, |engine, number, out| {
+        self.run_batch(robots, PassGoal::EachLink, out, |engine, number, out| {
             let mut links = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
             links.clear();
             links.extend(engine.pass.answers(number));
@@ -256,8 +262,8 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        out.resize_with(robots.len(), || Ok(LinkProximity::unanswered()));
-        self.run_batch(robots, Sought::Least(Real::INFINITY), out, |engine, number, out| {
+        out.resize_with(robots.len(), || Ok(LinkProximity::placeholder()));
+        self.run_batch(robots, PassGoal::Least(Real::INFINITY), out, |engine, number, out| {
             let least = engine.least(number);
             *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), engine.pass.first_link(number))));
         });
@@ -271,7 +277,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(false));
-        self.run_batch(robots, Sought::Within(margin), out, |engine, number, out| {
+        self.run_batch(robots, PassGoal::Within(margin), out, |engine, number, out| {
             *out = Ok(engine.pass.is_clear(number));
         });
         Ok(())

@@ -1,7 +1,7 @@
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
 use crate::pair::{PlacedLink, PlacedRobot, contact, contacts, derivative};
-use crate::query::contacts::Asked;
+use crate::query::contacts::ContactQuery;
 use crate::query::{check_bound, check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -167,7 +167,7 @@ pub trait Proximity: Engine {
         out.clear();
         check_margin(margin)?;
         check_not_negative("prominence", prominence)?;
-        self.ask_contacts(PlacedRobot::new(robot, pose)?, Asked { margin, prominence }, out)
+        self.ask_contacts(PlacedRobot::new(robot, pose)?, ContactQuery { margin, prominence }, out)
     }
 
     /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is none; inner vectors are used
@@ -390,7 +390,7 @@ pub(crate) trait Engine {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        asked: Asked,
+        query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError>;
 

@@ -1,10 +1,10 @@
 //! Two robots beside one another.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
-use crate::query::motion::{MotionsMemory, OwnMotionMemory, TwoMotions, Wanted, own_motion_clears};
+use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory, SelfMotionMemory, self_clears_motion};
 use crate::query::robots::{
-    OneRobot, OwnMemory, OwnTubeMemory, PairMemory, TubesMemory, TwoRobots, clearance_between,
-    own_tube_clears, place_tubes, tubes_clear,
+    PairMemory, RobotWithItself, SelfMemory, SelfTubeMemory, TubesMemory, TwoRobots, clearance_between,
+    place_tubes, self_clears_tube, tubes_clear,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::{Chain, Motion, Tube};
@@ -38,11 +38,11 @@ use parry3d_f64::math::{Pose, Real};
 #[derive(Clone, Debug, Default)]
 pub struct RobotPair {
     memory: PairMemory,
-    own: OwnMemory,
+    own: SelfMemory,
     tubes: TubesMemory,
-    own_tube: OwnTubeMemory,
+    own_tube: SelfTubeMemory,
     motions: MotionsMemory,
-    own_motion: OwnMotionMemory,
+    own_motion: SelfMotionMemory,
 }
 
 /// What the parameters are called.
@@ -231,8 +231,8 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        let mut motions = TwoMotions { memory: &mut self.motions, motions: (a, b), names: MOTIONS };
-        motions.clear(Wanted { margin, resolution })
+        let mut motions = MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS };
+        motions.clear(MarginQuery { margin, resolution })
     }
 
     /// As [`self_minimum`], with a memory.
@@ -240,7 +240,7 @@ impl RobotPair {
     /// # Errors
     /// As [`self_minimum`].
     pub fn self_minimum(&mut self, robot: &Chain) -> Result<Option<RobotProximity>, ProximityError> {
-        Ok(OneRobot::new(robot, &mut self.own)?.minimum(&mut self.own))
+        Ok(RobotWithItself::new(robot, &mut self.own)?.minimum(&mut self.own))
     }
 
     /// As [`self_clears`], in memory that is used again.
@@ -249,7 +249,7 @@ impl RobotPair {
     /// As [`self_clears`].
     pub fn self_clears(&mut self, robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
         check_margin(margin)?;
-        Ok(OneRobot::new(robot, &mut self.own)?.clears(margin, &mut self.own))
+        Ok(RobotWithItself::new(robot, &mut self.own)?.clears(margin, &mut self.own))
     }
 
     /// As [`tube_self_clears`], in memory that is used again.
@@ -263,7 +263,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        own_tube_clears(tube, &mut self.own_tube, margin, resolution)
+        self_clears_tube(tube, &mut self.own_tube, margin, resolution)
     }
 
     /// As [`motion_self_clears`], in memory that is used again.
@@ -277,7 +277,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        own_motion_clears(motion, &mut self.own_motion, Wanted { margin, resolution })
+        self_clears_motion(motion, &mut self.own_motion, MarginQuery { margin, resolution })
     }
 }
 

@@ -19,11 +19,11 @@ pub(super) struct CandidateTriangle {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
     all: Vec<CandidateTriangle>,
-    links: Vec<OfLink>,
+    links: Vec<LinkSlots>,
 }
 
 #[derive(Clone, Debug, Default)]
-struct OfLink {
+struct LinkSlots {
     range: Range<usize>,
     /// Whether there are more than came back.
     too_many: bool,
@@ -37,7 +37,7 @@ impl Candidates {
 
     /// The candidates of a link by triangle, and whether there are more.
     pub(super) fn of(&self, link: usize) -> (&[CandidateTriangle], bool) {
-        let OfLink { range, too_many } = &self.links[link];
+        let LinkSlots { range, too_many } = &self.links[link];
         (&self.all[range.clone()], *too_many)
     }
 
@@ -77,7 +77,7 @@ impl Candidates {
             }
             // They come in any order.
             self.all[begin..].sort_by_key(|candidate| candidate.triangle);
-            self.links.push(OfLink { range: begin..self.all.len(), too_many });
+            self.links.push(LinkSlots { range: begin..self.all.len(), too_many });
         }
         Ok(())
     }

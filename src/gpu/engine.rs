@@ -12,7 +12,7 @@ use crate::answer::{Contact, LinkProximity, ProximityError};
 use crate::engine::{Engine, Proximity, placed};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{PlacedLink, PlacedRobot};
-use crate::query::contacts::{Asked, Wall, contacts_by_all_triangles};
+use crate::query::contacts::{ContactQuery, Wall, contacts_by_all_triangles};
 use crate::robot::Chain;
 use gpu_batch::DeviceFailure;
 use gpu_batch::wgpu::ComputePipeline;
@@ -233,7 +233,7 @@ impl Engine for GpuExhaustive {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        asked: Asked,
+        asked: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
         contacts_by_all_triangles(Wall::of(&self.mesh), robot, asked, out);
@@ -281,7 +281,7 @@ impl Engine for GpuExhaustive {
         self.mesh.set_vertices(vertices);
         self.frame = SearchFrame::new(&self.mesh);
         if let Some(mesh) = &mut self.on_device {
-            mesh.outdate();
+            mesh.invalidate();
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn nearest_of(
 ) -> Option<Nearest> {
     let mut best = Best::within(bound);
     for triangle in triangles {
-        if triangle < best.wanted_below() {
+        if triangle < best.triangle_limit() {
             best.measure(link, triangle, mesh.corners(triangle));
         }
     }
@@ -28,13 +28,13 @@ pub(super) fn nearest_of(
 }
 
 /// Triangles that a core of the CPU takes at a time.
-const SHARE: usize = 4096;
+const TASK_SIZE: usize = 4096;
 
 /// The nearest of all triangles, of those at most `bound` away.
 pub(super) fn nearest_of_all(link: &PlacedLink, bound: Real, mesh: &Mesh) -> Option<Nearest> {
-    let mut shares = vec![None; mesh.len().div_ceil(SHARE)];
+    let mut shares = vec![None; mesh.len().div_ceil(TASK_SIZE)];
     each(&mut shares, |share, nearest| {
-        let triangles = share * SHARE..mesh.len().min((share + 1) * SHARE);
+        let triangles = share * TASK_SIZE..mesh.len().min((share + 1) * TASK_SIZE);
         *nearest = nearest_of(link, triangles.map(|triangle| triangle as u32), bound, mesh);
     });
     let mut best = Best::within(bound);

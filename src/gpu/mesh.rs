@@ -50,7 +50,7 @@ impl DeviceMesh {
     }
 
     /// The vertices have moved: what is on the device is no longer true.
-    pub(super) fn outdate(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.is_current = false;
     }
 
@@ -129,7 +129,7 @@ impl DevicePart {
     ) {
         to.resize(self.vertices.len() * 3 * SIZE, 0);
         let mut shares: Vec<_> =
-            to.chunks_mut(Mesh::SHARE * 3 * SIZE).zip(self.vertices.chunks(Mesh::SHARE)).collect();
+            to.chunks_mut(Mesh::TASK_SIZE * 3 * SIZE).zip(self.vertices.chunks(Mesh::TASK_SIZE)).collect();
         each(&mut shares, |_, (bytes, vertices)| {
             for (bytes, &vertex) in bytes.chunks_exact_mut(3 * SIZE).zip(*vertices) {
                 let Vec3 { x, y, z } = frame.point::<E>(mesh.vertices()[vertex as usize]);

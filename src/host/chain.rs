@@ -8,7 +8,7 @@
 //! inside is never overstated. Whether a point is inside is exact everywhere.
 //!
 //! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes them (see
-//! [`joint`](super::joint)).
+//! [`inner_points`](super::inner_points)).
 
 use super::mass;
 use crate::robot::length;

@@ -5,7 +5,7 @@
 //! the last place, and a ray that grazes a box may be rounded past it. All that is left out here is proven to be further away
 //! than rounding can be wrong; so what the parts say is what the whole says.
 
-use super::elements::rounding;
+use super::height_field::rounding;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::partitioning::BvhNode;

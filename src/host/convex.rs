@@ -3,12 +3,12 @@
 //! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of 1e-2 they may say that
 //! there is no contact however far one looks, or that GJK has not converged. For any unit vector `n` the gap between the
 //! two shapes' supports along `n` is at most their distance, and where it is below 0 a translation by it along `n` separates
-//! them. So all that is missing is a good `n`, and the link without its outermost [layer](super::layers) gives one; where it is
+//! them. So all that is missing is a good `n`, and the link without its outermost [layer](super::shrunk_links) gives one; where it is
 //! off, by about the layer's depth, that costs the gap about its square. The layers are tried from thin to thick; what
 //! still meets the innermost is parted along the best of a few directions that both shapes have.
 
 use super::axial::{perpendicular, unit};
-use super::layers::layers;
+use super::layers::shrunk_links;
 use super::range::largest;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -160,7 +160,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
         let mut best: Option<(Real, Vector, Vector)> = None;
         let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
-        for (core, depth) in layers(self.link) {
+        for (core, depth) in shrunk_links(self.link) {
             let [first, second]: [&dyn Shape; 2] =
                 if self.link_is_first { [&core, self.shapes[1]] } else { [self.shapes[0], &core] };
             let points = self.inner.closest_points(self.pos12, first, second, Real::MAX)?;

@@ -156,7 +156,7 @@ impl PlacedConvex<'_> {
                 consider(-n);
             }
         };
-        let mut edges = [Vector::ZERO; MOST_EDGES];
+        let mut edges = [Vector::ZERO; MAX_EDGES];
         let count = self.edges_at(corner, &mut edges);
         let edges = &edges[..count];
         let link = &self.link;
@@ -188,7 +188,7 @@ impl PlacedConvex<'_> {
     }
 
     /// The unit directions of the edges at a corner.
-    fn edges_at(&self, corner: Vector, edges: &mut [Vector; MOST_EDGES]) -> usize {
+    fn edges_at(&self, corner: Vector, edges: &mut [Vector; MAX_EDGES]) -> usize {
         let rotation = self.pose.rotation;
         let mut count = 0;
         let mut add = |edge: Option<Vector>| {
@@ -220,7 +220,7 @@ impl PlacedConvex<'_> {
 }
 
 /// Of a corner with more edges only so many are looked at.
-const MOST_EDGES: usize = 16;
+const MAX_EDGES: usize = 16;
 
 /// Whether a normal or its opposite is one that an edge between two faces has. All but the normal lie across the edge.
 fn is_between(n: Vector, [a, b]: [Vector; 2], edge: Vector) -> bool {

@@ -3,15 +3,15 @@
 //! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on around the
 //! cap to the cap's point furthest along the normal. A surface that is only touched by the crest cannot be
 //! touched by anything else of barrel or cap. Its ends are what the link stands on (see
-//! [`footing`](super::footing)); these count as well:
+//! [`support_points`](super::support_points)); these count as well:
 //!
 //! 1. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge is left out:
 //!    that point speaks for it, and one beside it would hinder the cap from rolling.
 //! 2. **An edge along it**, with the two ends of what is beside the barrel.
 
 use super::feature::{self, SAME_POINT};
-use super::footing::{self, centre, leans_round, outward};
-use super::meeting::Meeting;
+use super::link_triangle_points::Meeting;
+use super::support_points::{self, centre, leans_round, outward};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
@@ -66,7 +66,7 @@ impl Crest {
     /// The crest of a link that starts at the origin, if it has one.
     pub fn of(link: &ModifiedCylinder, normal: Vector) -> Option<Self> {
         let axis = link.axis();
-        let lateral = footing::lateral(link, normal)?;
+        let lateral = support_points::lateral(link, normal)?;
         let (across, slope) = (normal.dot(lateral), normal.dot(axis));
         let (radius, length) = (link.radius(), link.length());
         let side = axis.cross(lateral);

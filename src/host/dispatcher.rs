@@ -2,19 +2,19 @@
 
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
-use super::elements::{self, FieldPair};
+use super::decomposition::{Decomposition, has_parts};
+use super::height_field::{self, HeightFieldPair};
 use super::iterated::IteratedPair;
 use super::link_cast;
 use super::link_pair::LinkPair;
 use super::link_triangle::LinkTrianglePair;
-use super::parts::{Parts, has_parts};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_surface::{RobotSurface, links_of};
 use super::straight_cast;
-use super::thin::Thin;
+use super::strict_dispatcher::StrictDispatcher;
+use super::thin_shape::ThinShape;
 use super::voxels;
-use super::watched::Watched;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
@@ -111,7 +111,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
         check_pose(pos12)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.intersection_test();
@@ -119,7 +119,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.intersection_test();
         }
-        let parts = Parts::of(g1, g2)?;
+        let parts = Decomposition::of(g1, g2)?;
         // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
         if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
             return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
@@ -128,17 +128,17 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
         }
         match parts {
-            Parts::Composite(parts) => {
+            Decomposition::Composite(parts) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.intersection_test()
             }
-            Parts::Field(field) => {
-                FieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
+            Decomposition::Field(field) => {
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
-            Parts::Voxels(cells) => voxels::intersection_test(self, pos12, cells, g2),
-            Parts::OfSecond => {
+            Decomposition::Voxels(cells) => voxels::intersection_test(self, pos12, cells, g2),
+            Decomposition::OfSecond => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
-            Parts::None => {
+            Decomposition::None => {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(ShapeIntersection::new(links.distance() <= 0.0));
                 }
@@ -151,7 +151,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
 
     fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
         check_pose(pos12)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.distance();
@@ -159,18 +159,20 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.distance();
         }
-        match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => {
-                let answer = Watched::ask(self, |watched| {
+        match Decomposition::of(g1, g2)? {
+            Decomposition::Composite(parts) => {
+                let answer = StrictDispatcher::ask(self, |watched| {
                     details::distance_composite_shape_shape(watched, pos12, parts, g2)
                 })?;
                 // What parry says where no part was near enough to be looked at.
                 if answer.distance < Real::MAX { Ok(answer) } else { Err(Unsupported) }
             }
-            Parts::Field(field) => FieldPair { dispatcher: self, field, pos12, other: g2 }.distance(),
-            Parts::Voxels(_) => Err(Unsupported),
-            Parts::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
-            Parts::None => {
+            Decomposition::Field(field) => {
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.distance()
+            }
+            Decomposition::Voxels(_) => Err(Unsupported),
+            Decomposition::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
+            Decomposition::None => {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(ShapeDistance::new(links.distance()));
                 }
@@ -195,7 +197,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<Option<Contact>, Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.contact(prediction);
@@ -203,19 +205,19 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.contact(prediction);
         }
-        match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => {
+        match Decomposition::of(g1, g2)? {
+            Decomposition::Composite(parts) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.contact(prediction)
             }
-            Parts::Field(field) => {
-                FieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
+            Decomposition::Field(field) => {
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
             }
-            Parts::Voxels(_) => Err(Unsupported),
-            Parts::OfSecond => {
+            Decomposition::Voxels(_) => Err(Unsupported),
+            Decomposition::OfSecond => {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
             }
-            Parts::None => {
+            Decomposition::None => {
                 let contact = self.contact_of_simple(pos12, g1, g2, prediction)?;
                 check_margin(contact.map_or(0.0, |contact| contact.dist))?;
                 Ok(contact.filter(|contact| contact.dist <= prediction))
@@ -232,7 +234,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
     ) -> Result<ClosestPoints, Unsupported> {
         check_pose(pos12)?;
         check_margin(max_dist)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
             return pair.closest_points(max_dist);
@@ -240,18 +242,18 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.closest_points(max_dist);
         }
-        match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => {
+        match Decomposition::of(g1, g2)? {
+            Decomposition::Composite(parts) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.closest_points(max_dist)
             }
-            Parts::Field(field) => {
-                FieldPair { dispatcher: self, field, pos12, other: g2 }.closest_points(max_dist)
+            Decomposition::Field(field) => {
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.closest_points(max_dist)
             }
-            Parts::Voxels(_) => Err(Unsupported),
-            Parts::OfSecond => {
+            Decomposition::Voxels(_) => Err(Unsupported),
+            Decomposition::OfSecond => {
                 self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
             }
-            Parts::None => {
+            Decomposition::None => {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(links.closest_points(pos12, max_dist));
                 }
@@ -278,25 +280,24 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(options.max_time_of_impact)?;
         check_margin(options.target_distance)?;
         in_range(local_vel12)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
             return pair.cast_shapes(local_vel12, options);
         }
-        match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => {
+        match Decomposition::of(g1, g2)? {
+            Decomposition::Composite(parts) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.cast_shapes(local_vel12, options)
             }
-            Parts::Field(field) => {
-                FieldPair { dispatcher: self, field, pos12, other: g2 }.cast_shapes(local_vel12, options)
-            }
-            Parts::Voxels(cells) => voxels::cast(self, (pos12, local_vel12), cells, g2, options),
-            Parts::OfSecond => {
+            Decomposition::Field(field) => HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
+                .cast_shapes(local_vel12, options),
+            Decomposition::Voxels(cells) => voxels::cast(self, (pos12, local_vel12), cells, g2, options),
+            Decomposition::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => {
+            Decomposition::None => {
                 if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
                     return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
                 }
@@ -342,36 +343,36 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             let at = |share: Real| start_time + share * duration;
             return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
         }
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let times = (start_time, end_time);
         let moving = ((motion1, g1), (motion2, g2));
         if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
             return Ok(hit);
         }
-        match Parts::of(g1, g2)? {
-            Parts::Composite(parts) => elements::cast_parts_nonlinear(
+        match Decomposition::of(g1, g2)? {
+            Decomposition::Composite(parts) => height_field::cast_parts_nonlinear(
                 self,
                 (motion1, parts),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Field(field) => elements::cast_nonlinear(
+            Decomposition::Field(field) => height_field::cast_nonlinear(
                 self,
                 (motion1, field),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::Voxels(cells) => voxels::cast_nonlinear(
+            Decomposition::Voxels(cells) => voxels::cast_nonlinear(
                 self,
                 (motion1, cells),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Parts::OfSecond => {
+            Decomposition::OfSecond => {
                 let hit = self.cast_shapes_nonlinear(
                     motion2,
                     g2,
@@ -383,7 +384,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 )?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Parts::None => self.0.cast_shapes_nonlinear(
+            Decomposition::None => self.0.cast_shapes_nonlinear(
                 motion1,
                 g1,
                 motion2,

@@ -11,14 +11,16 @@ use parry3d_f64::math::Real;
 const LAYERS: [Real; 5] = [1e-5, 1e-3, 0.03, 0.3, 1.0];
 
 /// The depth of the largest layer.
-pub(super) fn thickest(link: &ModifiedCylinder) -> Real {
+pub(super) fn thickest_layer(link: &ModifiedCylinder) -> Real {
     let is_flat = link.caps().contains(&Cap::Flat);
     if is_flat { link.radius().min(0.5 * link.length()) } else { link.radius() }
 }
 
 /// The link without a layer, and how thick that is, from thin ones to the thickest.
-pub(super) fn layers(link: &ModifiedCylinder) -> impl Iterator<Item = (ModifiedCylinder, Real)> + use<> {
-    let (link, most) = (*link, thickest(link));
+pub(super) fn shrunk_links(
+    link: &ModifiedCylinder,
+) -> impl Iterator<Item = (ModifiedCylinder, Real)> + use<> {
+    let (link, most) = (*link, thickest_layer(link));
     LAYERS.into_iter().map(move |share| {
         let depth = share * most;
         let [back, front] = link.caps().map(|cap| if cap == Cap::Flat { depth } else { 0.0 });

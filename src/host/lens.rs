@@ -16,7 +16,7 @@
 
 use super::axial::{perpendicular, unit};
 use super::feature;
-use super::footing::{centre, faces_flat, outward};
+use super::support_points::{centre, faces_flat, outward};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;

@@ -2,7 +2,7 @@
 //!
 //! Both travel and turn at constant speeds. While they are apart there is a plane between them that touches the other
 //! shape, the *wall*: that of their contact. It moves and turns with the wall, which stays behind it whatever
-//! happens. So the link is clear for as long as [`closing`](super::closing) proves that its two ends stay on their
+//! happens. So the link is clear for as long as [`plane_gap`](super::plane_gap) proves that its two ends stay on their
 //! side. Then the two are measured again. Close to each other the steps are Newton's, from the safe side. They end
 //! where the two are as close as [`TOUCHING`] of their size or rounding.
 //!
@@ -16,13 +16,13 @@
 //! start, which frees it: it then passes a mesh with the end that did not touch.)
 
 use super::axial::unit;
-use super::closing::{Closing, Reach, Support};
-use super::footing::{centre, outward};
 use super::link_pair::{LinkPair, links_of_pair};
 use super::link_triangle::{self, LinkContact, LinkTrianglePair};
+use super::plane_gap::{PlaneGap, Reach, Support};
 use super::range::in_range;
 use super::robot_surface::links_of;
 use super::straight_cast::iterated_contact;
+use super::support_points::{centre, outward};
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported};
@@ -35,7 +35,7 @@ const ITERATED: Real = 1e-5;
 /// What rounding leaves of the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 /// More than any motion takes that is not a grazing one. After that the moment reached is the answer: early, not late.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 
 /// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the other a half-space,
 /// in either order. `dispatcher` gives the contacts with walls other than triangles and half-spaces.
@@ -156,7 +156,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         start: CastMoment,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let mut now = start;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if now.distance <= now.touching {
                 return Ok(Some(now.hit(ShapeCastStatus::Converged)));
             }
@@ -251,7 +251,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             let fastest = drift.length() + swing.length();
             let furthest = place.length() + fastest * span;
             clear = clear.min(
-                Closing {
+                PlaneGap {
                     gap: (now.on_wall - centre(link, end)).dot(now.normal),
                     rate: (drift - swing).dot(normal) - turn.cross(normal).dot(place),
                     bend: cap_bend
@@ -259,7 +259,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
                         + turns * (fastest + 0.5 * turns * furthest),
                     reach,
                 }
-                .stays_open(clear),
+                .time_open(clear),
             );
         }
         clear

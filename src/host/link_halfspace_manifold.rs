@@ -1,4 +1,4 @@
-//! The contact manifold of a link and a half-space: what the link stands on (see [`footing`](super::footing)), and how
+//! The contact manifold of a link and a half-space: what the link stands on (see [`support_points`](super::support_points)), and how
 //! high each of these points is over the plane. The lowest has the height of the link's lowest point: where a flat cap all
 //! but lies on the plane, rounding alone decides which of its rim's points that is.
 //!
@@ -6,7 +6,7 @@
 
 use super::axial::unit;
 use super::feature::{self, SAME_POINT};
-use super::footing;
+use super::support_points;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
@@ -40,7 +40,7 @@ pub(super) fn update<M, C: Default + Copy>(
         let below = pose * on_link - plane * height;
         TrackedContact::flipped(on_link, below, name, PackedFeatureId::face(0), height, !link_is_first)
     };
-    footing::points(link, down, |on_link, name| manifold.points.push(point_at(on_link, name)));
+    support_points::points(link, down, |on_link, name| manifold.points.push(point_at(on_link, name)));
     let lowest = link.local_support_point_toward(down);
     // Rounded as `contact` rounds it.
     let nearest = plane.dot(link.transformed(&pose).local_support_point_toward(-plane));

@@ -12,7 +12,7 @@
 use super::axial::unit;
 use super::foot::AxisFoot;
 use super::link_triangle::closest;
-use crate::distance::depth::{Body, LinkLink};
+use crate::distance::depth::{LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_segment};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
@@ -25,7 +25,7 @@ pub(super) const DIRECTION: Real = 1.5e-8;
 pub(super) const FINE_DIRECTION: Real = 1e-2;
 
 /// Where two links meet.
-pub(super) struct Touch {
+pub(super) struct TouchPoint {
     /// Distance, or minus the length of the least separating translation.
     pub dist: Real,
     /// Unit vector out of the first.
@@ -36,7 +36,7 @@ pub(super) struct Touch {
 pub(super) enum Answer {
     /// Further apart than the margin.
     Apart,
-    Touch(Touch),
+    TouchPoint(TouchPoint),
     /// No closed form.
     Unknown,
 }
@@ -69,7 +69,7 @@ pub(super) fn touch(
             Some(normal) => pair.refined(normal).normal,
             None => pair.widest([]).normal,
         };
-        return Answer::Touch(Touch { dist, normal, on_first: feet[0] + normal * first.radius() });
+        return Answer::TouchPoint(TouchPoint { dist, normal, on_first: feet[0] + normal * first.radius() });
     }
     for (solid, swollen, is_swapped) in [(first, second, false), (second, first, true)] {
         let (apart, on_solid, on_axis) = closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
@@ -88,10 +88,10 @@ pub(super) fn touch(
             };
             let out = if is_swapped { -gap.normal } else { gap.normal };
             let on_swollen = on_axis - out * swollen.radius();
-            return Answer::Touch(if is_swapped {
-                Touch { dist, normal: -out, on_first: on_swollen }
+            return Answer::TouchPoint(if is_swapped {
+                TouchPoint { dist, normal: -out, on_first: on_swollen }
             } else {
-                Touch { dist, normal: out, on_first: on_solid }
+                TouchPoint { dist, normal: out, on_first: on_solid }
             });
         }
     }
@@ -101,6 +101,6 @@ pub(super) fn touch(
 /// The two links as the narrow phase knows them.
 pub(super) fn pair(first: &ModifiedCylinder, second: &ModifiedCylinder) -> LinkLink {
     let [first, second] =
-        [first, second].map(|link| Body::new(link.start(), link.end(), link.radius(), link.flat()));
+        [first, second].map(|link| SolidLink::new(link.start(), link.end(), link.radius(), link.flat()));
     LinkLink { first, second }
 }

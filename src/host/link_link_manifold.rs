@@ -13,8 +13,8 @@ use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
 use super::lens;
 use super::link_pair::LinkPair;
-use super::meeting::{Meeting, ROUNDING};
-use super::{footing, rim};
+use super::link_triangle_points::{Meeting, ROUNDING};
+use super::{rim, support_points};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
@@ -103,7 +103,7 @@ impl LinkLinkMeeting {
         is_second: bool,
     ) {
         let Some(crest) = Crest::of(&from(other, other.start()), -normal) else { return };
-        footing::points(link, normal, |on_link, name| {
+        support_points::points(link, normal, |on_link, name| {
             let Some(dist) = crest.near(on_link - other.start()) else { return };
             let names = [name, feature::BARREL.into()];
             if is_second {
@@ -122,8 +122,8 @@ impl LinkLinkMeeting {
         normal: Vector,
         is_second: bool,
     ) {
-        let faces = (0..2).any(|end| footing::faces_flat(link, normal, end));
-        let Some(lateral) = footing::lateral(other, -normal).filter(|_| faces) else { return };
+        let faces = (0..2).any(|end| support_points::faces_flat(link, normal, end));
+        let Some(lateral) = support_points::lateral(other, -normal).filter(|_| faces) else { return };
         let [v, w] = [other.start(), other.end()].map(|centre| centre + lateral * other.radius());
         let mut below = Meeting::new(link, [v, w, w], normal, self.extent);
         rim::collect(&mut below);

@@ -7,12 +7,12 @@
 //! widest gap of [`depth`](crate::distance::depth).
 //!
 //! **The direction between points that are close to one another**, or one, is rounding. Then the directions of the features are
-//! tried, and those from the one link without its outermost [layers](super::layers) to the other, which the narrow phase
+//! tried, and those from the one link without its outermost [layers](super::shrunk_links) to the other, which the narrow phase
 //! measures as well: whatever the rims do, the thinnest layer whose loss parts the two shows a way out.
 
 use super::axial::unit;
-use super::layers::{layers, thickest};
-use super::link_link::{self, Answer, DIRECTION, FINE_DIRECTION, Touch};
+use super::layers::{shrunk_links, thickest_layer};
+use super::link_link::{self, Answer, DIRECTION, FINE_DIRECTION, TouchPoint};
 use super::link_triangle::LinkContact;
 use super::range::in_range;
 use crate::distance::Scalar;
@@ -109,7 +109,7 @@ impl LinkPair {
     /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in
     /// the shapes' unit and 0 at least. Of what is about as far the [distance](Self::distance)
     /// decides: the closed forms are rounded in other ways.
-    pub fn touch_within(&self, margin: Real) -> Option<Touch> {
+    pub fn touch_within(&self, margin: Real) -> Option<TouchPoint> {
         let rounding = self.rounding();
         let mut touch = self.touch(margin + self.length(rounding))?;
         let within = margin / self.unit;
@@ -133,12 +133,12 @@ impl LinkPair {
 
     /// Where they meet, if they are no further apart than `margin`. What is about as far may be
     /// found or not.
-    fn touch(&self, margin: Real) -> Option<Touch> {
+    fn touch(&self, margin: Real) -> Option<TouchPoint> {
         let [first, second] = &self.links;
         let margin = margin / self.unit;
         match link_link::touch(first, second, self.extent, margin) {
             Answer::Apart => None,
-            Answer::Touch(touch) => Some(touch),
+            Answer::TouchPoint(touch) => Some(touch),
             Answer::Unknown => self.touch_of_caps(margin),
         }
     }
@@ -153,7 +153,7 @@ impl LinkPair {
         length * self.unit
     }
 
-    fn touch_of_caps(&self, margin: Real) -> Option<Touch> {
+    fn touch_of_caps(&self, margin: Real) -> Option<TouchPoint> {
         let nearest = self.nearest();
         let dist = nearest.distance / self.unit;
         if dist > margin {
@@ -170,21 +170,21 @@ impl LinkPair {
                 if dist <= 0.0 {
                     // Rounding may say of what touches that it does not.
                     let dist = gap.width.min(0.0);
-                    return Some(Touch { dist, normal: gap.normal, on_first: pair.touching_point(gap) });
+                    return Some(TouchPoint { dist, normal: gap.normal, on_first: pair.touching_point(gap) });
                 }
                 gap.normal
             }
         };
-        Some(Touch { dist, normal, on_first })
+        Some(TouchPoint { dist, normal, on_first })
     }
 
     /// The way out of the first link that a layer's loss shows.
     fn way_of_layers(&self) -> Option<Vector> {
         let [first, second] = &self.links;
-        let is_swapped = thickest(first) < thickest(second);
+        let is_swapped = thickest_layer(first) < thickest_layer(second);
         let (peeled, other) = if is_swapped { (second, first) } else { (first, second) };
         let other = PlacedLink::of(other);
-        let out = layers(peeled).find_map(|(core, _)| {
+        let out = shrunk_links(peeled).find_map(|(core, _)| {
             let nearest = PlacedLink::of(&core).measure_link(&other);
             let has_direction = nearest.distance > DIRECTION * self.extent;
             unit(nearest.on_second - nearest.on_first).filter(|_| has_direction)

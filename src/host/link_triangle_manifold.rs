@@ -4,7 +4,7 @@
 //! mesh puts on it. Every point is a pair, one on the link's surface and one on the triangle, `dist` apart along the
 //! normal, exactly:
 //!
-//! 1. **What the link stands on**, where the triangle is below it: see [`footing`](super::footing).
+//! 1. **What the link stands on**, where the triangle is below it: see [`support_points`](super::support_points).
 //! 2. **What of the triangle's outline** is below a flat cap or across or along the barrel's crest: see
 //!    [`rim`](super::rim) and [`crest`](super::crest).
 //! 3. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
@@ -30,8 +30,8 @@
 
 use super::axial::unit;
 use super::link_triangle::{LinkTrianglePair, Local};
-use super::meeting::{Meeting, ROUNDING};
-use super::{crest, feature, footing, rim};
+use super::link_triangle_points::{Meeting, ROUNDING};
+use super::{crest, feature, rim, support_points};
 use crate::distance::{Vec3, segment_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
@@ -130,7 +130,7 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let mut meeting = Meeting::new(&local.link, local.triangle, normal, 1.0);
     rim::collect(&mut meeting);
-    footing::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));
+    support_points::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));
     crest::collect(&mut meeting);
     if !is_turned {
         meeting.add_closest(found.distance, found.on_link);

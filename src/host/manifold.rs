@@ -13,19 +13,19 @@
 //!   by less than 1e-3, whatever the unit; so that a small link does not rest on a stale one, it is told each time that the
 //!   shapes have changed.
 
+use super::decomposition::{check_scale, has_parts};
 use super::dispatcher::ContinuumDispatcher;
+use super::inner_points::WhichShape;
 use super::iterated::IteratedPair;
-use super::joint::WhichShape;
 use super::link_triangle::LinkTrianglePair;
 use super::link_triangle_manifold::TriangleRules;
-use super::parts::{check_scale, has_parts};
 use super::range::{check_margin, check_pose};
 use super::robot_surface::links_of;
-use super::thin::Thin;
-use super::watched::Watched;
+use super::strict_dispatcher::StrictDispatcher;
+use super::thin_shape::ThinShape;
 use super::{
-    joint, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold, range,
-    robot_surface_manifold,
+    inner_points, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold,
+    range, robot_surface_manifold,
 };
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
@@ -63,13 +63,13 @@ where
         if !robot_surface_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
             self.update_by_parts(pos12, (g1, g2), loose, manifolds, workspace)?;
             if is_robot || prediction < 0.0 {
-                leave_out_beyond(prediction, manifolds);
+                drop_beyond(prediction, manifolds);
             }
         }
         for (shape, side) in [(g1, WhichShape::First), (g2, WhichShape::Second)] {
             if let Some(chain) = shape.as_shape::<Chain>() {
                 let rounding = range::rounding_of_depths(pos12, g1, g2);
-                joint::hide_inner_points(chain.links(), side, (prediction, rounding), manifolds);
+                inner_points::remove_inner_points(chain.links(), side, (prediction, rounding), manifolds);
             }
         }
         Ok(())
@@ -87,7 +87,7 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        let thin = Thin::of(g1, g2);
+        let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
         let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
@@ -130,14 +130,14 @@ where
             )?;
         }
         if prediction < 0.0 {
-            leave_out_beyond(prediction, std::slice::from_mut(manifold));
+            drop_beyond(prediction, std::slice::from_mut(manifold));
         }
         Ok(())
     }
 }
 
 /// Takes the points out of the manifolds whose nearest point is beyond the prediction.
-fn leave_out_beyond<M, C>(prediction: Real, manifolds: &mut [ContactManifold<M, C>]) {
+fn drop_beyond<M, C>(prediction: Real, manifolds: &mut [ContactManifold<M, C>]) {
     for manifold in manifolds {
         if manifold.points.iter().all(|point| point.dist > prediction) {
             manifold.points.clear();
@@ -164,7 +164,7 @@ impl<L> ContinuumDispatcher<L> {
         let parts = (g1.as_composite_shape(), g2.as_composite_shape());
         let fields = (g1.as_heightfield(), g2.as_heightfield());
         let is_either = |kind| g1.shape_type() == kind || g2.shape_type() == kind;
-        Watched::ask(self, |watched| {
+        StrictDispatcher::ask(self, |watched| {
             match (parts, fields) {
                 ((Some(parts1), Some(parts2)), _) => {
                     details::contact_manifolds_composite_shape_composite_shape(

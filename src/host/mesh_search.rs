@@ -12,7 +12,7 @@ pub(super) struct TriangleNotFinite;
 
 /// How far a search goes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Until {
+pub(super) enum SearchGoal {
     /// The nearest triangle is known.
     Nearest,
     /// Some triangle is nearer than the bound.
@@ -26,7 +26,7 @@ pub(super) fn search(
     mesh: &TriMesh,
     link: &PlacedLink,
     bound: Real,
-    until: Until,
+    until: SearchGoal,
 ) -> Result<Option<Nearest>, TriangleNotFinite> {
     let all_finite = Cell::new(true);
     let found = mesh.bvh().find_best(
@@ -42,7 +42,7 @@ pub(super) fn search(
             best.measure(link, triangle, vertices);
             let nearest = best.nearest()?;
             // A cost of 0 makes the hierarchy leave out everything else.
-            let cost = if until == Until::FirstWithinBound { 0.0 } else { nearest.distance };
+            let cost = if until == SearchGoal::FirstWithinBound { 0.0 } else { nearest.distance };
             Some(LeafCost { cost, nearest })
         },
     );

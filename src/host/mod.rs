@@ -3,18 +3,17 @@
 
 mod axial;
 mod chain;
-mod closing;
 mod composite;
 mod convex;
 mod convex_depth;
 mod crest;
+mod decomposition;
 mod dispatcher;
-mod elements;
 mod feature;
 mod foot;
-mod footing;
+mod height_field;
+mod inner_points;
 mod iterated;
-mod joint;
 mod layers;
 mod lens;
 mod link_cast;
@@ -25,11 +24,11 @@ mod link_link_manifold;
 mod link_pair;
 mod link_triangle;
 mod link_triangle_manifold;
+mod link_triangle_points;
 mod manifold;
 mod mass;
-mod meeting;
 mod mesh_search;
-mod parts;
+mod plane_gap;
 mod point;
 mod range;
 #[cfg(feature = "rapier")]
@@ -41,9 +40,10 @@ mod robot_surface;
 mod robot_surface_manifold;
 mod shape;
 mod straight_cast;
+mod strict_dispatcher;
 mod support_map;
-mod thin;
+mod support_points;
+mod thin_shape;
 mod voxels;
-mod watched;
 
 pub use dispatcher::ContinuumDispatcher;

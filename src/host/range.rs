@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 const ITERATED_RANGE: RangeInclusive<Real> = 1.0 / COORDINATE_LIMIT..=COORDINATE_LIMIT;
 
 /// The least size of a shape beside the largest coordinate that iterations can tell from nothing: 2^-40.
-pub(super) const LEAST_SHARE: Real = Real::from_bits((1023 - 40) << 52);
+pub(super) const MIN_SHARE: Real = Real::from_bits((1023 - 40) << 52);
 
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
 pub(super) fn check_pose(pose: &Pose) -> Result<(), Unsupported> {
@@ -73,7 +73,7 @@ pub(super) fn is_iterated(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> bool 
     let boxes = [g1.compute_local_aabb(), g2.compute_local_aabb()];
     let is_finite = boxes.iter().all(|bounds| bounds.mins.is_finite() && bounds.maxs.is_finite());
     let sizes = boxes.iter().map(|bounds| bounds.extents().max_element());
-    let is_seen = sizes.into_iter().all(|size| size == 0.0 || size >= LEAST_SHARE * largest);
+    let is_seen = sizes.into_iter().all(|size| size == 0.0 || size >= MIN_SHARE * largest);
     is_finite && has_numbers(g1) && has_numbers(g2) && ITERATED_RANGE.contains(&largest) && is_seen
 }
 

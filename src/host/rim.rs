@@ -4,8 +4,8 @@
 //! counts, and so do the two points where an edge comes below the rim and leaves it.
 
 use super::feature;
-use super::footing::{centre, faces_flat, outward};
-use super::meeting::Meeting;
+use super::link_triangle_points::Meeting;
+use super::support_points::{centre, faces_flat, outward};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::PackedFeatureId;
 

@@ -5,7 +5,7 @@
 //! end.
 
 use super::link_triangle::{self, LinkContact};
-use super::mesh_search::{Until, search};
+use super::mesh_search::{SearchGoal, search};
 use super::range::in_range;
 use crate::pair::{Nearest, PlacedLink};
 use crate::robot::{Chain, ModifiedCylinder};
@@ -58,13 +58,13 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn distance(&self) -> Result<ShapeDistance, Unsupported> {
-        let nearest = self.nearest(Real::INFINITY, Until::Nearest)?.ok_or(Unsupported)?;
+        let nearest = self.nearest(Real::INFINITY, SearchGoal::Nearest)?.ok_or(Unsupported)?;
         let (subshape1, subshape2) = self.subshapes(nearest.link, nearest.triangle);
         Ok(ShapeDistance::new(nearest.distance).with_subshapes(subshape1, subshape2))
     }
 
     pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
-        Ok(match self.nearest(0.0, Until::FirstWithinBound)? {
+        Ok(match self.nearest(0.0, SearchGoal::FirstWithinBound)? {
             Some(touching) => {
                 let (subshape1, subshape2) = self.subshapes(touching.link, touching.triangle);
                 ShapeIntersection::new(true).with_subshapes(subshape1, subshape2)
@@ -74,7 +74,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
-        Ok(match self.nearest(within(max_dist)?, Until::Nearest)? {
+        Ok(match self.nearest(within(max_dist)?, SearchGoal::Nearest)? {
             None => ClosestPoints::Disjoint,
             Some(nearest) if nearest.distance > 0.0 => {
                 let (point1, point2) = self.points(nearest.on_robot, nearest.on_surface);
@@ -85,7 +85,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
-        let Some(nearest) = self.nearest(within(prediction)?, Until::Nearest)? else { return Ok(None) };
+        let Some(nearest) = self.nearest(within(prediction)?, SearchGoal::Nearest)? else { return Ok(None) };
         let mut best = (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
         // What is within the prediction is what the distance says.
         if nearest.distance > 0.0 {
@@ -109,7 +109,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     /// The closest link and triangle at most `margin` apart.
-    fn nearest(&self, margin: Real, until: Until) -> Result<Option<NearestPair>, Unsupported> {
+    fn nearest(&self, margin: Real, until: SearchGoal) -> Result<Option<NearestPair>, Unsupported> {
         match self.surface {
             Surface::Triangle(_) => self.nearest_to_triangle(margin),
             Surface::Mesh(mesh) => self.nearest_in_mesh(mesh, margin, until),
@@ -134,7 +134,7 @@ impl<'a> RobotSurface<'a> {
         &self,
         mesh: &TriMesh,
         margin: Real,
-        until: Until,
+        until: SearchGoal,
     ) -> Result<Option<NearestPair>, Unsupported> {
         let (bounds, pose) = (mesh.bvh().root_aabb(), self.robot_pose());
         in_range(bounds.mins).and(in_range(bounds.maxs))?;
@@ -146,7 +146,7 @@ impl<'a> RobotSurface<'a> {
             let placed = PlacedLink::new(link, &pose);
             if let Some(nearest) = search(mesh, &placed, bound, until).map_err(|_| Unsupported)? {
                 best = Some((number, nearest));
-                if until == Until::FirstWithinBound {
+                if until == SearchGoal::FirstWithinBound {
                     break;
                 }
             }

@@ -32,7 +32,7 @@ use parry3d_f64::shape::{Shape, SupportMap};
 /// What rounding leaves of the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 /// More than any cast takes: a grazing one halves its error with each step, others square it.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 
 /// What a link may meet, in the link's frame.
 trait CastWall {
@@ -65,7 +65,7 @@ pub(super) fn cast_triangle(
     local_vel12: Vector,
     options: ShapeCastOptions,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let way = WallsWay::new(pair.link, pair.link_is_first, pos12, local_vel12);
+    let way = WallPath::new(pair.link, pair.link_is_first, pos12, local_vel12);
     let corners = pair.triangle.vertices().map(|vertex| way.pose * vertex);
     way.cast(&TriangleWall { link: pair.link, corners }, options)
 }
@@ -81,7 +81,7 @@ pub(super) fn cast_link(
     options: ShapeCastOptions,
 ) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
     let Some([first, second]) = links_of_pair(g1, g2) else { return Ok(None) };
-    let way = WallsWay::new(&first, true, pos12, local_vel12);
+    let way = WallPath::new(&first, true, pos12, local_vel12);
     way.cast(&LinkWall { link: &first, wall: second.transformed(pos12) }, options).map(Some)
 }
 
@@ -99,7 +99,7 @@ pub(super) fn cast_convex(
 ) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
     for (robot, shape, link_is_first) in [(g1, g2, true), (g2, g1, false)] {
         if let (Some(link), Some(support)) = (robot.as_shape(), shape.as_support_map()) {
-            let way = WallsWay::new(link, link_is_first, pos12, local_vel12);
+            let way = WallPath::new(link, link_is_first, pos12, local_vel12);
             let wall = ConvexWall { dispatcher, link, shape, support, pose: way.pose };
             return way.cast(&wall, options).map(Some);
         }
@@ -234,7 +234,7 @@ pub(super) fn iterated_contact(
 }
 
 /// A link and the way of a wall, in the link's frame.
-struct WallsWay<'a> {
+struct WallPath<'a> {
     link: &'a ModifiedCylinder,
     link_is_first: bool,
     /// The wall's.
@@ -242,7 +242,7 @@ struct WallsWay<'a> {
     velocity: Vector,
 }
 
-impl<'a> WallsWay<'a> {
+impl<'a> WallPath<'a> {
     fn new(link: &'a ModifiedCylinder, link_is_first: bool, pos12: &Pose, local_vel12: Vector) -> Self {
         if link_is_first {
             return Self { link, link_is_first, pose: *pos12, velocity: local_vel12 };
@@ -265,7 +265,7 @@ impl<'a> WallsWay<'a> {
         let largest = link.radius().max(wall.largest()?);
         let size = wall.size().min(link.length() + link.radius());
         let mut contact = finite(wall.contact(Vector::ZERO)?)?;
-        for step in 0..MOST_STEPS {
+        for step in 0..MAX_STEPS {
             let normal = contact.normal;
             let closing = -normal.dot(velocity);
             let excess = contact.distance - options.target_distance;

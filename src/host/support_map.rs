@@ -12,7 +12,7 @@
 
 use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature::{self, crest_end};
-use super::footing::centre;
+use super::support_points::centre;
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, SupportMap};

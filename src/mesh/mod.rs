@@ -1,18 +1,18 @@
 //! The triangles as every engine keeps them.
 
 mod checks;
-mod joined;
-mod kept_mesh;
+mod engine_mesh;
 mod search_frame;
 mod shared_parts;
 mod triangle_block;
+mod union_find;
 
 pub(crate) use checks::{check_triangle, check_vertex, in_range};
-pub(crate) use joined::{first_of, join};
-pub(crate) use kept_mesh::Mesh;
+pub(crate) use engine_mesh::Mesh;
 pub(crate) use search_frame::{SearchFrame, round};
 pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};
 pub(crate) use triangle_block::{
-    BLOCK, first_of_face, from_on, load, load_vertices, place_face, place_points, place_triangle, splat,
+    BLOCK, first_of_face, load, load_vertices, place_face, place_points, place_triangle, rotated, splat,
     store,
 };
+pub(crate) use union_find::{find_root, unite};

@@ -12,7 +12,7 @@
 //! makes the frame coarse for all, and a link far from the mesh has a large reach. [`SearchLink::is_resolved`](crate::pair::SearchLink::is_resolved) finds that out, and
 //! the engines then search in double precision.
 
-use super::kept_mesh::Mesh;
+use super::engine_mesh::Mesh;
 use crate::distance::lanes::Lane;
 use crate::distance::{Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};

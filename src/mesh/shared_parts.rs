@@ -206,7 +206,7 @@ fn hash(place: [u64; 3]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kept_mesh::Mesh;
+    use super::super::engine_mesh::Mesh;
     use super::*;
     use continuum_testing::Random;
 

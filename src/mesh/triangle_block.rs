@@ -1,6 +1,6 @@
 //! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be loaded in packs.
 
-use super::kept_mesh::Mesh;
+use super::engine_mesh::Mesh;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Vec3};
 use crate::mesh::SearchFrame;
@@ -19,7 +19,7 @@ pub(crate) fn place_face<E: Lane>(
     lane: usize,
 ) {
     let corners = mesh.corners(triangle).map(|corner| frame.point(corner));
-    put(from_on(corners, Face::first_of(corners)), rows, lane);
+    put(rotated(corners, Face::first_of(corners)), rows, lane);
 }
 
 /// Which corner of a triangle [`place_face`] writes first.
@@ -29,7 +29,7 @@ pub(crate) fn first_of_face<E: Lane>(frame: &SearchFrame, mesh: &Mesh, triangle:
 
 /// What there is for each of three corners or edges, from one of them on.
 #[inline(always)]
-pub(crate) fn from_on<T>(mut three: [T; 3], first: usize) -> [T; 3] {
+pub(crate) fn rotated<T>(mut three: [T; 3], first: usize) -> [T; 3] {
     three.rotate_left(first);
     three
 }

@@ -40,7 +40,7 @@ impl Best {
 
     /// Only triangles with a lower number than this can still be better: nothing is nearer than what touches.
     #[inline(always)]
-    pub(crate) fn wanted_below(&self) -> u32 {
+    pub(crate) fn triangle_limit(&self) -> u32 {
         if self.bound <= 0.0 { self.below } else { u32::MAX }
     }
 

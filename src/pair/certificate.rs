@@ -7,7 +7,7 @@
 //! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
 //! normals of the features (faces, edges, axis) are tried as well.
 
-use super::answered::{corners, link_of, placed_link};
+use super::answer_subject::{corners, link_of, placed_link};
 use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK, largest};
 use crate::answer::{Certificate, LinkProximity, ProximityError};
 use crate::distance::{Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
@@ -64,7 +64,7 @@ impl LinkProximity {
     pub fn certify(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Certificate, ProximityError> {
         let link = placed_link(self, robot, pose)?;
         let corners = corners(mesh.vertices(), mesh.indices(), self.triangle as usize)?;
-        self.check_fit(&link, corners)?;
+        self.check_answer(&link, corners)?;
         Ok(self.certified(robot, pose)?.bounds(corners))
     }
 
@@ -119,20 +119,22 @@ impl CertifiedLink {
         let Some(frame) = ExactFrame::around(self.start, [self.end, a, b, c], self.radius) else {
             return Certificate { lower: 0.0, upper: 0.0 }; // one point
         };
-        let pair =
-            ExactPair { triangle: triangle.map(|corner| frame.point(corner)), link: self.exact(&frame) };
+        let pair = ExactLinkTriangle {
+            triangle: triangle.map(|corner| frame.point(corner)),
+            link: self.exact(&frame),
+        };
         let (lower, upper) = pair.bounds();
         frame.certificate(lower, upper)
     }
 }
 
 /// A link and a triangle, in coordinates up to 2 from the link's start.
-struct ExactPair {
+struct ExactLinkTriangle {
     triangle: [ExactPoint; 3],
     link: ExactLink,
 }
 
-impl ExactPair {
+impl ExactLinkTriangle {
     fn bounds(&self) -> (Number, Number) {
         let ExactLink { start, along, axis, radius, flat } = self.link;
         let closest = triangle_modified_cylinder(self.triangle, start, along, radius, flat);

@@ -109,7 +109,7 @@ impl RobotProximity {
             CertifiedLink::new(place, [pose_a, pose_b][k], link).map_err(|error| error.of_robot(POSES[k]))
         };
         let links = [placed(0)?, placed(1)?];
-        self.check_fit([&links[0], &links[1]].map(CertifiedLink::placed))?;
+        self.check_answer([&links[0], &links[1]].map(CertifiedLink::placed))?;
         Ok(bounds(&links))
     }
 }
@@ -126,16 +126,16 @@ fn bounds(links: &[CertifiedLink; 2]) -> Certificate {
     let Some(frame) = ExactFrame::around(first.start, [first.end, second.start, second.end], radius) else {
         return Certificate { lower: 0.0, upper: 0.0 }; // one point
     };
-    let pair = ExactPair { links: links.each_ref().map(|link| link.exact(&frame)) };
+    let pair = ExactLinkPair { links: links.each_ref().map(|link| link.exact(&frame)) };
     let (lower, upper) = pair.bounds();
     frame.certificate(lower, upper)
 }
 
-struct ExactPair {
+struct ExactLinkPair {
     links: [ExactLink; 2],
 }
 
-impl ExactPair {
+impl ExactLinkPair {
     fn bounds(&self) -> (Number, Number) {
         let [first, second] = &self.links;
         let pair = TwoLinks {

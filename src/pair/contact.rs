@@ -1,7 +1,7 @@
 //! An answer with its normal and its place on the robot.
 
-use super::answered::{corners, placed_link, transformed_link};
-use super::contacts_together::{PlacedPair, try_add_contacts};
+use super::answer_subject::{corners, placed_link, transformed_link};
+use super::contact_batch::{PlacedPair, try_add_contacts};
 use super::nearest::Nearest;
 use super::nearest_features::{Measured, NearPair, NearestFeatures};
 use super::placed_link::PlacedLink;
@@ -47,7 +47,7 @@ pub(crate) fn contacts(
         Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
     };
     let check = |answer: &LinkProximity, place: &PlacedPair, measured: &Nearest| {
-        answer.check_fit_of(measured, || place.link(), place.corners)
+        answer.check_answer_of(measured, || place.link(), place.corners)
     };
     try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
 }
@@ -65,7 +65,7 @@ pub(crate) fn near(
     let link = placed_link(answer, robot, pose)?;
     let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
     let measured = Measured::new(&link, corners);
-    answer.check_fit_of(&measured.nearest(&link, answer.triangle), || link, corners)?;
+    answer.check_answer_of(&measured.nearest(&link, answer.triangle), || link, corners)?;
     Ok((link, corners, measured))
 }
 

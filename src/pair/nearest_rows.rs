@@ -1,7 +1,7 @@
 //! What is found of several pairs, each number in a row of its own.
 
 use super::nearest::Nearest;
-use super::pair_lanes::{PairLanes, Rows, TOGETHER, store};
+use super::pair_lanes::{BATCH, PairLanes, Rows, store};
 use crate::distance::lanes::Pack;
 use parry3d_f64::math::{Real, Vector};
 
@@ -10,7 +10,7 @@ pub(super) struct NearestRows(Rows<7>);
 
 impl NearestRows {
     pub(super) fn new() -> Self {
-        Self([[0.0; TOGETHER]; 7])
+        Self([[0.0; BATCH]; 7])
     }
 
     /// Takes what was found of a pack, from the lane `lane` on. Returns the distances.

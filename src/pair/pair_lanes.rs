@@ -9,10 +9,10 @@ use crate::mesh::splat;
 use parry3d_f64::math::{Real, Vector};
 
 /// How many pairs are computed together: the widest pack of `f64`.
-pub(crate) const TOGETHER: usize = 8;
+pub(crate) const BATCH: usize = 8;
 
 /// What is known of each of several pairs, each number in a row of its own.
-pub(crate) type Rows<const N: usize> = [[Real; TOGETHER]; N];
+pub(crate) type Rows<const N: usize> = [[Real; BATCH]; N];
 
 /// Pairs in the mesh's frame: the corners of the triangle, the ends of the link's axis, the radius, and 1 for each flat
 /// cap.
@@ -53,7 +53,7 @@ pub(super) fn put_link<const N: usize>(
 #[inline(always)]
 pub(super) fn link<L: Pack<Element = f64>>(
     token: L::Token,
-    rows: &[[Real; TOGETHER]],
+    rows: &[[Real; BATCH]],
     row: usize,
     lane: usize,
 ) -> Placed<L> {
@@ -71,7 +71,7 @@ pub(super) fn link<L: Pack<Element = f64>>(
 #[inline(always)]
 fn point<L: Pack<Element = f64>>(
     token: L::Token,
-    rows: &[[Real; TOGETHER]],
+    rows: &[[Real; BATCH]],
     row: usize,
     lane: usize,
 ) -> Vec3<L> {

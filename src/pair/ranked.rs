@@ -4,7 +4,7 @@
 use super::coordinates::Pair;
 use super::nearest::Nearest;
 use super::nearest_rows::NearestRows;
-use super::pair_lanes::{PairLanes, PairRows, TOGETHER, put_pair};
+use super::pair_lanes::{BATCH, PairLanes, PairRows, put_pair};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Scalar, Unfused, dispatch};
@@ -26,8 +26,8 @@ pub(crate) struct Ranked {
 struct RankRows {
     nearest: NearestRows,
     /// The axis distances less the radii.
-    to_axis: [Real; TOGETHER],
-    extent: [Real; TOGETHER],
+    to_axis: [Real; BATCH],
+    extent: [Real; BATCH],
 }
 
 /// Measures triangles, each with its link.
@@ -37,10 +37,10 @@ pub(crate) fn rank_each<'a>(
     mut pairs: impl Iterator<Item = (&'a PlacedLink, u32)>,
     mut take: impl FnMut(Ranked),
 ) {
-    let (mut rows, mut triangles) = ([[0.0; TOGETHER]; 18], [0; TOGETHER]);
+    let (mut rows, mut triangles) = ([[0.0; BATCH]; 18], [0; BATCH]);
     loop {
         let mut count = 0;
-        for (link, triangle) in pairs.by_ref().take(TOGETHER) {
+        for (link, triangle) in pairs.by_ref().take(BATCH) {
             let ends = [link.start(), link.end()];
             put_pair(&mut rows, count, mesh.corners(triangle), ends, link.radius(), link.flat());
             triangles[count] = triangle;
@@ -69,7 +69,7 @@ pub(crate) fn rounding(extent: Real) -> Real {
 
 #[inline(never)] // compiled for each instruction set, not for each use as well
 fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
-    let [to_axis, extent] = [[0.0; TOGETHER]; 2];
+    let [to_axis, extent] = [[0.0; BATCH]; 2];
     let mut ranks = RankRows { nearest: NearestRows::new(), to_axis, extent };
     dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut ranks));
     ranks

@@ -3,7 +3,7 @@
 //! # Definitions
 //! - `lower` of a piece: a lower bound on its clearance. It is the distance of its body, or the `lower` of the piece
 //!   that it is a half of, whichever is larger.
-//! - `doubt` of a piece: how far apart its bounds stay because a face's direction is not known ([`Divided::doubt`]).
+//! - `doubt` of a piece: how far apart its bounds stay because a face's direction is not known ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that shows from it.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of its parent. A **distant**
 //!   piece is one within whose `lower` nothing was found: its distance is larger.
@@ -22,7 +22,7 @@
 //! So an upper bound that an earlier query left can spare searches, and never enters a result. And a finer tolerance only
 //! goes on with the same sequence: since no `lower` falls and no upper bound rises, its bounds are never looser.
 
-use super::divided::{Body, Bound, Divided};
+use super::refinable::{Body, Refinable, UpperBound};
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 use std::cmp::Ordering;
@@ -105,7 +105,7 @@ pub(crate) enum Examined<F> {
     /// Nothing is within the bound of its body.
     Away,
     /// It was divided, since its body is too wide.
-    Divided,
+    Refinable,
     /// It is measured.
     Measured(F),
 }
@@ -128,7 +128,7 @@ impl<P, B, F> Default for PendingPieces<P, B, F> {
     }
 }
 
-impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
+impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
     pub(crate) fn clear(&mut self) {
         self.pieces.clear();
         self.free.clear();
@@ -138,13 +138,13 @@ impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
 
     pub(crate) fn push<T>(&mut self, tube: &T, piece: PendingPiece<P, B, F>)
     where
-        T: Divided<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Found = F>,
     {
         let slot = self.free.pop().unwrap_or(self.pieces.len() as u32);
         let (doubt, upper, is_measured) = match &piece.state {
             PieceState::Open => (0.0, 0.0, false),
             PieceState::Distant => (0.0, Real::INFINITY, false),
-            PieceState::Measured(_, found) => (tube.doubt(&piece.piece), found.upper(), true),
+            PieceState::Measured(_, found) => (tube.direction_uncertainty(&piece.piece), found.upper(), true),
         };
         let place = tube.place(&piece.piece);
         self.queue.push(Rank { least: piece.lower + doubt, upper, is_measured, place, slot });
@@ -191,7 +191,7 @@ impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
         width: impl Fn(&B) -> Real,
     ) -> Result<Examined<F>, ProximityError>
     where
-        T: Divided<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Found = F>,
     {
         let body = tube.body(&open.piece);
         tube.check_finite(&open.piece, &body)?;
@@ -205,7 +205,7 @@ impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
             for piece in halves {
                 self.push(tube, PendingPiece { piece, levels: open.levels - 1, ..*open });
             }
-            return Ok(Examined::Divided);
+            return Ok(Examined::Refinable);
         }
         let Some(nearest) = tube.nearest(&body, bound, start) else { return Ok(Examined::Away) };
         let found = tube.found(&open.piece, &body, &nearest);
@@ -224,7 +224,7 @@ impl<P: Copy, B: Body, F: Bound> PendingPieces<P, B, F> {
         narrow: Real,
     ) -> bool
     where
-        T: Divided<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Found = F>,
     {
         let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.over()) else { return false };
         for half in halves {

@@ -1,30 +1,30 @@
 //! A tube in pieces: convex bodies around them, points that are in them, and the two loops that divide them.
 
 mod best_first;
-mod divided;
+mod bounding_body;
 mod nearest_pairs;
-mod on_loose_tube;
-mod on_tube;
-mod outer;
-mod own_moves;
-#[cfg(test)]
-mod own_moves_tests;
-mod own_tube;
 mod piece;
 mod placed_tube;
+mod refinable;
 mod refine;
+mod section_motions;
+#[cfg(test)]
+mod section_motions_tests;
 #[cfg(test)]
 mod tests;
 mod tube_in_mesh;
-mod two_tubes;
+mod tube_pair;
+mod tube_point;
+mod tube_point_of_links;
+mod tube_with_itself;
 
 pub(crate) use best_first::{Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState};
-pub(crate) use divided::{Body, Bound, Divided};
-pub(crate) use outer::Outer;
-pub(crate) use own_moves::{MOST_GROWTH, Moved, OwnMoves};
-pub(crate) use own_tube::{OwnBeginning, OwnPair, OwnTube};
+pub(crate) use bounding_body::BoundingBody;
 pub(crate) use piece::Piece;
 pub(crate) use placed_tube::PlacedTube;
-pub(crate) use refine::{Look, Near, Part, Question, Verdict, refine};
-pub(crate) use tube_in_mesh::{Found, TubeInMesh};
-pub(crate) use two_tubes::{Beginning, FoundBetween, PiecePair, Stretch, TwoTubes};
+pub(crate) use refinable::{Body, Refinable, UpperBound};
+pub(crate) use refine::{BodyQuery, BoundedPiece, RefineAction, RefinePolicy, WorkItem, refine};
+pub(crate) use section_motions::{MAX_EXTRA_TURN, SectionMotion, SectionMotions};
+pub(crate) use tube_in_mesh::{MeshUpperBound, TubeInMesh};
+pub(crate) use tube_pair::{PairQueue, PairUpperBound, PiecePair, SectionRange, TubePair};
+pub(crate) use tube_with_itself::{SelfPair, SelfPairQueue, TubeWithItself};

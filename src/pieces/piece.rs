@@ -1,8 +1,8 @@
 //! Pieces of the centreline, and how a query divides them.
 
-use super::outer::Outer;
+use super::bounding_body::BoundingBody;
 use super::placed_tube::PlacedTube;
-use super::two_tubes::Stretch;
+use super::tube_pair::SectionRange;
 use crate::robot::Section;
 use parry3d_f64::math::Real;
 
@@ -19,7 +19,7 @@ pub(crate) struct Piece {
 const ROOM: Real = 1.125;
 
 /// More pieces of a section are never begun with: what is near the wall is halved, and thin wires would begin with millions.
-const MOST_PIECES: u32 = 1024;
+const MAX_PIECES: u32 = 1024;
 
 impl PlacedTube<'_> {
     /// The arc lengths of a piece's ends.
@@ -41,8 +41,8 @@ impl PlacedTube<'_> {
     }
 
     /// A piece whatever the shape of the tube, and the body that holds it in this one.
-    pub(super) fn stretch<'o>(&self, piece: &Piece, outer: &'o Outer) -> Stretch<'o> {
-        Stretch { section: piece.section, shares: self.shares(piece), outer, radius: self.radius(piece) }
+    pub(super) fn section_range<'o>(&self, piece: &Piece, outer: &'o BoundingBody) -> SectionRange<'o> {
+        SectionRange { section: piece.section, shares: self.shares(piece), outer, radius: self.radius(piece) }
     }
 
     /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.
@@ -79,7 +79,7 @@ impl PlacedTube<'_> {
             let curvature = section.mean_curvature;
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // A number out of range becomes the nearest that is in it, and NaN becomes 0.
-            let count = ((length / longest).ceil() as u32).clamp(1, MOST_PIECES).min(to - from);
+            let count = ((length / longest).ceil() as u32).clamp(1, MAX_PIECES).min(to - from);
             let tick =
                 |k: u32| (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32;
             pieces.extend((0..count).rev().map(|k| Piece {

@@ -4,12 +4,12 @@ use super::piece::Piece;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pair::{PlacedLink, rigid_pose};
-use crate::robot::{COORDINATE_LIMIT, Face, Section, Tube};
+use crate::robot::{COORDINATE_LIMIT, EndFace, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it falls below the range of
 /// numbers, so a length by 2^-536; and no centreline adds up as many as would make 2^-500 of it.
-const LEAST_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
+const MIN_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
 
 /// A tube at a pose in the frame of a mesh.
 #[derive(Clone, Copy)]
@@ -38,7 +38,7 @@ pub(crate) struct PlacedTube<'a> {
 
 /// What rounding can do where no coordinate is larger than `reach`.
 fn slack_for(reach: Real) -> Real {
-    128.0 * Real::UNIT_ROUNDOFF * reach + LEAST_LENGTH
+    128.0 * Real::UNIT_ROUNDOFF * reach + MIN_LENGTH
 }
 
 impl<'a> PlacedTube<'a> {
@@ -71,7 +71,7 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// Takes less for rounding where no triangle matters that is farther than `away`, if that is less.
-    pub(super) fn sharpen(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
+    pub(super) fn tighten_slack(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
         let least = slack_for(2.0 * self.reach + away);
         // What is less by a little is not worth looking at all edges for.
         if least < 0.5 * self.slack {
@@ -101,20 +101,20 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// The flat ends of a section, with what is known of their directions.
-    pub(super) fn all_faces(&self, section: &Section) -> [Option<Face>; 2] {
+    pub(super) fn all_faces(&self, section: &Section) -> [Option<EndFace>; 2] {
         self.tube.faces(section, self.turn)
     }
 
     /// The flat ends of a section that bodies may end with.
-    pub(crate) fn faces(&self, section: &Section) -> [Option<Face>; 2] {
-        let lasts = |face: &Face| !self.is_moving || face.lasting.is_safe() && !section.fades;
-        let is_sure = |face: &Face| lasts(face) && face.tilt < Real::INFINITY;
+    pub(crate) fn faces(&self, section: &Section) -> [Option<EndFace>; 2] {
+        let lasts = |face: &EndFace| !self.is_moving || face.persistence.is_safe() && !section.fades;
+        let is_sure = |face: &EndFace| lasts(face) && face.tilt < Real::INFINITY;
         self.all_faces(section).map(|face| face.filter(is_sure))
     }
 
     /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
     /// not.
-    pub(crate) fn doubt(&self, piece: &Piece) -> Real {
+    pub(crate) fn direction_uncertainty(&self, piece: &Piece) -> Real {
         let (section, arcs) = (self.section(piece.section), self.arcs(piece));
         if self.tube.is_loose() {
             // A face at the end of the run of links may be what is near.
@@ -122,14 +122,16 @@ impl<'a> PlacedTube<'a> {
         }
         let near = 2.0 * (section.radius + self.tube.error());
         let away = [arcs[0] - section.start, section.end - arcs[1]];
-        let of = |end: usize| if away[end] <= near { self.tube.doubt(section, end, self.turn) } else { 0.0 };
+        let of = |end: usize| {
+            if away[end] <= near { self.tube.direction_uncertainty(section, end, self.turn) } else { 0.0 }
+        };
         of(0).max(of(1))
     }
 
     /// Whether a piece has a flat end that bodies take for round.
-    pub(crate) fn may_open(&self, piece: &Piece) -> bool {
+    pub(crate) fn may_become_round(&self, piece: &Piece) -> bool {
         let section = self.section(piece.section);
-        let count = |faces: [Option<Face>; 2]| {
+        let count = |faces: [Option<EndFace>; 2]| {
             [piece.from == section.first, piece.to == section.last]
                 .into_iter()
                 .zip(faces)
@@ -157,7 +159,7 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// What the error that the tube states for itself costs a clearance: it counts in both bounds.
-    pub(crate) fn uncertainty(&self) -> Real {
+    pub(crate) fn position_uncertainty(&self) -> Real {
         2.0 * self.tube.error()
     }
 
@@ -198,7 +200,7 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// A flat end in the mesh's frame.
-    pub(crate) fn face(&self, face: &Face) -> Face {
-        Face { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
+    pub(crate) fn face(&self, face: &EndFace) -> EndFace {
+        EndFace { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
     }
 }

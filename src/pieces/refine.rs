@@ -6,12 +6,12 @@
 //! it the curve is resolved as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies
 //! are the links themselves.
 
-use super::divided::Divided;
+use super::refinable::Refinable;
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 
 /// What waits for its turn: a piece, or what is one in the present shape of a tube that moves.
-pub(crate) trait Part<T: Divided>: Copy {
+pub(crate) trait WorkItem<T: Refinable>: Copy {
     /// The piece that holds it.
     fn piece(&self, tube: &T) -> T::Piece;
 
@@ -20,7 +20,7 @@ pub(crate) trait Part<T: Divided>: Copy {
 }
 
 /// How a question looks at a body.
-pub(crate) struct Look {
+pub(crate) struct BodyQuery {
     /// What is farther away than this does not matter.
     pub bound: Real,
     /// Whether the body is so wide that its halves are better looked at, if anything is near it at all.
@@ -32,18 +32,18 @@ pub(crate) struct Look {
 }
 
 /// A part with its body, and what was found near it.
-pub(crate) struct Near<'a, T: Divided, P> {
+pub(crate) struct BoundedPiece<'a, T: Refinable, P> {
     pub part: &'a P,
     pub piece: &'a T::Piece,
     pub outer: &'a T::Body,
     /// What is nearest to the body, at a distance that bounds the clearance of the part from below.
     pub nearest: &'a T::Nearest,
     /// What bounds it from above.
-    pub found: &'a T::Found,
+    pub found: &'a T::Upper,
 }
 
 /// What becomes of a part that something is near to.
-pub(crate) enum Verdict {
+pub(crate) enum RefineAction {
     /// It is settled.
     Settled,
     /// Its halves have to be looked at, which come as near to the tube as this at a face.
@@ -53,75 +53,81 @@ pub(crate) enum Verdict {
 }
 
 /// What is asked of a tube.
-pub(crate) trait Question<T: Divided, P> {
+pub(crate) trait RefinePolicy<T: Refinable, P> {
     /// Whether the half that is nearer to what was found comes first.
-    const NEARER_FIRST: bool;
+    const NEARER_HALF_FIRST: bool;
 
     /// Whether the parts that are left cannot change the answer.
-    fn is_answered(&self) -> bool;
+    fn is_done(&self) -> bool;
 
     /// # Errors
     /// The part cannot be judged.
-    fn look(&mut self, tube: &T, part: &P, piece: &T::Piece, outer: &T::Body)
-    -> Result<Look, ProximityError>;
+    fn body_query(
+        &mut self,
+        tube: &T,
+        part: &P,
+        piece: &T::Piece,
+        outer: &T::Body,
+    ) -> Result<BodyQuery, ProximityError>;
 
     /// The body of a part is farther away than the bound of its look.
-    fn keeps_away(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real);
+    fn on_cleared(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real);
 
     /// # Errors
     /// The part cannot be judged.
-    fn judge(&mut self, tube: &T, near: &Near<T, P>) -> Result<Verdict, ProximityError>;
+    fn decide(&mut self, tube: &T, near: &BoundedPiece<T, P>) -> Result<RefineAction, ProximityError>;
 
     /// A part whose halves were wanted has none.
     ///
     /// # Errors
     /// It cannot be judged without.
-    fn judge_whole(&mut self, tube: &T, near: &Near<T, P>) -> Result<(), ProximityError>;
+    fn decide_indivisible(&mut self, tube: &T, near: &BoundedPiece<T, P>) -> Result<(), ProximityError>;
 }
 
 /// Asks a question of all parts, the last one first. Those that were not needed for the answer are left in `parts`.
 ///
 /// # Errors
 /// The curve of the tube is not finite, or a part cannot be judged.
-pub(crate) fn refine<T: Divided, P: Part<T>, Q: Question<T, P>>(
+pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
     tube: &mut T,
     parts: &mut Vec<P>,
     question: &mut Q,
 ) -> Result<(), ProximityError> {
     while let Some(part) = parts.pop() {
-        if question.is_answered() {
+        if question.is_done() {
             parts.push(part);
             return Ok(());
         }
         let piece = part.piece(tube);
         let outer = tube.body(&piece);
         tube.check_finite(&piece, &outer)?;
-        let Look { bound, is_wide, aim, start } = question.look(tube, &part, &piece, &outer)?;
+        let BodyQuery { bound, is_wide, aim, start } = question.body_query(tube, &part, &piece, &outer)?;
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {
                 parts.extend(part.halves(tube, halves));
             } else {
-                question.keeps_away(&piece, &outer, bound);
+                question.on_cleared(&piece, &outer, bound);
             }
             continue;
         }
         let Some(nearest) = tube.nearest(&outer, bound, start) else {
-            question.keeps_away(&piece, &outer, bound);
+            question.on_cleared(&piece, &outer, bound);
             continue;
         };
         let found = tube.found(&piece, &outer, &nearest);
-        let near = Near { part: &part, piece: &piece, outer: &outer, nearest: &nearest, found: &found };
-        match question.judge(tube, &near)? {
-            Verdict::Settled => {}
-            Verdict::Answered => return Ok(()),
-            Verdict::Halve(aim) => match tube.halves(&piece, &outer, aim) {
+        let near =
+            BoundedPiece { part: &part, piece: &piece, outer: &outer, nearest: &nearest, found: &found };
+        match question.decide(tube, &near)? {
+            RefineAction::Settled => {}
+            RefineAction::Answered => return Ok(()),
+            RefineAction::Halve(aim) => match tube.halves(&piece, &outer, aim) {
                 Some(halves) => {
-                    let is_in_first = tube.is_in_first(&found, &halves);
+                    let is_in_first = tube.is_in_first_half(&found, &halves);
                     let [first, second] = part.halves(tube, halves);
-                    let swap = Q::NEARER_FIRST && is_in_first;
+                    let swap = Q::NEARER_HALF_FIRST && is_in_first;
                     parts.extend(if swap { [second, first] } else { [first, second] });
                 }
-                None => question.judge_whole(tube, &near)?,
+                None => question.decide_indivisible(tube, &near)?,
             },
         }
     }

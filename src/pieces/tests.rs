@@ -105,7 +105,7 @@ fn bodies_hold_their_pieces() {
                     });
                     flat += usize::from(outer.is_flat());
                     faces += usize::from(section.faces.iter().any(Option::is_some));
-                    tight += usize::from(outer.over < 0.01 * section.radius);
+                    tight += usize::from(outer.excess < 0.01 * section.radius);
                 }
             }
         }

@@ -1,11 +1,11 @@
 //! A tube on its way through a mesh: bodies around its pieces, and what is found near them.
 
-use super::divided::{Bound, Divided};
-use super::on_tube::OnTube;
-use super::outer::Outer;
+use super::bounding_body::BoundingBody;
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
-use super::refine::Part;
+use super::refinable::{Refinable, UpperBound};
+use super::refine::WorkItem;
+use super::tube_point::TubePoint;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
 use crate::search::hierarchy::MeshSearch;
@@ -19,13 +19,13 @@ pub(crate) struct TubeInMesh<'a> {
 
 /// An upper bound on the clearance, and what realises it.
 #[derive(Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct MeshUpperBound {
     pub upper: Real,
     pub section: u32,
     pub witness: Witness,
 }
 
-impl Bound for Found {
+impl UpperBound for MeshUpperBound {
     fn upper(&self) -> Real {
         self.upper
     }
@@ -39,7 +39,7 @@ impl Bound for Found {
     }
 }
 
-impl Part<TubeInMesh<'_>> for Piece {
+impl WorkItem<TubeInMesh<'_>> for Piece {
     fn piece(&self, _: &TubeInMesh) -> Piece {
         *self
     }
@@ -49,13 +49,13 @@ impl Part<TubeInMesh<'_>> for Piece {
     }
 }
 
-impl Divided for TubeInMesh<'_> {
+impl Refinable for TubeInMesh<'_> {
     type Piece = Piece;
-    type Body = Outer;
+    type Body = BoundingBody;
     type Nearest = Nearest;
-    type Found = Found;
+    type Upper = MeshUpperBound;
 
-    fn body(&self, piece: &Piece) -> Outer {
+    fn body(&self, piece: &Piece) -> BoundingBody {
         self.tube.outer(piece)
     }
 
@@ -63,19 +63,19 @@ impl Divided for TubeInMesh<'_> {
         [piece.section, piece.from, 0, 0]
     }
 
-    fn check_finite(&self, piece: &Piece, outer: &Outer) -> Result<(), ProximityError> {
+    fn check_finite(&self, piece: &Piece, outer: &BoundingBody) -> Result<(), ProximityError> {
         self.tube.check_finite(piece, outer)
     }
 
-    fn halves(&self, piece: &Piece, outer: &Outer, aim: Real) -> Option<[Piece; 2]> {
+    fn halves(&self, piece: &Piece, outer: &BoundingBody, aim: Real) -> Option<[Piece; 2]> {
         if outer.narrows > 0.5 * self.tube.slack() { self.tube.halves(piece, aim) } else { None }
     }
 
-    fn may_meet(&mut self, outer: &Outer, bound: Real) -> bool {
+    fn may_meet(&mut self, outer: &BoundingBody, bound: Real) -> bool {
         self.search.may_meet(&outer.body, bound)
     }
 
-    fn nearest(&mut self, outer: &Outer, bound: Real, start: Option<u32>) -> Option<Nearest> {
+    fn nearest(&mut self, outer: &BoundingBody, bound: Real, start: Option<u32>) -> Option<Nearest> {
         self.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest()
     }
 
@@ -84,7 +84,7 @@ impl Divided for TubeInMesh<'_> {
     }
 
     /// The upper bound that the triangle nearest to a piece's body gives.
-    fn found(&self, piece: &Piece, outer: &Outer, nearest: &Nearest) -> Found {
+    fn found(&self, piece: &Piece, outer: &BoundingBody, nearest: &Nearest) -> MeshUpperBound {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         let found = self.found_at(piece.section, arc, nearest);
@@ -99,7 +99,7 @@ impl Divided for TubeInMesh<'_> {
         if deeper.upper < found.upper { deeper } else { found }
     }
 
-    fn is_in_first(&self, found: &Found, halves: &[Piece; 2]) -> bool {
+    fn is_in_first_half(&self, found: &MeshUpperBound, halves: &[Piece; 2]) -> bool {
         found.witness.arc_length < self.tube.arcs(&halves[0])[1]
     }
 
@@ -107,16 +107,16 @@ impl Divided for TubeInMesh<'_> {
         self.tube.radius(piece)
     }
 
-    fn doubt(&self, piece: &Piece) -> Real {
-        self.tube.doubt(piece)
+    fn direction_uncertainty(&self, piece: &Piece) -> Real {
+        self.tube.direction_uncertainty(piece)
     }
 
-    fn may_open(&self, piece: &Piece) -> bool {
-        self.tube.may_open(piece)
+    fn may_become_round(&self, piece: &Piece) -> bool {
+        self.tube.may_become_round(piece)
     }
 
-    fn uncertainty(&self) -> Real {
-        self.tube.uncertainty()
+    fn position_uncertainty(&self) -> Real {
+        self.tube.position_uncertainty()
     }
 
     fn slack(&self) -> Real {
@@ -142,12 +142,12 @@ impl TubeInMesh<'_> {
     }
 
     /// Takes less for rounding if only triangles matter that are at most so far away.
-    pub(crate) fn sharpen(&mut self, away: Real) {
-        self.tube.sharpen(away, || self.search.hierarchy.longest());
+    pub(crate) fn tighten_slack(&mut self, away: Real) {
+        self.tube.tighten_slack(away, || self.search.hierarchy.longest());
     }
 
     /// A first upper bound: from the triangle nearest to the longest section's chord.
-    pub(crate) fn first_bound(&mut self) -> Found {
+    pub(crate) fn first_bound(&mut self) -> MeshUpperBound {
         let longest = self.tube.longest_section();
         let (chord, arcs) = self.tube.chord(longest);
         let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
@@ -157,7 +157,7 @@ impl TubeInMesh<'_> {
     }
 
     /// The upper bound that a triangle gives at a place of the tube.
-    pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> Found {
+    pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> MeshUpperBound {
         let place = self.tube.place_at(section, arc);
         self.found_at(section, arc, &self.nearest_to(place, triangle))
     }
@@ -168,11 +168,11 @@ impl TubeInMesh<'_> {
         PlacedLink::between(point, point, 0.0, [false; 2]).measure(triangle, corners)
     }
 
-    fn found_at(&self, section: u32, arc: Real, nearest: &Nearest) -> Found {
+    fn found_at(&self, section: u32, arc: Real, nearest: &Nearest) -> MeshUpperBound {
         let Nearest { triangle, on_mesh, .. } = *nearest;
-        let OnTube { upper, arc, point } = self.tube.near(section, arc, on_mesh);
+        let TubePoint { upper, arc, point } = self.tube.near(section, arc, on_mesh);
         let segment = self.tube.segment(section, arc);
         let witness = Witness { on_robot: point, on_mesh, triangle, arc_length: arc, segment };
-        Found { upper, section, witness }
+        MeshUpperBound { upper, section, witness }
     }
 }

@@ -23,12 +23,12 @@
 //! compares the thin tube's first joint with the thick radius, and leaves a gap) and around a lone thick vertex,
 //! which belongs to no tube and which the printed rule makes flat on both sides.
 //!
-//! Radii that are equal but for rounding are equal here (`steps`): of a rod simulator's every second segment is thicker by
+//! Radii that are equal but for rounding are equal here (`radius_steps`): of a rod simulator's every second segment is thicker by
 //! its last bit, and would begin with a face.
 
 use super::Cap;
 use super::compare::at_least_apart;
-use super::steps::Steps;
+use super::radius_steps::RadiusSteps;
 use parry3d_f64::math::{Real, Vector};
 
 /// Writes the caps of each link to `caps`, whose memory is used again; one point more than radii.
@@ -56,7 +56,7 @@ fn reset(caps: &mut Vec<[Cap; 2]>, links: usize) {
 
 /// One walk: whether the link end at each vertex, facing back the way we came, is round.
 fn walk<'a>(vertices: impl Iterator<Item = (&'a Vector, &'a Real)>) -> impl Iterator<Item = Cap> {
-    let (mut limit, mut steps) = (None::<Vector>, Steps::default());
+    let (mut limit, mut steps) = (None::<Vector>, RadiusSteps::default());
     vertices.map(move |(&point, &radius)| {
         let is_up = steps.is_up(radius);
         match limit {

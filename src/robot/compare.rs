@@ -20,7 +20,7 @@ pub(super) fn at_least_apart(p: Vector, q: Vector, radius: Real) -> bool {
 ///
 /// The points within the tolerance make up two balls around the ends and a cylinder between them. With a tolerance of
 /// 0 these are the points for which no cross product is left after rounding.
-pub(super) struct Chord {
+pub(super) struct ToleranceSegment {
     start: Vector,
     end: Vector,
     scale: Real,
@@ -31,7 +31,7 @@ pub(super) struct Chord {
     cross_squared: Real,
 }
 
-impl Chord {
+impl ToleranceSegment {
     pub(super) fn new(start: Vector, end: Vector, tolerance: Real) -> Self {
         let vector = end - start;
         // What lies so far out that its square overflows after this is compared as infinite, and is not within.

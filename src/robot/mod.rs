@@ -11,6 +11,8 @@ mod error;
 mod link_tree;
 mod modified_cylinder;
 mod motion;
+mod radius_runs;
+mod radius_steps;
 mod registration;
 mod rigid_pose;
 mod scale;
@@ -19,8 +21,6 @@ mod serialised;
 mod sight;
 mod simplify;
 mod stations;
-mod steps;
-mod stretches;
 mod to_trimesh;
 mod tube;
 
@@ -35,12 +35,12 @@ pub use motion::{
     BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
     bending_course, bending_speed, verify_motion,
 };
-pub(crate) use motion::{MotionDrift, Sections, ShapePath, check_speed};
+pub(crate) use motion::{MotionDrift, SectionSignature, ShapePath, check_speed};
+pub(crate) use radius_steps::is_step;
 pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use rigid_pose::{NotRigid, rigid};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use steps::is_step;
-pub(crate) use tube::{CurveBound, Drift, Face, Lasting, Section, TooSharp, TubeTurns};
+pub(crate) use tube::{CapPersistence, CurveBound, Drift, EndFace, Section, TooSharp, TubeTurns};
 pub use tube::{Tube, TubeSection};

@@ -11,7 +11,7 @@ use crate::robot::scale::length;
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
 /// Rounding of single precision: 2^-20.
-const MOST_OFF: Real = Real::from_bits((1023 - 20) << 52);
+const MAX_OFF: Real = Real::from_bits((1023 - 20) << 52);
 
 /// A rotation whose quaternion has another length than 1.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub(crate) fn rigid(pose: &Pose) -> Result<Pose, NotRigid> {
         return Ok(*pose);
     }
     // (1 + x)^2 = 1 + 2 x + x^2. Written so that NaN is refused.
-    if off <= 2.0 * MOST_OFF {
+    if off <= 2.0 * MAX_OFF {
         return Ok(Pose::from_parts(pose.translation, pose.rotation.normalize()));
     }
     Err(NotRigid { length: quaternion_length(pose.rotation) })

@@ -24,7 +24,7 @@
 //!
 //! # Rounding
 //! Everything is scaled by the power of two that brings the extent of the stretch near one. Coordinates, slopes times x
-//! and the comparisons of [`Chord`](super::compare::Chord) are then all off by less than 2^-45. 2^-40 is added to the
+//! and the comparisons of [`ChordTarget`](super::compare::ChordTarget) are then all off by less than 2^-45. 2^-40 is added to the
 //! tolerance where it rules out and taken from it where it admits.
 
 use crate::distance::Scalar;
@@ -50,7 +50,7 @@ pub(super) struct Sight<'a> {
 }
 
 /// A vertex that a chord from where we stand may reach.
-pub(super) struct Chord {
+pub(super) struct ChordTarget {
     pub(super) vertex: usize,
     /// Whether the chord is admissible; otherwise it is in question.
     pub(super) is_sure: bool,
@@ -88,7 +88,7 @@ impl<'a> Sight<'a> {
         &self,
         from: usize,
         is_open: impl Fn(usize) -> bool,
-        targets: &mut Vec<Chord>,
+        targets: &mut Vec<ChordTarget>,
     ) -> Option<SightLimit> {
         targets.clear();
         let least = 16.0 * self.widened * self.widened;
@@ -97,7 +97,10 @@ impl<'a> Sight<'a> {
         let axis = vertices.clone().find(is_ahead);
         let unsure = from + 1..axis.map_or(vertices.end, |axis| axis + 1);
         targets.extend(
-            unsure.clone().filter(|&vertex| is_open(vertex)).map(|vertex| Chord { vertex, is_sure: false }),
+            unsure
+                .clone()
+                .filter(|&vertex| is_open(vertex))
+                .map(|vertex| ChordTarget { vertex, is_sure: false }),
         );
         let mut gates = Gates::along(self.between(from, axis?));
         for vertex in unsure.clone() {
@@ -111,7 +114,7 @@ impl<'a> Sight<'a> {
             if is_open(vertex)
                 && let Some(is_sure) = gates.view(&place, self.widened)
             {
-                targets.push(Chord { vertex, is_sure });
+                targets.push(ChordTarget { vertex, is_sure });
             }
             if let Some(wall) = gates.narrow(vertex, &place, self) {
                 return Some(wall);

@@ -33,9 +33,9 @@
 //! their number.
 
 use super::RobotError;
-use super::compare::Chord;
+use super::compare::ToleranceSegment;
+use super::radius_runs::RadiusRuns;
 use super::sight::{Sight, SightLimit};
-use super::stretches::Stretches;
 use parry3d_f64::math::{Real, Vector};
 
 /// The fewest links that follow a centreline within a tolerance: their points and segment radii, ready for any
@@ -75,7 +75,7 @@ pub fn simplify(
     segment_radii: &[Real],
     tolerance: Real,
 ) -> Result<(Vec<Vector>, Vec<Real>), RobotError> {
-    let stretches = Stretches::of(points, segment_radii, tolerance)?;
+    let stretches = RadiusRuns::of(points, segment_radii, tolerance)?;
     let (mut kept, mut radii) = (vec![stretches.first_point()], vec![]);
     for stretch in stretches.iter() {
         let path = Search::new(stretch.points, tolerance).fewest_chords();
@@ -183,7 +183,7 @@ impl<'a> Search<'a> {
                 self.stretch[from] == self.stretch[to]
                     || from < self.obstacle
                         && self.obstacle < to
-                        && !Chord::new(self.stretch[from], self.stretch[to], self.tolerance)
+                        && !ToleranceSegment::new(self.stretch[from], self.stretch[to], self.tolerance)
                             .has_near(self.stretch[self.obstacle])
             })
     }
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
         if self.stretch[from] == self.stretch[to] {
             return false;
         }
-        let chord = Chord::new(self.stretch[from], self.stretch[to], self.tolerance);
+        let chord = ToleranceSegment::new(self.stretch[from], self.stretch[to], self.tolerance);
         let is_off = |&vertex: &usize| {
             self.count(1);
             !chord.has_near(self.stretch[vertex])

@@ -26,9 +26,9 @@
 //! proportional to the number of points.
 
 use super::RobotError;
-use super::compare::Chord;
+use super::compare::ToleranceSegment;
+use super::radius_runs::{RadiusRun, RadiusRuns};
 use super::scale::direction;
-use super::stretches::{Stretch, Stretches};
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
@@ -67,7 +67,7 @@ pub fn stations(
     segment_radii: &[Real],
     tolerance: Real,
 ) -> Result<(Vec<Vector>, Vec<Real>), RobotError> {
-    let stretches = Stretches::of(points, segment_radii, tolerance)?;
+    let stretches = RadiusRuns::of(points, segment_radii, tolerance)?;
     let (mut kept, mut radii) = (Vec::with_capacity(ROOM), Vec::with_capacity(ROOM));
     kept.push(stretches.first_point());
     let mut found = Vec::with_capacity(ROOM);
@@ -77,7 +77,7 @@ pub fn stations(
         let radius_after = stretches.peek().map_or(Real::NEG_INFINITY, |next| next.radius);
         let faces = [radius_before, radius_after].map(|beside| stretch.radius > beside);
         found.clear();
-        Course::new(&stretch, tolerance, faces).divide(&mut found);
+        StationRun::new(&stretch, tolerance, faces).divide(&mut found);
         kept.extend(found.iter().map(|&vertex| stretch.points[vertex]));
         radii.resize(radii.len() + found.len(), stretch.radius);
         radius_before = stretch.radius;
@@ -92,7 +92,7 @@ const ROOM: usize = 64;
 const PROBES: usize = 8;
 
 /// A stretch on which stations are set.
-struct Course<'a> {
+struct StationRun<'a> {
     points: &'a [Vector],
     radius: Real,
     tolerance: Real,
@@ -102,8 +102,8 @@ struct Course<'a> {
     faces: [Option<Vector>; 2],
 }
 
-impl<'a> Course<'a> {
-    fn new(stretch: &Stretch<'a>, tolerance: Real, is_face: [bool; 2]) -> Self {
+impl<'a> StationRun<'a> {
+    fn new(stretch: &RadiusRun<'a>, tolerance: Real, is_face: [bool; 2]) -> Self {
         let (points, radius) = (stretch.points, stretch.radius);
         let start = points[0];
         let extent = points.iter().fold(Vector::ZERO, |extent, &p| extent.max((p - start).abs()));
@@ -287,7 +287,7 @@ impl<'a> Course<'a> {
         // A single segment is what it replaces.
         from + 1 == to
             || start != end && self.faces.iter().zip(ends).all(is_face_fine) && {
-                let chord = Chord::new(start, end, self.tolerance);
+                let chord = ToleranceSegment::new(start, end, self.tolerance);
                 self.points[from + 1..to].iter().all(|&p| chord.has_near(p))
             }
     }

@@ -36,7 +36,7 @@ impl ModifiedCylinder {
         (vertices, triangles(around, last_ring))
     }
 
-    /// Centre and radius of each ring, from start to end; a round cap climbs over `steps` of them.
+    /// Centre and radius of each ring, from start to end; a round cap climbs over `radius_steps` of them.
     fn rings(&self, steps: u32) -> Vec<(Vector, Real)> {
         let axis = self.axis_or_z();
         let cap_ring = |pole: Vector, outward: Vector, step: u32| {

@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::answer::{SceneError, Tightest};
 use crate::robot::Chain;
-use crate::threads::in_shares;
+use crate::threads::in_chunks;
 use parry3d_f64::math::Pose;
 
 /// A set's answer, or why there is none.
@@ -71,7 +71,7 @@ impl Scene {
     ) {
         out.clear();
         out.resize_with(sets.len(), || Ok(unanswered.clone()));
-        in_shares(sets, out, &mut Vec::new(), |scene: &mut Option<Self>, sets, out| {
+        in_chunks(sets, out, &mut Vec::new(), |scene: &mut Option<Self>, sets, out| {
             let scene = scene.get_or_insert_with(|| self.clone());
             for (robots, out) in sets.iter().zip(out) {
                 *out = ask(scene, robots);

@@ -1,10 +1,10 @@
 //! Several structures and robots at once.
 
-mod around;
 mod batch;
+mod bounding_box;
+mod distance_cache;
+mod queries;
+mod scene_bounds;
 mod structure;
-mod surroundings;
-mod watch;
-mod whole;
 
-pub use whole::Scene;
+pub use queries::Scene;

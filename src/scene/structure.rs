@@ -1,6 +1,6 @@
 //! One structure of a scene: a mesh, where it is, and the margin that robots keep from it.
 
-use super::around::Around;
+use super::bounding_box::BoundingBox;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
 use crate::engine::{BvhSearch, Proximity};
 use crate::pair::{PlacedRobot, rigid_pose};
@@ -16,7 +16,7 @@ pub(super) struct Structure {
     /// From the mesh's frame to the scene's; none where they are one.
     pose: Option<Pose>,
     /// The box around the triangles, in the mesh's frame.
-    pub around: Around,
+    pub around: BoundingBox,
     /// The largest coordinate of these and of the pose.
     size: Real,
 }
@@ -24,15 +24,15 @@ pub(super) struct Structure {
 impl Structure {
     pub fn new(name: String, search: BvhSearch, margin: Option<Real>) -> Self {
         let search = Box::new(search);
-        let mut new = Self { name, margin, search, pose: None, around: Around::default(), size: 0.0 };
-        new.look_around();
+        let mut new = Self { name, margin, search, pose: None, around: BoundingBox::default(), size: 0.0 };
+        new.update_bounds();
         new
     }
 
-    fn look_around(&mut self) {
+    fn update_bounds(&mut self) {
         let vertices = self.search.vertices();
         let corners = self.search.triangles().as_flattened().iter();
-        self.around = Around::points(corners.map(|&corner| vertices[corner as usize]));
+        self.around = BoundingBox::points(corners.map(|&corner| vertices[corner as usize]));
         self.measure();
     }
 
@@ -59,7 +59,7 @@ impl Structure {
     /// As those of the engine.
     pub fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.search.set_vertices(vertices)?;
-        self.look_around();
+        self.update_bounds();
         Ok(())
     }
 
@@ -82,7 +82,7 @@ impl Structure {
     }
 
     /// The box around it in the scene's frame.
-    pub fn around_in_scene(&self) -> Around {
+    pub fn around_in_scene(&self) -> BoundingBox {
         self.pose.map_or(self.around, |pose| self.around.moved(&pose))
     }
 

@@ -1,6 +1,6 @@
 //! What is built when it is first asked for, and shared by all threads.
 
-use super::parallel::alone;
+use super::parallel::on_this_thread;
 use std::sync::OnceLock;
 
 /// Something that is built at the first question for it, by the thread that asks, alone.
@@ -20,7 +20,7 @@ impl<T> Lazy<T> {
     /// Builds it alone, unless it is there.
     #[inline(always)] // most often it is there
     pub(crate) fn get_or_build(&self, build: impl FnOnce() -> T) -> &T {
-        self.0.get_or_init(|| alone(build))
+        self.0.get_or_init(|| on_this_thread(build))
     }
 
     pub(crate) fn get(&self) -> Option<&T> {

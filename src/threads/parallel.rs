@@ -10,7 +10,7 @@ thread_local! {
 }
 
 /// Does something on this thread alone: nothing in here waits for other threads of the pool, or takes up their tasks.
-pub(crate) fn alone<T>(work: impl FnOnce() -> T) -> T {
+pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
     /// Puts back what was before, after a panic too.
     struct Before(bool);
     impl Drop for Before {
@@ -60,7 +60,7 @@ pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
 }
 
 /// Answers questions in shares, each share with a memory of its own.
-pub(crate) fn in_shares<Q: Sync, A: Send, M: Default + Send>(
+pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     questions: &[Q],
     answers: &mut [A],
     memories: &mut Vec<M>,
@@ -110,7 +110,7 @@ mod tests {
 
     fn threads_of_shares() -> HashSet<ThreadId> {
         let (mut answers, mut memories) = ([None; 64], Vec::<()>::new());
-        in_shares(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
+        in_chunks(&[(); 64], &mut answers, &mut memories, |(), _, answers| {
             thread::sleep(Duration::from_millis(1));
             answers.fill(Some(thread::current().id()));
         });
@@ -124,14 +124,14 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();
         pool.install(|| {
             let own = thread::current().id();
-            alone(|| {
-                alone(|| ());
+            on_this_thread(|| {
+                on_this_thread(|| ());
                 assert_eq!(threads(), 1);
                 assert_eq!(threads_of_each(), HashSet::from([own]));
                 assert_eq!(threads_of_both(), [own; 2]);
                 assert_eq!(threads_of_shares(), HashSet::from([own]));
             });
-            let failed = std::panic::catch_unwind(|| alone(|| panic!("meant")));
+            let failed = std::panic::catch_unwind(|| on_this_thread(|| panic!("meant")));
             assert!(failed.is_err());
             assert_eq!(threads(), 16);
             assert!(threads_of_each().len() > 1 && threads_of_shares().len() > 1);

@@ -40,7 +40,7 @@ pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
     // Case 2 has no step to make.
     let mut w = if z1 < 0.0 { z1 } else { z1.max(1.0 + r * (z0 - 1.0)) };
     // Each step at least doubles the correct digits in the end; before, a term falls by more than half.
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if z1 == 0.0 {
             break;
         }
@@ -73,7 +73,7 @@ pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
 }
 
 /// More than rounding leaves to do.
-const MOST_STEPS: usize = 100;
+const MAX_STEPS: usize = 100;
 
 #[cfg(test)]
 mod tests {

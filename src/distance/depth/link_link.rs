@@ -43,7 +43,7 @@ const HALVINGS: usize = 6;
 
 /// A link where it is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
+pub(crate) struct SolidLink {
     pub start: Vector,
     pub end: Vector,
     /// Unit axis; nothing for a ball, whose caps count as round.
@@ -52,7 +52,7 @@ pub(crate) struct Body {
     pub flat: [bool; 2],
 }
 
-impl Body {
+impl SolidLink {
     pub(crate) fn new(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Self {
         let axis = unit(end - start);
         Self { start, end, axis, radius, flat: flat.map(|flat| flat && axis.is_some()) }
@@ -88,8 +88,8 @@ impl Body {
 /// Two links in one frame, near its origin and of numbers near one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkLink {
-    pub first: Body,
-    pub second: Body,
+    pub first: SolidLink,
+    pub second: SolidLink,
 }
 
 /// A unit vector, and how far the second body begins beyond the end of the first along it.
@@ -104,7 +104,7 @@ impl LinkLink {
     pub(crate) fn gap(&self, n: Vector) -> Real {
         let (end1, end2) = (self.first.end_toward(n), self.second.end_toward(-n));
         let between = self.second.centre(end2) - self.first.centre(end1);
-        let share = |body: &Body, end: usize| match body.axis.filter(|_| body.flat[end]) {
+        let share = |body: &SolidLink, end: usize| match body.axis.filter(|_| body.flat[end]) {
             None => 1.0,
             Some(axis) => (n - axis * axis.dot(n)).length(),
         };

@@ -6,7 +6,7 @@
 //! centres' line has in common.
 
 use super::direction::{unit, unit_across};
-use super::link_link::{Body, Gap, LinkLink};
+use super::link_link::{Gap, LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_disc, segment_segment};
 use parry3d_f64::math::{Real, Vector};
 
@@ -22,7 +22,7 @@ enum Foremost {
 }
 
 impl Foremost {
-    fn of(body: &Body, n: Vector) -> Self {
+    fn of(body: &SolidLink, n: Vector) -> Self {
         let end = body.end_toward(n);
         let (_, offset) = body.beyond(end, n);
         let Some(axis) = body.axis else { return Self::Point(body.start + offset) };

@@ -57,7 +57,7 @@ impl WayOut {
         let to_axis = segment_triangle(axis, pair.triangle.map(Vec3::from));
         let outward = super::unit(Vector::from(to_axis.point2) - Vector::from(to_axis.point1));
         let way = pair.least_translation(outward);
-        let Parting { fraction, lever, on_triangle, at_flat_cap } = pair.parting(way);
+        let SeparatingWay { fraction, lever, on_triangle, at_flat_cap } = pair.parting(way);
         Self {
             gap: way.gap,
             normal: way.normal,
@@ -72,7 +72,7 @@ impl WayOut {
 }
 
 /// The points that part last.
-struct Parting {
+struct SeparatingWay {
     fraction: Real,
     lever: Vector,
     on_triangle: Vector,
@@ -94,7 +94,7 @@ impl LinkTriangle {
         is_alone
     }
 
-    fn parting(&self, Way { normal, .. }: Way) -> Parting {
+    fn parting(&self, Way { normal, .. }: Way) -> SeparatingWay {
         let Link { end, axis, radius, flat } = self.link;
         let (end, axis) = (Vector::from(end), Vector::from(axis));
         let part = self.foremost(normal);
@@ -102,7 +102,7 @@ impl LinkTriangle {
         if length > TIE && (lean * length).abs() <= TIE {
             let found = segment_triangle([Vec3::zero(0.0), end.into()], part.map(Vec3::from));
             let along = Vector::from(found.point1).dot(axis);
-            return Parting {
+            return SeparatingWay {
                 fraction: (along / length).clamp(0.0, 1.0),
                 lever: normal * radius,
                 on_triangle: found.point2.into(),
@@ -123,10 +123,10 @@ impl LinkTriangle {
             let radial = offset - axis * offset.dot(axis);
             let reach = radial.length();
             let lever = if reach > radius { radial * (radius / reach) } else { radial };
-            return Parting { fraction, lever, on_triangle, at_flat_cap };
+            return SeparatingWay { fraction, lever, on_triangle, at_flat_cap };
         }
         let lever = lateral.unwrap_or(normal) * radius;
-        Parting { fraction, lever, on_triangle: nearest_to(centre + lever), at_flat_cap }
+        SeparatingWay { fraction, lever, on_triangle: nearest_to(centre + lever), at_flat_cap }
     }
 
     /// The triangle's part that is least far along a unit vector: a corner, an edge or all of it, with corners that count

@@ -135,7 +135,7 @@ impl BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_not_negative("tolerance", tolerance)?;
-        self.batch(tubes, out, Clearance::unanswered, |context, (tube, pose), out| {
+        self.batch(tubes, out, Clearance::placeholder, |context, (tube, pose), out| {
             *out = context.clearance(tube, pose, tolerance);
         });
         Ok(())

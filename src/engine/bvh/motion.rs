@@ -2,7 +2,7 @@
 
 use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
-use crate::query::motion::{MotionSearch, Wanted};
+use crate::query::motion::{MarginQuery, MotionSearch};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::{Chain, Motion, ShapePath};
 use parry3d_f64::math::{Real, Vector};
@@ -62,7 +62,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion).clears(Wanted { margin, resolution })
+        self.context().motion(motion).clears(MarginQuery { margin, resolution })
     }
 
     /// When a motion first comes as close to the mesh as `margin`: between the two times of the answer's
@@ -99,7 +99,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion).first_contact(Wanted { margin, resolution })
+        self.context().motion(motion).first_contact(MarginQuery { margin, resolution })
     }
 
     /// Whether the robot keeps more than `margin` away all the way along a planner's own shapes, where no speed is stated.
@@ -148,7 +148,7 @@ impl BvhSearch {
         check_decision(margin, resolution)?;
         check_not_negative("deviation", deviation)?;
         let path = ShapePath::new(shapes, deviation)?;
-        self.context().motion(&path).clears(Wanted { margin, resolution })
+        self.context().motion(&path).clears(MarginQuery { margin, resolution })
     }
 
     /// Whether a motion keeps more than `margin` away from a mesh that moves meanwhile: each vertex goes straight and evenly from
@@ -193,7 +193,7 @@ impl BvhSearch {
         self.prepared().hierarchy.mesh.check_moved(to)?;
         let mut search = self.context().motion(motion);
         search.move_mesh(to);
-        search.clears(Wanted { margin, resolution })
+        search.clears(MarginQuery { margin, resolution })
     }
 
     /// How near a motion comes to the mesh at any time from 0 to 1, between bounds that are at most `tolerance` apart where the
@@ -234,7 +234,7 @@ impl BvhSearch {
         tolerance: Real,
     ) -> Result<MotionClearance, ProximityError> {
         check_not_negative("tolerance", tolerance)?;
-        self.context().motion(motion).least(tolerance)
+        self.context().motion(motion).clearance(tolerance)
     }
 
     /// [`clears_motion`](Self::clears_motion) for many motions, on all cores. `out` gets the answer of each, or why there is
@@ -252,7 +252,7 @@ impl BvhSearch {
         out.clear();
         check_decision(margin, resolution)?;
         self.batch(motions, out, MotionAnswer::clear, |context, motion, out| {
-            *out = context.motion(motion).clears(Wanted { margin, resolution });
+            *out = context.motion(motion).clears(MarginQuery { margin, resolution });
         });
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! A mesh with all that questions need of it.
 
 use crate::mesh::Mesh;
-use crate::query::contacts::Across;
-use crate::query::nearest::RoughSides;
+use crate::query::contacts::OppositeCorners;
+use crate::query::nearest::SideGrid;
 use crate::query::side::FarFields;
 use crate::search::hierarchy::Hierarchy;
 use crate::threads::Lazy;
@@ -14,11 +14,11 @@ use parry3d_f64::math::Vector;
 pub(super) struct PreparedMesh {
     pub hierarchy: Hierarchy,
     /// For those who ask for contacts.
-    across: Lazy<Across<f32>>,
+    across: Lazy<OppositeCorners<f32>>,
     /// For those who ask on which side of the mesh a point is.
     far_fields: Lazy<FarFields>,
     /// For those who ask whether a margin is kept.
-    sides: Lazy<RoughSides>,
+    sides: Lazy<SideGrid>,
 }
 
 impl PreparedMesh {
@@ -32,12 +32,12 @@ impl PreparedMesh {
         self.hierarchy.prepare(level);
         self.sides();
         self.far_fields();
-        let across = self.across.get_or_build(|| Across::new(self.hierarchy.single()));
+        let across = self.across.get_or_build(|| OppositeCorners::new(self.hierarchy.single()));
         across.prepare(self.hierarchy.single(), &self.hierarchy.mesh);
     }
 
     /// For each edge of each triangle the corner of a neighbour beyond it.
-    pub(super) fn across(&self) -> &Lazy<Across<f32>> {
+    pub(super) fn across(&self) -> &Lazy<OppositeCorners<f32>> {
         &self.across
     }
 
@@ -48,8 +48,8 @@ impl PreparedMesh {
     }
 
     /// On which side of the wall space lies, roughly.
-    pub(super) fn sides(&self) -> &RoughSides {
-        self.sides.get_or_build(|| RoughSides::new(&self.hierarchy.mesh))
+    pub(super) fn sides(&self) -> &SideGrid {
+        self.sides.get_or_build(|| SideGrid::new(&self.hierarchy.mesh))
     }
 
     /// Moves the vertices, which were checked.
@@ -57,7 +57,7 @@ impl PreparedMesh {
         self.hierarchy.set_vertices(level, vertices);
         self.far_fields.take();
         let bounds = self.hierarchy.mesh.bounds();
-        if self.sides.get().is_some_and(|sides| !sides.still_fit(bounds)) {
+        if self.sides.get().is_some_and(|sides| !sides.covers(bounds)) {
             self.sides.take();
         }
         if let Some(across) = self.across.get_mut() {

@@ -6,7 +6,7 @@ use crate::engine::Proximity;
 use crate::pair::PlacedRobot;
 use crate::pieces::PlacedTube;
 use crate::query::check_decision;
-use crate::query::proof::{Kind, Parting, Shape, motion_proof, tube_shape, write_proof};
+use crate::query::proof::{Kind, PlaneSearch, Shape, motion_proof, tube_shape, write_proof};
 use crate::robot::{Chain, Motion, Tube};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
@@ -48,10 +48,10 @@ impl BvhSearch {
             return Ok(None);
         }
         let shape = Shape::of_chain(PlacedRobot::new(robot, pose)?);
-        let mut parting = self.parting();
+        let mut plane_search = self.plane_search();
         Ok(shape.and_then(|shape| {
-            let steps = parting.steps(&shape.bodies(margin))?;
-            Some(write_proof(parting.mesh(), margin, Kind::Chain, &[(shape, steps)]))
+            let steps = plane_search.steps(&shape.bodies(margin))?;
+            Some(write_proof(plane_search.mesh(), margin, Kind::Chain, &[(shape, steps)]))
         }))
     }
 
@@ -73,14 +73,14 @@ impl BvhSearch {
             return Ok(None);
         }
         let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.reach)?;
-        let mut parting = self.parting();
+        let mut plane_search = self.plane_search();
         // Coarse pieces, and finer ones as long as they do not suffice.
         let finest = (0.25 * resolution).max(placed.slack());
         let mut over = tube.length() / 16.0;
         loop {
             let (shape, _) = tube_shape(&placed, over, false);
-            if let Some(steps) = parting.steps(&shape.bodies(margin)) {
-                return Ok(Some(write_proof(parting.mesh(), margin, Kind::Tube, &[(shape, steps)])));
+            if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
+                return Ok(Some(write_proof(plane_search.mesh(), margin, Kind::Tube, &[(shape, steps)])));
             }
             if over <= finest {
                 return Ok(None);
@@ -122,12 +122,12 @@ impl BvhSearch {
             return Ok(None);
         }
         let reach = self.prepared().hierarchy.reach;
-        let mut parting = self.parting();
-        let shapes = motion_proof(&mut parting, reach, motion, margin, resolution)?;
-        Ok(shapes.map(|shapes| write_proof(parting.mesh(), margin, Kind::Motion, &shapes)))
+        let mut plane_search = self.plane_search();
+        let shapes = motion_proof(&mut plane_search, reach, motion, margin, resolution)?;
+        Ok(shapes.map(|shapes| write_proof(plane_search.mesh(), margin, Kind::Motion, &shapes)))
     }
 
-    fn parting(&self) -> Parting<'_> {
-        Parting::new(Level::new(), &self.prepared().hierarchy.mesh)
+    fn plane_search(&self) -> PlaneSearch<'_> {
+        PlaneSearch::new(Level::new(), &self.prepared().hierarchy.mesh)
     }
 }

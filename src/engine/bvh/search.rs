@@ -6,14 +6,12 @@ use crate::engine::{Engine, Proximity, any_triangle};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use crate::query::clearance::TubeMemory;
-use crate::query::contacts::{Asked, ContactSearch, LocalMinima};
+use crate::query::contacts::{ContactQuery, ContactSearch, LocalMinima};
 use crate::query::motion::MotionMemory;
-use crate::query::nearest::{
-    ClearsMemory, ClearsSearch, MinimumMemory, PerLinkMemory, minimum_within, per_link,
-};
+use crate::query::nearest::{ClearsMemory, ClearsSearch, PerLinkMemory, WarmStart, minimum_within, per_link};
 use crate::robot::Chain;
 use crate::search::hierarchy::{MeshSearch, Scratch};
-use crate::threads::in_shares;
+use crate::threads::in_chunks;
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -70,7 +68,7 @@ pub(super) struct Memory {
 #[derive(Clone, Default)]
 pub(super) struct Remembered {
     pub per_link: PerLinkMemory,
-    pub minimum: MinimumMemory,
+    pub minimum: WarmStart,
     pub clears: ClearsMemory,
     pub contacts: LocalMinima,
     pub tube: TubeMemory,
@@ -191,7 +189,7 @@ impl BvhSearch {
     ) {
         out.resize_with(robots.len(), || Ok(unanswered()));
         let (level, mesh) = (self.level, &*self.mesh);
-        in_shares(robots, out, &mut self.batch, |memory, robots, out| {
+        in_chunks(robots, out, &mut self.batch, |memory, robots, out| {
             memory.answers.forget();
             for (robot, out) in robots.iter().zip(out) {
                 answer(Context { level, mesh, memory }, robot, out);
@@ -201,9 +199,9 @@ impl BvhSearch {
 
     /// Whether a robot keeps more than `margin`, for one that is likely to: neither is it first asked about where it seems to pass
     /// through the wall, nor does what the last query proved count.
-    pub(crate) fn keeps_away(&mut self, robot: PlacedRobot, margin: Real) -> bool {
+    pub(crate) fn clears_unless_crossing(&mut self, robot: PlacedRobot, margin: Real) -> bool {
         let (search, last) = self.context().search();
-        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }.keeps_away(margin).is_some()
+        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }.cleared_by(margin).is_some()
     }
 
     pub(super) fn prepared(&self) -> &PreparedMesh {
@@ -246,10 +244,10 @@ impl<'a> Context<'a> {
         ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)
     }
 
-    fn within(self, robot: PlacedRobot, asked: Asked, out: &mut Vec<Contact>) {
+    fn within(self, robot: PlacedRobot, query: ContactQuery, out: &mut Vec<Contact>) {
         let across = self.mesh.across();
         let (search, last) = self.search();
-        ContactSearch { search, across }.within(robot, asked, &mut last.contacts, out);
+        ContactSearch { search, across }.within(robot, query, &mut last.contacts, out);
     }
 }
 
@@ -282,10 +280,10 @@ impl Engine for BvhSearch {
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
-        asked: Asked,
+        query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        self.context().within(robot, asked, out);
+        self.context().within(robot, query, out);
         Ok(())
     }
 
@@ -309,7 +307,7 @@ impl Engine for BvhSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        self.batch(robots, out, LinkProximity::unanswered, |context, (robot, pose), out| {
+        self.batch(robots, out, LinkProximity::placeholder, |context, (robot, pose), out| {
             let mesh = &context.mesh.hierarchy.mesh;
             *out = PlacedRobot::new(robot, pose).map(|robot| {
                 let found = context.nearest(robot, Real::INFINITY);

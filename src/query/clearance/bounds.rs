@@ -21,7 +21,9 @@
 
 use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
-use crate::pieces::{Bound, Divided, Examined, Found, PendingPiece, PendingPieces, PieceState, TubeInMesh};
+use crate::pieces::{
+    Examined, MeshUpperBound, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh, UpperBound,
+};
 use parry3d_f64::math::Real;
 
 /// After so many divisions the bounds are what they are: a limit on the time that a query takes, far above what any
@@ -44,7 +46,7 @@ pub(crate) fn clearance(
     // that must not depend on earlier queries.
     if tube.gains_from_sharpening() {
         let first = tube.first_bound();
-        tube.sharpen(first.upper);
+        tube.tighten_slack(first.upper);
         hint.take(&tube.bound_at(first.section, first.witness.arc_length, first.witness.triangle));
     }
     if let Some(last) = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len()) {
@@ -59,9 +61,9 @@ pub(crate) fn clearance(
     bounds.run(Real::INFINITY)?;
     let best = bounds.best;
     let best = best.unwrap_or_else(|| bounds.tube.first_bound());
-    let BetweenBounds { lower, resolved, uncertainty } = bounds.answer(best.upper);
+    let BoundedClearance { lower, resolved, uncertainty } = bounds.answer(best.upper);
     memory.last = Some((&best).into());
-    let Found { upper, section, witness } = best;
+    let MeshUpperBound { upper, section, witness } = best;
     Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
 }
 
@@ -73,7 +75,7 @@ pub(crate) struct Hint {
 }
 
 impl Hint {
-    pub(crate) fn take(&mut self, found: &impl Bound) {
+    pub(crate) fn take(&mut self, found: &impl UpperBound) {
         if found.upper() < self.upper {
             *self = Self { upper: found.upper(), triangle: found.triangle() };
         }
@@ -81,35 +83,35 @@ impl Hint {
 }
 
 /// A clearance between bounds.
-pub(crate) struct BetweenBounds {
+pub(crate) struct BoundedClearance {
     pub lower: Real,
     pub resolved: bool,
     pub uncertainty: Real,
 }
 
 /// How near the tube is at the least and at the most, as far as its pieces have been looked at.
-pub(crate) struct BoundsSearch<'a, T: Divided> {
+pub(crate) struct BoundsSearch<'a, T: Refinable> {
     pub tube: &'a mut T,
-    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
+    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Upper>,
     hint: Hint,
     tolerance: Real,
     /// How far apart the bounds may stay.
     aim: Real,
     /// What bounds the clearance from above: of the pieces that had their turn.
-    pub best: Option<T::Found>,
+    pub best: Option<T::Upper>,
     /// How many pieces may still be divided.
     left: u32,
 }
 
-impl<'a, T: Divided> BoundsSearch<'a, T> {
+impl<'a, T: Refinable> BoundsSearch<'a, T> {
     pub(crate) fn new(
         tube: &'a mut T,
-        pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
+        pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Upper>,
         hint: Hint,
         tolerance: Real,
     ) -> Self {
         // So that the bounds of the answer are no farther apart than asked for after they are rounded.
-        let aim = (tolerance + tube.uncertainty() - 4.0 * tube.slack()).max(0.0);
+        let aim = (tolerance + tube.position_uncertainty() - 4.0 * tube.slack()).max(0.0);
         Self { tube, pieces, hint, tolerance, aim, best: None, left: MOST_DIVISIONS }
     }
 
@@ -120,7 +122,7 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
     }
 
     fn upper(&self) -> Real {
-        self.best.as_ref().map_or(Real::INFINITY, Bound::upper)
+        self.best.as_ref().map_or(Real::INFINITY, UpperBound::upper)
     }
 
     /// Divides pieces until the bounds are as near one another as wanted. False if that needs pieces whose lower bound is
@@ -159,7 +161,7 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
         Ok(limit >= self.upper() - self.aim)
     }
 
-    fn improves(&self, found: &T::Found) -> bool {
+    fn improves(&self, found: &T::Upper) -> bool {
         self.best.as_ref().is_none_or(|best| {
             let is_equal = found.upper() <= best.upper();
             found.upper() < best.upper() || is_equal && found.tie() < best.tie()
@@ -167,7 +169,7 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
     }
 
     /// Measures a piece within the hint; or, if it is known to be farther away, within the upper bound.
-    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Body, T::Found>) -> Result<(), ProximityError> {
+    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Body, T::Upper>) -> Result<(), ProximityError> {
         let (hint, upper) = (self.hint.upper, self.upper());
         let is_open = matches!(piece.state, PieceState::Open);
         let bound = if is_open && piece.lower <= hint { hint.min(upper) } else { upper };
@@ -176,27 +178,27 @@ impl<'a, T: Divided> BoundsSearch<'a, T> {
                 let (lower, state) = (piece.lower.max(bound), PieceState::Distant);
                 self.pieces.push(self.tube, PendingPiece { lower, state, ..piece });
             }
-            Examined::Divided => {}
+            Examined::Refinable => {}
             Examined::Measured(found) => self.hint.take(&found),
         }
         Ok(())
     }
 
     /// The answer, with this upper bound.
-    pub(crate) fn answer(&self, upper: Real) -> BetweenBounds {
+    pub(crate) fn answer(&self, upper: Real) -> BoundedClearance {
         let mut lower = upper;
         let mut doubt: Real = 0.0;
         for piece in self.pieces.all() {
             if piece.lower > lower {
                 continue;
             }
-            let of_piece = self.tube.doubt(&piece.piece);
+            let of_piece = self.tube.direction_uncertainty(&piece.piece);
             doubt = if piece.lower < lower { of_piece } else { doubt.max(of_piece) };
             lower = piece.lower;
         }
         // Doubt matters only where it keeps the bounds apart.
         let doubt = if lower < upper - self.aim { doubt } else { 0.0 };
-        let uncertainty = self.tube.uncertainty() + doubt;
-        BetweenBounds { lower, resolved: upper - lower <= self.tolerance + uncertainty, uncertainty }
+        let uncertainty = self.tube.position_uncertainty() + doubt;
+        BoundedClearance { lower, resolved: upper - lower <= self.tolerance + uncertainty, uncertainty }
     }
 }

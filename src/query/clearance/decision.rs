@@ -16,7 +16,7 @@ use super::bounds::MOST_DIVISIONS;
 use super::memory::TubeMemory;
 use crate::answer::{Decision, ProximityError};
 use crate::pieces::{
-    Body, Bound, Divided, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, TubeInMesh,
+    Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh, UpperBound,
 };
 use parry3d_f64::math::Real;
 
@@ -31,11 +31,12 @@ pub(crate) fn tube_clears(
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
     // Nothing matters that is farther away than the margin.
-    tube.sharpen(margin);
+    tube.tighten_slack(margin);
     let TubeMemory { pieces, begun, last } = memory;
     tube.begin_coarse(begun);
     let start = last.map(|last| last.triangle);
-    let (decision, found) = keeps(tube, pieces, begun.drain(..), None, Wanted { margin, resolution, start })?;
+    let (decision, found) =
+        clears_pieces(tube, pieces, begun.drain(..), None, Wanted { margin, resolution, start })?;
     if let Some(found) = &found {
         *last = Some(found.into());
     }
@@ -55,13 +56,13 @@ pub(crate) struct Wanted {
 ///
 /// # Errors
 /// The curve is not finite, or its samples do not allow a decision at that resolution.
-pub(crate) fn keeps<T: Divided>(
+pub(crate) fn clears_pieces<T: Refinable>(
     tube: &mut T,
-    pieces: &mut PendingPieces<T::Piece, T::Body, T::Found>,
+    pieces: &mut PendingPieces<T::Piece, T::Body, T::Upper>,
     begun: impl Iterator<Item = T::Piece>,
-    best: Option<T::Found>,
+    best: Option<T::Upper>,
     wanted: Wanted,
-) -> Result<(Decision, Option<T::Found>), ProximityError> {
+) -> Result<(Decision, Option<T::Upper>), ProximityError> {
     pieces.clear();
     for piece in begun {
         let narrow = 0.5 * tube.radius(&piece).max(wanted.margin);
@@ -80,11 +81,11 @@ pub(crate) fn keeps<T: Divided>(
     search.run()
 }
 
-struct DecisionSearch<'a, T: Divided> {
+struct DecisionSearch<'a, T: Refinable> {
     tube: &'a mut T,
-    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Found>,
+    pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Upper>,
     wanted: Wanted,
-    best: Option<T::Found>,
+    best: Option<T::Upper>,
     /// The least lower bound of a piece that cannot be divided, beside what was stated of it.
     stuck: Real,
     /// Whether a piece stays undecided of which it is not known whether it is asked about.
@@ -93,10 +94,10 @@ struct DecisionSearch<'a, T: Divided> {
     left: u32,
 }
 
-impl<T: Divided> DecisionSearch<'_, T> {
-    fn run(mut self) -> Result<(Decision, Option<T::Found>), ProximityError> {
+impl<T: Refinable> DecisionSearch<'_, T> {
+    fn run(mut self) -> Result<(Decision, Option<T::Upper>), ProximityError> {
         let Wanted { margin, resolution, .. } = self.wanted;
-        let apart = resolution + self.tube.uncertainty();
+        let apart = resolution + self.tube.position_uncertainty();
         while self.upper() > margin {
             let Some(first) = self.pieces.first() else { break };
             let is_near = first.is_measured && first.least >= self.upper() - apart;
@@ -109,7 +110,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
                 self.examine(&piece)?;
                 continue;
             };
-            if is_near && found.upper() - piece.lower <= resolution + self.tube.stated(&piece.piece) {
+            if is_near && found.upper() - piece.lower <= resolution + self.tube.uncertainty(&piece.piece) {
                 // A contact could not be told from the margin here.
                 continue;
             }
@@ -135,7 +136,7 @@ impl<T: Divided> DecisionSearch<'_, T> {
     }
 
     fn upper(&self) -> Real {
-        self.best.as_ref().map_or(Real::INFINITY, Bound::upper)
+        self.best.as_ref().map_or(Real::INFINITY, UpperBound::upper)
     }
 
     /// Whether a piece that cannot be divided keeps the bounds apart.
@@ -145,9 +146,9 @@ impl<T: Divided> DecisionSearch<'_, T> {
     }
 
     /// What an open piece shows; if it is farther away than the margin, it is dropped.
-    fn examine(&mut self, open: &PendingPiece<T::Piece, T::Body, T::Found>) -> Result<(), ProximityError> {
+    fn examine(&mut self, open: &PendingPiece<T::Piece, T::Body, T::Upper>) -> Result<(), ProximityError> {
         let Wanted { margin, start, .. } = self.wanted;
-        let examined = self.pieces.examine(self.tube, open, margin, start, Body::over)?;
+        let examined = self.pieces.examine(self.tube, open, margin, start, Body::excess)?;
         if let Examined::Measured(found) = examined
             && found.upper() < self.upper()
         {
@@ -156,9 +157,9 @@ impl<T: Divided> DecisionSearch<'_, T> {
         Ok(())
     }
 
-    fn settle_whole(&mut self, piece: &PendingPiece<T::Piece, T::Body, T::Found>, found: &T::Found) {
-        if self.tube.is_surely_asked(&piece.piece, found) {
-            self.stuck = self.stuck.min(piece.lower + self.tube.stated(&piece.piece));
+    fn settle_whole(&mut self, piece: &PendingPiece<T::Piece, T::Body, T::Upper>, found: &T::Upper) {
+        if self.tube.is_entirely_queried(&piece.piece, found) {
+            self.stuck = self.stuck.min(piece.lower + self.tube.uncertainty(&piece.piece));
         } else {
             self.is_undecided = true;
         }

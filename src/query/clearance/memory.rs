@@ -1,18 +1,18 @@
 //! What a query about a tube leaves for the next.
 
-use crate::pieces::{Found, Outer, PendingPieces, Piece};
+use crate::pieces::{BoundingBody, MeshUpperBound, PendingPieces, Piece};
 use parry3d_f64::math::Real;
 
 /// Where a query ended, for the next to begin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Start {
+pub(crate) struct LastPlace {
     pub triangle: u32,
     pub section: u32,
     pub arc: Real,
 }
 
-impl From<&Found> for Start {
-    fn from(found: &Found) -> Self {
+impl From<&MeshUpperBound> for LastPlace {
+    fn from(found: &MeshUpperBound) -> Self {
         let witness = found.witness;
         Self { triangle: witness.triangle, section: found.section, arc: witness.arc_length }
     }
@@ -21,10 +21,10 @@ impl From<&Found> for Start {
 /// What a query about a tube leaves for the next.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
-    pub pieces: PendingPieces<Piece, Outer, Found>,
+    pub pieces: PendingPieces<Piece, BoundingBody, MeshUpperBound>,
     /// The pieces that a query begins with.
     pub begun: Vec<Piece>,
-    pub last: Option<Start>,
+    pub last: Option<LastPlace>,
 }
 
 impl TubeMemory {

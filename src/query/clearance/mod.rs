@@ -4,6 +4,6 @@ mod bounds;
 mod decision;
 mod memory;
 
-pub(crate) use bounds::{BetweenBounds, BoundsSearch, Hint, clearance};
-pub(crate) use decision::{Wanted, keeps, tube_clears};
+pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, clearance};
+pub(crate) use decision::{Wanted, clears_pieces, tube_clears};
 pub(crate) use memory::TubeMemory;

@@ -1,8 +1,8 @@
 //! Pieces of wall below rising distances, each grown from a minimum only as far as it must be. `prominence` says what for.
 
-use super::lists::Lists;
-use super::passes::Surroundings;
-use crate::mesh::{ends_of, first_of, join};
+use super::disjoint_lists::DisjointLists;
+use super::link_neighbourhood::LinkNeighbourhood;
+use crate::mesh::{ends_of, find_root, unite};
 use crate::pair::{Height, measure_points, measure_segments};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -23,8 +23,8 @@ pub(super) struct Flood {
     /// For each that was reached an earlier one of the same piece, or itself.
     joined: Vec<u32>,
     /// For the first of each piece those from which more may be reached, and its minima that are kept.
-    open: Lists,
-    kept: Lists,
+    open: DisjointLists,
+    kept: DisjointLists,
     /// Those from which more is reached at the moment, and those from which no corner leads farther.
     wave: Vec<u32>,
     closed: Vec<u32>,
@@ -48,7 +48,7 @@ struct Corner {
 
 impl Flood {
     /// Nothing was reached yet.
-    pub(super) fn begin(&mut self, around: Surroundings) {
+    pub(super) fn begin(&mut self, around: LinkNeighbourhood) {
         let mesh = around.wall.mesh;
         self.of_triangle.resize(mesh.len(), 0);
         self.of_vertex.resize(mesh.vertices().len(), 0);
@@ -61,9 +61,9 @@ impl Flood {
     }
 
     /// Keeps a minimum, at a triangle that is near.
-    pub(super) fn keep(&mut self, around: Surroundings, triangle: u32, minimum: u32) {
+    pub(super) fn keep(&mut self, around: LinkNeighbourhood, triangle: u32, minimum: u32) {
         let place = self.reach(around, triangle);
-        self.kept.put(first_of(&mut self.joined, place), minimum);
+        self.kept.put(find_root(&mut self.joined, place), minimum);
     }
 
     /// Whether one that is kept and `stands_for` a minimum at a triangle is reached from there below a distance. That distance
@@ -71,7 +71,7 @@ impl Flood {
     pub(super) fn reaches(
         &mut self,
         level: Level,
-        around: Surroundings,
+        around: LinkNeighbourhood,
         triangle: u32,
         below: Real,
         stands_for: impl Fn(u32) -> bool,
@@ -81,7 +81,7 @@ impl Flood {
         // Of the closed ones so many have edges that lead no farther.
         let mut ended = 0;
         let is_reached = loop {
-            let piece = first_of(&mut self.joined, place);
+            let piece = find_root(&mut self.joined, place);
             if self.kept.find(piece, &stands_for) {
                 break true;
             }
@@ -96,13 +96,13 @@ impl Flood {
                 break false;
             }
         };
-        let piece = first_of(&mut self.joined, place);
+        let piece = find_root(&mut self.joined, place);
         self.closed.iter().for_each(|&place| self.open.put(piece, place));
         is_reached
     }
 
     /// Where a triangle stands that is near: behind all that were reached, if it was not yet.
-    fn reach(&mut self, around: Surroundings, triangle: u32) -> u32 {
+    fn reach(&mut self, around: LinkNeighbourhood, triangle: u32) -> u32 {
         if let Some(place) = self.place(triangle) {
             return place;
         }
@@ -135,14 +135,14 @@ impl Flood {
     }
 
     /// Reaches all that is near around a corner or an edge of one that was reached.
-    fn follow(&mut self, around: Surroundings, triangle: u32, part: usize) {
+    fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
         let own = self.reach(around, triangle);
         for other in around.wall.mesh.parts().others(triangle, part) {
             if self.place(other).is_none() && !around.holds(other) {
                 continue;
             }
             let place = self.reach(around, other);
-            let [first, second] = join(&mut self.joined, own, place);
+            let [first, second] = unite(&mut self.joined, own, place);
             if first != second {
                 self.open.append(second, first);
                 self.kept.append(second, first);
@@ -151,7 +151,7 @@ impl Flood {
     }
 
     /// Follows the corners of the wave that are passes below a distance. Where one is none, its triangle is closed.
-    fn follow_corners(&mut self, level: Level, around: Surroundings, below: Real) {
+    fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
         let vertices = around.wall.mesh.vertices();
         let unknown = self.corners[self.heights.len()..].iter();
         let points = unknown.map(|corner| vertices[corner.vertex as usize]);
@@ -180,7 +180,7 @@ impl Flood {
 
     /// Follows the edges of the closed ones, from one of them on, that are passes below a distance although their ends are
     /// none.
-    fn follow_edges(&mut self, level: Level, around: Surroundings, below: Real, from: usize) {
+    fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
         let mesh = around.wall.mesh;
         self.edges.clear();
         let closed = std::mem::take(&mut self.closed);
@@ -196,7 +196,7 @@ impl Flood {
                 if !around.may_pass_between(ends.map(|end| &self.heights[end]), end - start, below) {
                     continue;
                 }
-                if self.leads_farther(around, triangle, part) {
+                if self.reaches_other_piece(around, triangle, part) {
                     self.edges.push((triangle, part));
                 }
             }
@@ -208,7 +208,7 @@ impl Flood {
         measure_segments(level, around.link, segments, |height| {
             let Some(&(triangle, part)) = of_heights.next() else { return };
             // Another that names it may have been followed already.
-            if around.is_pass(&height, below) && self.leads_farther(around, triangle, part) {
+            if around.is_pass(&height, below) && self.reaches_other_piece(around, triangle, part) {
                 self.follow(around, triangle, part);
             }
         });
@@ -217,11 +217,11 @@ impl Flood {
 
     /// Whether behind one that was reached, the next in the ring of an edge that is near belongs to another piece. If it is
     /// so for none of them, all in the ring are one piece.
-    fn leads_farther(&mut self, around: Surroundings, triangle: u32, part: usize) -> bool {
+    fn reaches_other_piece(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) -> bool {
         let own = self.reach(around, triangle);
         for other in around.wall.mesh.parts().others(triangle, part) {
             if let Some(other) = self.place(other) {
-                return first_of(&mut self.joined, other) != first_of(&mut self.joined, own);
+                return find_root(&mut self.joined, other) != find_root(&mut self.joined, own);
             }
             if around.holds(other) {
                 return true;

@@ -37,8 +37,8 @@
 //!
 //! # What need not be measured
 //! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another triangle has too, and
-//! that one is nearer by far more than 2 t. The search can see that, from a look at the neighbour (`slopes`) or from all
-//! that it found (`feet`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far
+//! that one is nearer by far more than 2 t. The search can see that, from a look at the neighbour (`descent_cull`) or from all
+//! that it found (`feature_cull`). Such a triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far
 //! more than 2 t, so that no piece ever ends for being that of D. So is one whose nearest point is on an f that it shares
 //! with another that is left out: at d(f) it joins that one, which is in such a piece from a distance on that is no
 //! greater. For the others what is left out still counts where they join it. A piece that has an f with D, and d(f) at
@@ -57,12 +57,12 @@
 //! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its triangles the one
 //! nearest to the axis comes first and stands for it, the lowest of equals.
 
+use super::link_neighbourhood::LinkNeighbourhood;
 use super::long_rings::{FEW, LongRings};
-use super::near_triangle::{End, Index, NearTriangles};
-use super::passes::Surroundings;
-use super::prominence::{Asked, Prominence};
+use super::prominence::{ContactQuery, Prominence};
+use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates};
 use super::wall::Wall;
-use super::wall_pieces::{Around, Pieces};
+use super::wall_components::{IncidentTriangles, WallComponents};
 use crate::answer::{Contact, LinkProximity};
 use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
 use fearless_simd::Level;
@@ -70,33 +70,33 @@ use parry3d_f64::math::Real;
 use std::ops::Range;
 
 /// The place of all that are left out.
-pub(crate) const LEFT_OUT: u32 = 0;
+pub(crate) const CULLED: u32 = 0;
 
 /// The place of no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Links are put off while no more triangles than these are to be measured, so that packs are full and memory is small.
-const PUT_OFF: usize = 1 << 12;
+const FLUSH_AT: usize = 1 << 12;
 
 /// Memory that is used again.
 #[derive(Clone, Default)]
 pub(crate) struct LocalMinima {
     /// The links that something may be near to.
-    links: Vec<LinkAtWall>,
+    links: Vec<ActiveLink>,
     /// The triangles that may be within the margin, link by link.
-    triangles: NearTriangles,
+    triangles: TriangleCandidates,
     /// For each of them that is in question its place among those within the margin of its link, counted from 1, or that
     /// of all that are left out.
     places: Vec<u32>,
     /// Where the triangles of the link at hand stand.
-    index: Index,
+    index: CandidateIndex,
     /// Those that are measured, link by link.
     measured: Vec<u32>,
     /// What was measured of them.
     ranked: Vec<Ranked>,
     /// What long rings of triangles are to those that they may leave out, and to those that may join them.
     lowest: LongRings<Lowest>,
-    around: LongRings<Around>,
+    around: LongRings<IncidentTriangles>,
     /// For each place an earlier one of the same piece, or itself.
     piece: Vec<u32>,
     /// The minima that were found.
@@ -108,11 +108,11 @@ pub(crate) struct LocalMinima {
 
 /// A link that something may be near to.
 #[derive(Clone)]
-struct LinkAtWall {
+struct ActiveLink {
     number: usize,
     link: PlacedLink,
     /// Where its triangles begin and end.
-    triangles: [End; 2],
+    triangles: [CandidateEnd; 2],
     measured: Range<usize>,
 }
 
@@ -132,56 +132,56 @@ impl Default for Lowest {
 }
 
 /// The contacts of a robot, link by link, in `out`.
-pub(crate) struct RobotContacts<'a> {
+pub(crate) struct ContactCollector<'a> {
     level: Level,
     wall: Wall<'a>,
     robot: PlacedRobot<'a>,
-    asked: Asked,
+    query: ContactQuery,
     minima: &'a mut LocalMinima,
     out: &'a mut Vec<Contact>,
     /// How many triangles were measured.
     measured: u64,
 }
 
-impl<'a> RobotContacts<'a> {
+impl<'a> ContactCollector<'a> {
     /// Nothing yet.
     pub(crate) fn new(
         level: Level,
         wall: Wall<'a>,
         robot: PlacedRobot<'a>,
-        asked: Asked,
+        query: ContactQuery,
         minima: &'a mut LocalMinima,
         out: &'a mut Vec<Contact>,
     ) -> Self {
         minima.clear();
-        Self { level, wall, robot, asked, minima, out, measured: 0 }
+        Self { level, wall, robot, query, minima, out, measured: 0 }
     }
 
     /// Looks at a link, behind the last one. `near` adds the triangles that may be within the margin; some may be farther
     /// away, and none may stand there twice.
-    pub(crate) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut NearTriangles)) {
+    pub(crate) fn add(&mut self, number: usize, near: impl FnOnce(&PlacedLink, &mut TriangleCandidates)) {
         let (link, minima) = (self.robot.link(number), &mut *self.minima);
         let (begin, measured) = (minima.triangles.end(), minima.measured.len());
         near(&link, &mut minima.triangles);
         let triangles = [begin, minima.triangles.end()];
-        minima.leave_out(self.wall, triangles);
+        minima.cull(self.wall, triangles);
         let measured = measured..minima.measured.len();
-        minima.links.push(LinkAtWall { number, link, triangles, measured });
-        if minima.measured.len() > PUT_OFF {
-            self.catch_up();
+        minima.links.push(ActiveLink { number, link, triangles, measured });
+        if minima.measured.len() > FLUSH_AT {
+            self.flush();
         }
     }
 
     /// The contacts of all links, nearest first for each. Returns how many triangles were measured.
     pub(crate) fn finish(mut self) -> u64 {
-        self.catch_up();
+        self.flush();
         self.measured
     }
 
     /// Finds the contacts of the links that were put off.
-    fn catch_up(&mut self) {
-        let Self { level, wall, robot, asked, .. } = *self;
-        self.minima.find(level, wall, asked.margin);
+    fn flush(&mut self) {
+        let Self { level, wall, robot, query, .. } = *self;
+        self.minima.find_minima(level, wall, query.margin);
         let mut links = self.minima.links.iter().peekable();
         let place = |found: &LinkProximity| {
             // Both are in the order of links.
@@ -197,8 +197,8 @@ impl<'a> RobotContacts<'a> {
         };
         let first = self.out.len();
         add_contacts(level, &self.minima.found, place, self.out);
-        if asked.prominence > 0.0 {
-            self.minima.keep_prominent(level, wall, asked, first, self.out);
+        if query.prominence > 0.0 {
+            self.minima.keep_prominent(level, wall, query, first, self.out);
         }
         self.measured += self.minima.measured.len() as u64;
         self.minima.clear();
@@ -214,7 +214,7 @@ impl LocalMinima {
     }
 
     /// Leaves out the triangles of a link that certainly lie on a slope towards a nearer one.
-    fn leave_out(&mut self, wall: Wall, triangles: [End; 2]) {
+    fn cull(&mut self, wall: Wall, triangles: [CandidateEnd; 2]) {
         let near = self.triangles.between(triangles);
         if near.in_question.is_empty() {
             return;
@@ -228,43 +228,45 @@ impl LocalMinima {
         // What one leaves out may leave out another: most of these are met the second time.
         for _ in 0..2 {
             for (place, known) in near.in_question.iter().enumerate() {
-                let Some(foot) = known.foot().filter(|_| places[place] != LEFT_OUT) else { continue };
+                let Some(foot) = known.nearest_feature().filter(|_| places[place] != CULLED) else {
+                    continue;
+                };
                 let mut others = shared.others(known.triangle, foot);
                 let leaves_out = |other: u32| match near.index(&self.index, other) {
-                    Some(index) => near.in_question[index].upper < known.lower || places[index] == LEFT_OUT,
-                    None => near.is_on_slope(&self.index, wall.place_of(), other),
+                    Some(index) => near.in_question[index].upper < known.lower || places[index] == CULLED,
+                    None => near.is_culled(&self.index, wall.place_of(), other),
                 };
                 let mut is_left_out = others.by_ref().take(FEW).any(leaves_out);
                 if !is_left_out && others.next().is_some() {
                     let add = |lowest: &mut Lowest, other: u32, index: Option<usize>| match index {
                         Some(index) => {
                             lowest.upper = lowest.upper.min(near.in_question[index].upper);
-                            lowest.is_left_out |= places[index] == LEFT_OUT;
+                            lowest.is_left_out |= places[index] == CULLED;
                         }
-                        None => lowest.is_left_out |= near.is_on_slope(&self.index, wall.place_of(), other),
+                        None => lowest.is_left_out |= near.is_culled(&self.index, wall.place_of(), other),
                     };
                     let lowest = self.lowest.around(shared, near, &self.index, [place, foot], add);
                     // It is not below itself.
                     is_left_out = lowest.is_left_out || lowest.upper < known.lower;
                 }
                 if is_left_out {
-                    places[place] = LEFT_OUT;
+                    places[place] = CULLED;
                     self.lowest.all_around(place, |lowest| lowest.is_left_out = true);
                 }
             }
         }
-        let others = near.in_question.iter().zip(places).filter(|(_, place)| **place != LEFT_OUT);
+        let others = near.in_question.iter().zip(places).filter(|(_, place)| **place != CULLED);
         self.measured.extend(others.map(|(known, _)| known.triangle));
     }
 
     /// Finds the local minima of all links, nearest first for each.
-    fn find(&mut self, level: Level, wall: Wall, margin: Real) {
+    fn find_minima(&mut self, level: Level, wall: Wall, margin: Real) {
         self.ranked.clear();
-        let of_link = |at: &LinkAtWall| self.measured[at.measured.clone()].iter();
+        let of_link = |at: &ActiveLink| self.measured[at.measured.clone()].iter();
         let pairs = self.links.iter().flat_map(|at| of_link(at).map(|&triangle| (&at.link, triangle)));
         rank_each(level, wall.mesh, pairs, |ranked| self.ranked.push(ranked));
         self.found.clear();
-        for LinkAtWall { number: link_number, link, triangles, measured } in &self.links {
+        for ActiveLink { number: link_number, link, triangles, measured } in &self.links {
             let near = self.triangles.between(*triangles);
             let ranked = nearest_first(&mut self.ranked[measured.clone()], margin);
             if ranked.is_empty() {
@@ -279,7 +281,7 @@ impl LocalMinima {
             }
             self.around.clear();
             let (index, piece, around) = (&self.index, &mut self.piece, &mut self.around);
-            let mut pieces = Pieces { link, wall, near, places, index, ranked, piece, around };
+            let mut pieces = WallComponents { link, wall, near, places, index, ranked, piece, around };
             self.found.extend(pieces.first_triangles().map(|nearest| link.answer(*link_number, nearest)));
         }
     }
@@ -289,20 +291,20 @@ impl LocalMinima {
         &mut self,
         level: Level,
         wall: Wall,
-        asked: Asked,
+        query: ContactQuery,
         first: usize,
         contacts: &mut Vec<Contact>,
     ) {
         self.keep.clear();
         let mut of_links = contacts[first..].chunk_by(|one, other| one.link == other.link).peekable();
-        for LinkAtWall { number, link, triangles, .. } in &self.links {
+        for ActiveLink { number, link, triangles, .. } in &self.links {
             let Some(of_link) = of_links.next_if(|of_link| of_link[0].link as usize == *number) else {
                 continue;
             };
             let near = self.triangles.between(*triangles);
             self.index.number(near, wall.mesh.len());
-            let around = Surroundings { link, wall, near, index: &self.index, margin: asked.margin };
-            self.prominence.choose(level, around, asked.prominence, of_link, &mut self.keep);
+            let around = LinkNeighbourhood { link, wall, near, index: &self.index, margin: query.margin };
+            self.prominence.keep_prominent(level, around, query.prominence, of_link, &mut self.keep);
         }
         let mut keep = std::iter::repeat_n(true, first).chain(self.keep.iter().copied());
         contacts.retain(|_| keep.next().unwrap_or(true));
@@ -323,15 +325,15 @@ fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
 pub(crate) fn contacts_by_all_triangles(
     wall: Wall,
     robot: PlacedRobot,
-    asked: Asked,
+    query: ContactQuery,
     out: &mut Vec<Contact>,
 ) {
     let mut minima = LocalMinima::default();
-    let mut contacts = RobotContacts::new(Level::new(), wall, robot, asked, &mut minima, out);
+    let mut contacts = ContactCollector::new(Level::new(), wall, robot, query, &mut minima, out);
     for number in 0..robot.links().len() {
         contacts.add(number, |link, near| {
-            let may_meet = |triangle: &u32| link.at_least(wall.mesh.corners(*triangle)) <= asked.margin;
-            near.add_unknown((0..wall.mesh.len() as u32).filter(may_meet));
+            let may_meet = |triangle: &u32| link.at_least(wall.mesh.corners(*triangle)) <= query.margin;
+            near.add_unclassified((0..wall.mesh.len() as u32).filter(may_meet));
         });
     }
     contacts.finish();

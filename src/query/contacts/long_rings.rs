@@ -4,7 +4,7 @@
 //! vertices were put at the origin, each of them would ask about as many. So what can be asked about a long ring is
 //! gathered by one walk around it, near each link, and kept for all that are in it.
 
-use super::near_triangle::{Index, NearLink};
+use super::triangle_candidates::{CandidateIndex, LinkCandidates};
 use crate::mesh::{PARTS, SharedParts};
 
 /// So many others are asked one by one. Around the corners of a mesh that was made with care there are fewer.
@@ -38,8 +38,8 @@ impl<K: Default> LongRings<K> {
     pub(crate) fn around(
         &mut self,
         shared: &SharedParts,
-        near: NearLink,
-        index: &Index,
+        near: LinkCandidates,
+        index: &CandidateIndex,
         [place, part]: [usize; 2],
         mut add: impl FnMut(&mut K, u32, Option<usize>),
     ) -> &K {

@@ -1,24 +1,24 @@
 //! Every place where a link is near the mesh: the local minima of the distance.
 
-mod across;
-mod feet;
+mod candidate_gather;
+mod descent_cull;
+mod disjoint_lists;
+mod feature_cull;
 mod flood;
-mod gathering;
-mod lists;
+mod link_neighbourhood;
 mod local_minima;
 mod long_rings;
-mod near_triangle;
-mod passes;
+mod opposite_corners;
 mod prominence;
 mod search;
-mod slopes;
+mod triangle_candidates;
 mod wall;
-mod wall_pieces;
+mod wall_components;
 
-pub(crate) use across::Across;
 #[cfg(feature = "gpu")]
 pub(crate) use local_minima::contacts_by_all_triangles;
-pub(crate) use local_minima::{LocalMinima, RobotContacts};
-pub(crate) use prominence::Asked;
+pub(crate) use local_minima::{ContactCollector, LocalMinima};
+pub(crate) use opposite_corners::OppositeCorners;
+pub(crate) use prominence::ContactQuery;
 pub(crate) use search::ContactSearch;
 pub(crate) use wall::Wall;

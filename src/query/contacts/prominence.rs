@@ -46,17 +46,17 @@
 //! such a normal.
 
 use super::flood::Flood;
-use super::passes::Surroundings;
+use super::link_neighbourhood::LinkNeighbourhood;
 use crate::answer::Contact;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
 /// The cosine of the angle between normals beyond which no contact stands for another.
-const LEAST_COSINE: Real = 0.5;
+const MIN_COSINE: Real = 0.5;
 
 /// Which contacts a caller wants.
 #[derive(Clone, Copy)]
-pub(crate) struct Asked {
+pub(crate) struct ContactQuery {
     /// How far away they may be.
     pub margin: Real,
     /// How prominent each must be.
@@ -73,10 +73,10 @@ pub(super) struct Prominence {
 
 impl Prominence {
     /// For each contact of one link, nearest first, whether it has such a prominence. `keep` gets the answers.
-    pub(super) fn choose(
+    pub(super) fn keep_prominent(
         &mut self,
         level: Level,
-        around: Surroundings,
+        around: LinkNeighbourhood,
         prominence: Real,
         contacts: &[Contact],
         keep: &mut Vec<bool>,
@@ -92,11 +92,11 @@ impl Prominence {
             let is_near = contact.normal.is_some() && around.holds(contact.triangle);
             let stands_for_it = |other: u32| {
                 let normals = contact.normal.zip(contacts[other as usize].normal);
-                normals.is_some_and(|(one, other)| LEAST_COSINE <= one.dot(other))
+                normals.is_some_and(|(one, other)| MIN_COSINE <= one.dot(other))
             };
             let below = contact.distance + prominence;
             let is_left_out = is_near
-                && one_stands(kept, stands_for_it)
+                && is_represented(kept, stands_for_it)
                 && flood.reaches(level, around, contact.triangle, below, stands_for_it);
             if is_near && !is_left_out {
                 flood.keep(around, contact.triangle, minimum);
@@ -108,7 +108,7 @@ impl Prominence {
 }
 
 /// Whether one of them stands for a minimum. It is the first to be asked about the next, which mostly is beside this one.
-fn one_stands(kept: &mut [u32], stands_for_it: impl Fn(u32) -> bool) -> bool {
+fn is_represented(kept: &mut [u32], stands_for_it: impl Fn(u32) -> bool) -> bool {
     let place = kept.iter().position(|&other| stands_for_it(other));
     if let Some(place) = place {
         kept.swap(0, place);

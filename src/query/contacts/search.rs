@@ -1,10 +1,10 @@
 //! The contacts of a robot by search: those of every link whose surroundings hold a part of the wall.
 
-use super::across::Across;
-use super::gathering::gather;
-use super::local_minima::{LocalMinima, RobotContacts};
-use super::near_triangle::NearTriangles;
-use super::prominence::Asked;
+use super::candidate_gather::gather;
+use super::local_minima::{ContactCollector, LocalMinima};
+use super::opposite_corners::OppositeCorners;
+use super::prominence::ContactQuery;
+use super::triangle_candidates::TriangleCandidates;
 use super::wall::Wall;
 use crate::answer::Contact;
 use crate::pair::{PlacedLink, PlacedRobot};
@@ -17,7 +17,7 @@ use parry3d_f64::math::Real;
 pub(crate) struct ContactSearch<'a> {
     pub search: MeshSearch<'a>,
     /// Begun at the first question.
-    pub across: &'a Lazy<Across<f32>>,
+    pub across: &'a Lazy<OppositeCorners<f32>>,
 }
 
 impl ContactSearch<'_> {
@@ -25,23 +25,23 @@ impl ContactSearch<'_> {
     pub(crate) fn within(
         &mut self,
         robot: PlacedRobot,
-        asked: Asked,
+        query: ContactQuery,
         minima: &mut LocalMinima,
         out: &mut Vec<Contact>,
     ) {
         let (level, hierarchy) = (self.search.level, self.search.hierarchy);
         let wall = Wall { mesh: &hierarchy.mesh, tree: Some(hierarchy.single()) };
-        let mut contacts = RobotContacts::new(level, wall, robot, asked, minima, out);
+        let mut contacts = ContactCollector::new(level, wall, robot, query, minima, out);
         let (tree, mut place) = (robot.link_tree(), 0);
         while let Some(node) = tree.get(place) {
             match node {
                 LinkNode::Inner { bound, below } => {
-                    if !self.search.may_meet(&robot.bound(bound), asked.margin) {
+                    if !self.search.may_meet(&robot.bound(bound), query.margin) {
                         place += below;
                     }
                 }
                 LinkNode::Leaf(link) => {
-                    contacts.add(*link, |link, near| self.near(link, asked.margin, near));
+                    contacts.add(*link, |link, near| self.near(link, query.margin, near));
                 }
             }
             place += 1;
@@ -50,16 +50,16 @@ impl ContactSearch<'_> {
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.
-    fn near(&mut self, link: &PlacedLink, bound: Real, found: &mut NearTriangles) {
+    fn near(&mut self, link: &PlacedLink, bound: Real, found: &mut TriangleCandidates) {
         let hierarchy = self.search.hierarchy;
         match hierarchy.searched(self.search.level, link) {
             Searched::Single(searched) => {
-                let across = self.across.get_or_build(|| Across::new(hierarchy.single()));
+                let across = self.across.get_or_build(|| OppositeCorners::new(hierarchy.single()));
                 gather(self.search.single(), &searched, bound, Some(across), found);
             }
             // Such links are rare: they do without the corners beyond the edges.
             Searched::Double(searched) => gather(self.search.double(), &searched, bound, None, found),
-            Searched::OutOfReach => found.add_unknown(0..hierarchy.mesh.len() as u32),
+            Searched::OutOfReach => found.add_unclassified(0..hierarchy.mesh.len() as u32),
         }
     }
 }

@@ -1,37 +1,38 @@
 //! The loop over intervals of time, for robots beside robots.
 
-use super::moment::{Seen, Wanted};
-use super::pace::{middle, rests};
+use super::approach_bound::{midpoint, remaining_parts};
+use super::interval_test::{IntervalResult, MarginQuery};
 use super::progress::Progress;
 use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
-use crate::pieces::FoundBetween;
+use crate::pieces::PairUpperBound;
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// Whether a margin is kept in all intervals. `judge` looks at the middle of one, and says for how long before and after it what
+/// Whether a margin is kept in all intervals. `test_interval` looks at the middle of one, and says for how long before and after it what
 /// failed there is decided: for ever where nothing did. Breadth first: contacts that last show early.
 ///
 /// # Errors
-/// As `judge`.
+/// As `test_interval`.
 pub(super) fn clear(
     intervals: &mut VecDeque<[Real; 2]>,
-    mut judge: impl FnMut([Real; 2]) -> Result<(Seen<FoundBetween>, Real), ProximityError>,
+    mut test_interval: impl FnMut([Real; 2]) -> Result<(IntervalResult<PairUpperBound>, Real), ProximityError>,
 ) -> Result<RobotMotionAnswer, ProximityError> {
     let (mut progress, mut shapes, mut too_fine) = (Progress::default(), 0, None);
     while let Some(times) = intervals.pop_front() {
-        if let Some(first) = progress.gives_up(shapes, intervals.iter().copied().chain([times])) {
+        if let Some(first) = progress.is_exhausted(shapes, intervals.iter().copied().chain([times])) {
             return too_fine.map_or_else(|| Ok(RobotMotionAnswer::undecided(first)), Err);
         }
-        let (seen, still) = judge(times)?;
+        let (result, hold) = test_interval(times)?;
         shapes += 1;
-        progress.take(times, &seen, shapes);
-        if let Some(FoundBetween { upper, sections, arcs, points: [on_first, on_second] }) = seen.contact {
-            let t = middle(times);
+        progress.record(times, &result, shapes);
+        if let Some(PairUpperBound { upper, sections, arcs, points: [on_first, on_second] }) = result.contact
+        {
+            let t = midpoint(times);
             let contact = RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
             return Ok(RobotMotionAnswer::contact(contact));
         }
-        too_fine = too_fine.or(seen.too_fine);
-        intervals.extend(rests(times, still).into_iter().flatten());
+        too_fine = too_fine.or(result.too_fine);
+        intervals.extend(remaining_parts(times, hold).into_iter().flatten());
     }
     if let Some(error) = too_fine {
         return Err(error);
@@ -41,7 +42,7 @@ pub(super) fn clear(
 
 /// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the motion that there are more:
 /// 2^16. A shorter interval has fewer.
-pub(super) fn most_pairs(reach: Real, Wanted { margin, resolution }: Wanted) -> usize {
+pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
     if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 

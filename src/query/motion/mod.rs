@@ -1,25 +1,25 @@
 //! Whether a motion keeps a margin, until when, and how near it comes.
 
-mod failure;
-mod fast;
+mod approach_bound;
+mod approach_speed;
+mod current_shape;
+mod half_displacement;
+mod interval_test;
 mod intervals;
-mod least;
-mod moment;
+mod motion_clearance;
+mod motion_pair;
 mod motion_search;
-mod moves;
-mod moving;
-mod moving_own;
 mod moving_pair;
-mod own_directions;
-mod own_motion;
-mod pace;
-mod present;
+mod moving_tube;
+mod moving_tube_with_itself;
+mod pending_piece;
 mod progress;
-mod side;
-mod two_motions;
-mod waiting;
+mod relative_motion;
+mod self_motion;
+mod separating_planes;
+mod unresolved_piece;
 
-pub(crate) use moment::Wanted;
+pub(crate) use interval_test::MarginQuery;
+pub(crate) use motion_pair::{MotionPair, MotionsMemory};
 pub(crate) use motion_search::{MotionMemory, MotionSearch};
-pub(crate) use own_motion::{OwnMotionMemory, own_motion_clears};
-pub(crate) use two_motions::{MotionsMemory, TwoMotions};
+pub(crate) use self_motion::{SelfMotionMemory, self_clears_motion};

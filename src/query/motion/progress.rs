@@ -1,6 +1,6 @@
 //! What is known of a margin while intervals of time are judged one after another.
 
-use super::moment::Seen;
+use super::interval_test::IntervalResult;
 use crate::answer::UndecidedReason;
 use parry3d_f64::math::Real;
 
@@ -10,7 +10,7 @@ use parry3d_f64::math::Real;
 pub(super) const PATIENCE: u64 = 256;
 
 /// A question about a motion ends after so many shapes.
-pub(super) const MOST_SHAPES: u64 = 1 << 16;
+pub(super) const MAX_SHAPES: u64 = 1 << 16;
 
 /// What the intervals so far have shown.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,22 +25,22 @@ pub(super) struct Progress {
 
 impl Progress {
     /// Takes note of what an interval shows; so many shapes were looked at.
-    pub(super) fn take<F>(&mut self, times: [Real; 2], seen: &Seen<F>, shapes: u64) {
-        if seen.is_near && self.near.is_none() {
+    pub(super) fn record<F>(&mut self, times: [Real; 2], result: &IntervalResult<F>, shapes: u64) {
+        if result.is_near && self.near.is_none() {
             self.near = Some((times, shapes + PATIENCE));
         }
-        if seen.gives_up {
+        if result.gives_up {
             self.near = Some((times, shapes));
             self.is_exhausted = true;
         }
-        if seen.is_undecided && self.undecided.is_none_or(|first| times[0] < first[0]) {
+        if result.is_undecided && self.undecided.is_none_or(|first| times[0] < first[0]) {
             self.undecided = Some(times);
         }
     }
 
     /// The first interval of which nothing is known, and why, if no more shapes are to be looked
     /// at; these intervals were not.
-    pub(super) fn gives_up(
+    pub(super) fn is_exhausted(
         &self,
         shapes: u64,
         left: impl Iterator<Item = [Real; 2]>,
@@ -50,10 +50,11 @@ impl Progress {
             let earlier = |first: [Real; 2], times: [Real; 2]| {
                 if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
             };
-            let reason = if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::Near };
+            let reason =
+                if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::BoundedPiece };
             return Some((left.fold(near, earlier), reason));
         }
-        if shapes < MOST_SHAPES {
+        if shapes < MAX_SHAPES {
             return None;
         }
         let first = left.min_by(|a, b| a[0].total_cmp(&b[0]))?;
@@ -62,6 +63,6 @@ impl Progress {
 
     /// The first interval that stays undecided, and why, after all were looked at.
     pub(super) fn undecided(&self) -> Option<([Real; 2], UndecidedReason)> {
-        self.undecided.map(|first| (first, UndecidedReason::Near))
+        self.undecided.map(|first| (first, UndecidedReason::BoundedPiece))
     }
 }

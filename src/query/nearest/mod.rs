@@ -1,16 +1,16 @@
 //! The nearest triangle of every link, of the robot, and whether a margin is kept.
 
+mod candidate_batch;
+mod cleared_by;
 mod clears;
-mod few_each;
-mod joint;
-mod keeps_away;
+mod dual_traversal;
 mod memory;
 mod minimum;
 mod per_link;
-mod rough_sides;
+mod side_grid;
 
 pub(crate) use clears::{ClearsMemory, ClearsSearch};
-pub(crate) use memory::{Odometer, Outline};
-pub(crate) use minimum::{MinimumMemory, minimum_within};
+pub(crate) use memory::{Odometer, PlacedOutline};
+pub(crate) use minimum::{WarmStart, minimum_within};
 pub(crate) use per_link::{PerLinkMemory, per_link};
-pub(crate) use rough_sides::RoughSides;
+pub(crate) use side_grid::SideGrid;

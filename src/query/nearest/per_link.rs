@@ -1,6 +1,6 @@
 //! The nearest triangle of every link.
 
-use super::few_each::FewEach;
+use super::candidate_batch::CandidateBatch;
 use crate::answer::LinkProximity;
 use crate::pair::PlacedRobot;
 use crate::search::hierarchy::MeshSearch;
@@ -10,7 +10,7 @@ use crate::search::hierarchy::MeshSearch;
 pub(crate) struct PerLinkMemory {
     /// The closest triangle of each link at the last query.
     last: Vec<u32>,
-    few: FewEach,
+    few: CandidateBatch,
 }
 
 impl PerLinkMemory {
@@ -33,7 +33,7 @@ pub(crate) fn per_link(
     for number in 0..robot.links().len() {
         let link = robot.link(number);
         let start = [last.get(number).copied(), before];
-        let answer = few.add(number, &link, |few| search.nearest_or_few(&link, start, few));
+        let answer = few.add(number, &link, |few| search.nearest_or_candidates(&link, start, few));
         before = Some(match answer {
             Ok(best) => {
                 let nearest = best.nearest().unwrap_or_else(|| search.any(&link));
@@ -41,7 +41,7 @@ pub(crate) fn per_link(
                 nearest.triangle
             }
             Err(likely) => {
-                out.push(LinkProximity::unanswered());
+                out.push(LinkProximity::placeholder());
                 likely
             }
         });

@@ -14,14 +14,14 @@ use parry3d_f64::math::{Real, Vector};
 /// The hull of two ends, each a disc across the line between them or the half of a ball beyond that disc, and what must be
 /// free around it. Of two ends at one place both are round: the ball.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
+pub(crate) struct ProofBody {
     pub ends: [Vector; 2],
     pub flat: [bool; 2],
     pub radius: Real,
     pub around: Real,
 }
 
-impl Body {
+impl ProofBody {
     /// Whether all of it, with what must be free around, certainly lies below the plane q . x = level. No coordinate of a
     /// point on the plane or of an end is above `most`.
     pub(super) fn is_below(&self, q: Vector, level: Real, most: Real) -> bool {

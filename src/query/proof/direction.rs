@@ -1,7 +1,7 @@
 //! Directions along which a plane may part a group of triangles from a run of bodies. They need not be right: a plane counts
 //! only once it is seen to part the two.
 
-use super::body::Body;
+use super::body::ProofBody;
 use super::groups::Group;
 use crate::answer::LinkProximity;
 use crate::mesh::Mesh;
@@ -12,13 +12,13 @@ use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_point
 use parry3d_f64::shape::SupportMap;
 
 /// Points, moved and scaled to near one.
-struct Points<'a> {
+struct PointSet<'a> {
     points: Vec<&'a Vector>,
     centre: Vector,
     scale: Real,
 }
 
-impl SupportMap for Points<'_> {
+impl SupportMap for PointSet<'_> {
     fn local_support_point(&self, direction: Vector) -> Vector {
         let farther = |a: (Real, Vector), point: &&Vector| {
             let height = direction.dot(**point);
@@ -30,14 +30,14 @@ impl SupportMap for Points<'_> {
 }
 
 /// The way from the nearest point of the bodies' axes to that of the group's hull, if the two are apart (parry's GJK).
-pub(super) fn between_hulls(group: &Group, bodies: &[Body]) -> Option<Vector> {
+pub(super) fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vector> {
     let ends = bodies.iter().flat_map(|body| &body.ends);
     let [low, high] = ends.clone().fold(group.bounds, |[low, high], &end| [low.min(end), high.max(end)]);
     let size = (high - low).max_element();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
     let centre = 0.5 * low + 0.5 * high;
-    let wall = Points { points: group.vertices.iter().collect(), centre, scale };
-    let robot = Points { points: ends.collect(), centre, scale };
+    let wall = PointSet { points: group.vertices.iter().collect(), centre, scale };
+    let robot = PointSet { points: ends.collect(), centre, scale };
     let mut simplex = VoronoiSimplex::new();
     simplex.reset(CsoPoint::from_shapes(&Pose::IDENTITY, &robot, &wall, Vector::X));
     match closest_points(&Pose::IDENTITY, &robot, &wall, Real::MAX, true, &mut simplex) {
@@ -47,7 +47,12 @@ pub(super) fn between_hulls(group: &Group, bodies: &[Body]) -> Option<Vector> {
 }
 
 /// The ways from a body to one triangle along which the two may be parted.
-pub(super) fn between_pair(level: Level, mesh: &Mesh, triangle: u32, body: &Body) -> [Option<Vector>; 4] {
+pub(super) fn between_pair(
+    level: Level,
+    mesh: &Mesh,
+    triangle: u32,
+    body: &ProofBody,
+) -> [Option<Vector>; 4] {
     let (corners, [start, end]) = (mesh.corners(triangle), body.ends);
     let link = PlacedLink::between(start, end, body.radius, body.flat);
     let answer: LinkProximity = link.answer(0, &link.measure(triangle, corners));

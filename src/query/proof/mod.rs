@@ -5,13 +5,13 @@ mod body;
 mod direction;
 mod groups;
 mod motion_proof;
-mod parting;
+mod plane_search;
 mod shape;
 mod text;
 mod tube_shape;
 
 pub(crate) use motion_proof::motion_proof;
-pub(crate) use parting::Parting;
+pub(crate) use plane_search::PlaneSearch;
 pub(crate) use shape::Shape;
 pub(crate) use text::{Kind, write_proof};
 pub(crate) use tube_shape::tube_shape;

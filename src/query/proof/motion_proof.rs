@@ -1,17 +1,17 @@
 //! The proof of a motion: intervals of time, each proven by the shape at its middle, with room for what the robot may move
 //! until the interval ends.
 
-use super::parting::Parting;
-use super::text::{Kind, Parted, size_of};
+use super::plane_search::PlaneSearch;
+use super::text::{Kind, ProvenShape, size_of};
 use super::tube_shape::tube_shape;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::pieces::PlacedTube;
-use crate::robot::{Motion, MotionDrift, Sections, Tube, check_speed};
+use crate::robot::{Motion, MotionDrift, SectionSignature, Tube, check_speed};
 use parry3d_f64::math::Real;
 
 /// More shapes are in no proof.
-const MOST_SHAPES: usize = 1 << 16;
+const MAX_SHAPES: usize = 1 << 16;
 
 /// A longer text is no proof, in bytes: 16 MiB.
 const MOST_BYTES: usize = 1 << 24;
@@ -20,13 +20,13 @@ const MOST_BYTES: usize = 1 << 24;
 /// comes as near as the margin, or so near that moving by `resolution` matters, or where they are
 /// more than a proof holds. `reach` is the mesh's largest coordinate.
 pub(crate) fn motion_proof(
-    parting: &mut Parting,
+    plane_search: &mut PlaneSearch,
     reach: Real,
     motion: &impl Motion,
     margin: Real,
     resolution: Real,
-) -> Result<Option<Vec<Parted>>, ProximityError> {
-    let (mut tube, mut sections) = (Tube::empty(), Sections::default());
+) -> Result<Option<Vec<ProvenShape>>, ProximityError> {
+    let (mut tube, mut sections) = (Tube::empty(), SectionSignature::default());
     let (mut proven, mut waiting) = (Vec::new(), vec![[0.0, 1.0]]);
     let (mut shapes, mut bytes) = (0, 0);
     while let Some(times @ [from, to]) = waiting.pop() {
@@ -62,7 +62,7 @@ pub(crate) fn motion_proof(
                 moves = moves.max(half * (piece.speed + piece.radius * piece.turn));
             }
         }
-        if let Some(steps) = parting.steps(&shape.bodies(margin)) {
+        if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
             let parted = (shape, steps);
             bytes += size_of(Kind::Motion, &parted);
             if bytes > MOST_BYTES {
@@ -72,7 +72,7 @@ pub(crate) fn motion_proof(
             continue;
         }
         let is_fine = moves <= resolution.max(placed.slack()) || !(from < t && t < to);
-        if is_fine || shapes >= MOST_SHAPES {
+        if is_fine || shapes >= MAX_SHAPES {
             return Ok(None);
         }
         waiting.extend([[t, to], [from, t]]);

@@ -1,7 +1,7 @@
 //! A proof as a text, in the format of the book's page on proofs.
 
-use super::parting::Step;
-use super::shape::{Piece, Shape};
+use super::plane_search::Step;
+use super::shape::{PiecePremises, Shape};
 use crate::answer::Proof;
 use crate::mesh::Mesh;
 use parry3d_f64::math::{Real, Vector};
@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 
 /// A shape, and the steps that part it from the mesh.
-pub(crate) type Parted = (Shape, Vec<Step>);
+pub(crate) type ProvenShape = (Shape, Vec<Step>);
 
 /// What a proof is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(crate) enum Kind {
 const ON_A_LINE: usize = 16;
 
 /// The proof that shapes, each with its steps, keep a margin.
-pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Parted]) -> Proof {
+pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[ProvenShape]) -> Proof {
     let (mut text, mut planes) = (String::new(), 0);
     let name = match kind {
         Kind::Chain => "chain",
@@ -42,7 +42,7 @@ pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Parte
 }
 
 /// How long the text of a shape is, in bytes.
-pub(crate) fn size_of(kind: Kind, parted: &Parted) -> usize {
+pub(crate) fn size_of(kind: Kind, parted: &ProvenShape) -> usize {
     let mut size = Size(0);
     write_shape(kind, parted, &mut size).unwrap_or_default();
     size.0
@@ -59,7 +59,7 @@ impl Write for Size {
 }
 
 /// A shape and its steps, of which so many are planes.
-fn write_shape(kind: Kind, (shape, steps): &Parted, text: &mut impl Write) -> Result<usize, fmt::Error> {
+fn write_shape(kind: Kind, (shape, steps): &ProvenShape, text: &mut impl Write) -> Result<usize, fmt::Error> {
     let mut planes = 0;
     write!(text, "shape")?;
     if kind == Kind::Motion {
@@ -71,7 +71,7 @@ fn write_shape(kind: Kind, (shape, steps): &Parted, text: &mut impl Write) -> Re
         writeln!(text, "{x:?} {y:?} {z:?}")?;
     }
     for piece in &shape.pieces {
-        let Piece { radius, flat, curvature, length, off, speed, turn } = piece;
+        let PiecePremises { radius, flat, curvature, length, off, speed, turn } = piece;
         let [start, end] = flat.map(|flat| if flat { 'f' } else { 'r' });
         write!(text, "{radius:?} {start}{end}")?;
         if kind != Kind::Chain {

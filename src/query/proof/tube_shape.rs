@@ -1,9 +1,9 @@
 //! A tube as a proof takes it: pieces whose bodies are little wider than they are.
 
-use super::shape::{Piece, Shape};
+use super::shape::{PiecePremises, Shape};
 use crate::distance::Scalar;
 use crate::pieces::{self, PlacedTube};
-use crate::robot::{Lasting, Section};
+use crate::robot::{CapPersistence, Section};
 use parry3d_f64::math::Real;
 
 /// A tube in pieces whose bodies reach at most about `most` beyond them, and where in the tube each of them is. Where it
@@ -41,7 +41,7 @@ pub(crate) fn tube_shape(tube: &PlacedTube, most: Real, is_moving: bool) -> (Sha
     (shape, places)
 }
 
-fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving: bool) -> Piece {
+fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving: bool) -> PiecePremises {
     let arcs = tube.arcs(place);
     let known = tube.tube.bound(section, [place.from, place.to]);
     let length = (arcs[1] - arcs[0]) * section.stretch * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
@@ -49,12 +49,20 @@ fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving:
     let off = tube.tube.error() + known.off + tube.slack();
     let ends = [place.from, place.to].map(|tick| tube.point(section, tick));
     let is_straight = known.curvature * length <= 1.0 && 4.0 * off < (ends[1] - ends[0]).length();
-    let is_face =
-        |end: usize| section.faces[end].is_some_and(|face| !is_moving || face.lasting == Lasting::Always);
+    let is_face = |end: usize| {
+        section.faces[end].is_some_and(|face| !is_moving || face.persistence == CapPersistence::Always)
+    };
     // What was stated in place alone says nothing of directions.
     let is_certain = tube.tube.error() == 0.0 && tube.tube.turn().unwrap_or(0.0) == 0.0;
     // Near a face a round end would stick out of it.
     let exposed = tube.exposed(section, arcs);
     let flat = [0, 1].map(|end| is_straight && is_certain && exposed[end] && is_face(end));
-    Piece { radius: section.radius, flat, curvature: known.curvature, length, off, ..Piece::default() }
+    PiecePremises {
+        radius: section.radius,
+        flat,
+        curvature: known.curvature,
+        length,
+        off,
+        ..PiecePremises::default()
+    }
 }

@@ -20,7 +20,7 @@
 //! were as long as that, which asks for more than is needed. The limit is never negative, so with the slack of 2^-16 no
 //! square that is compared with is below 2^-92.
 
-use super::outline::SearchFrame;
+use super::pair_frame::PairFrame;
 use crate::distance::lanes::{Lane, Pack, set_bits};
 use crate::distance::{Vec3, dispatch, segment_parameters};
 use crate::pair::{PlacedEnds, PlacedRobot};
@@ -42,7 +42,7 @@ const ROWS: usize = 8;
 const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
 
 /// What the square of a normal counts for at least.
-const LEAST_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
+const MIN_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// The links of a robot where they are placed, and the balls around them in the frame of the search.
 #[derive(Clone, Debug, Default)]
@@ -75,7 +75,7 @@ impl Balls {
     }
 
     /// Places what has not been placed of some links.
-    pub fn place(&mut self, robot: &PlacedRobot, frame: &SearchFrame, links: Range<usize>) {
+    pub fn place(&mut self, robot: &PlacedRobot, frame: &PairFrame, links: Range<usize>) {
         for link in links {
             if self.links[link].is_some() {
                 continue;
@@ -152,7 +152,7 @@ impl<L: Pack<Element = f32>> Ball<L> {
         let between_starts = other.half - self.half - way;
         let normal = segment_parameters(between_starts, along, along_other).gap;
         let ahead = normal.dot(way).abs() - normal.dot(self.half).abs() - normal.dot(other.half).abs();
-        let squared = normal.norm_squared().max(ahead.lit(LEAST_NORMAL_SQUARED));
+        let squared = normal.norm_squared().max(ahead.lit(MIN_NORMAL_SQUARED));
         ahead.zero().lt(ahead) & (distance * distance * squared).lt(ahead * ahead)
     }
 }
@@ -162,7 +162,7 @@ pub(super) struct Sweep<'a> {
     pub balls: [&'a Balls; 2],
     pub links: [Range<usize>; 2],
     /// Of each of the first robot's links here, from which of the second's on it is asked for, by their numbers in the robots.
-    pub asked_from: &'a [usize],
+    pub queried_from: &'a [usize],
 }
 
 impl Sweep<'_> {
@@ -238,7 +238,7 @@ impl Sweep<'_> {
         let others = other.saturating_sub(1).max(second.start)..(other + 2).min(second.end);
         let with_one = others.map(move |other| [one, other]);
         let with_other = ones.filter(move |&link| link != one).map(move |one| [one, other]);
-        let is_asked = |&[one, other]: &[usize; 2]| other >= self.asked_from[one - first.start];
+        let is_asked = |&[one, other]: &[usize; 2]| other >= self.queried_from[one - first.start];
         with_one.chain(with_other).filter(is_asked)
     }
 
@@ -246,7 +246,7 @@ impl Sweep<'_> {
     #[inline(always)]
     fn lanes(&self, row: usize) -> Range<usize> {
         let second = &self.links[1];
-        self.asked_from[row].saturating_sub(second.start)..second.len()
+        self.queried_from[row].saturating_sub(second.start)..second.len()
     }
 
     /// Which lanes of a pack stand for links.
@@ -300,7 +300,7 @@ mod tests {
             let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
                 panic!("both poses are rigid")
             };
-            let frame = SearchFrame::around([&a, &b]);
+            let frame = PairFrame::around([&a, &b]);
             let mut balls = [Balls::default(), Balls::default()];
             let counts = [a.links().len(), b.links().len()];
             for (balls, (robot, count)) in balls.iter_mut().zip([(&a, counts[0]), (&b, counts[1])]) {
@@ -316,10 +316,10 @@ mod tests {
                 one.nearest_on_axes(&two).1 - one.radius() - two.radius()
             };
             // From any link on, as of a robot beside itself.
-            let asked_from: Vec<_> =
+            let queried_from: Vec<_> =
                 (0..counts[0]).map(|link| if round % 2 == 0 { 0 } else { link }).collect();
             let links = [0..counts[0], 0..counts[1]];
-            let sweep = Sweep { balls: [&balls[0], &balls[1]], links, asked_from: &asked_from };
+            let sweep = Sweep { balls: [&balls[0], &balls[1]], links, queried_from: &queried_from };
             for _ in 0..4 {
                 let some = random.below(counts[0] as u32) as usize;
                 let limit = distances[some][random.below(counts[1] as u32) as usize];
@@ -334,7 +334,7 @@ mod tests {
                     for (one, row) in distances.iter().enumerate() {
                         for (two, &distance) in row.iter().enumerate() {
                             let is_near = near[one] >> two & 1 == 1;
-                            let is_asked = two >= asked_from[one];
+                            let is_asked = two >= queried_from[one];
                             assert!(!is_near || is_asked);
                             assert!(is_near || !is_asked || distance > limit, "{one} {two} in round {round}");
                             let beyond = frame.length(capsules(one, two) - limit);
@@ -347,7 +347,7 @@ mod tests {
                         }
                     }
                     let all = (0..counts[0])
-                        .flat_map(|one| (asked_from[one]..counts[1]).map(move |two| [one, two]));
+                        .flat_map(|one| (queried_from[one]..counts[1]).map(move |two| [one, two]));
                     let apart = |[one, two]: [usize; 2]| {
                         let centre = |balls: &Balls, link| {
                             balls.link(link).map(|(ends, ..)| (ends[0] + ends[1]) * 0.5)

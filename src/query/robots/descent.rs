@@ -10,47 +10,47 @@
 
 use super::balls::{Balls, SWEPT, Sweep};
 use super::heights::Heights;
-use super::outline::{Outline, SearchFrame};
+use super::pair_frame::{NodeCapsule, PairFrame};
 use crate::answer::RobotProximity;
 use crate::distance::lanes::set_bits;
-use crate::pair::{LinksTogether, PlacedRobot, TOGETHER};
+use crate::pair::{BATCH, LinkPairBatch, PlacedRobot};
 use crate::robot::{LinkNode, place_of_leaf};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
 /// Of more pairs than these the nearest is looked for first, which takes about as long as it takes to measure so many.
-const MANY: u32 = 16 * TOGETHER as u32;
+const MANY: u32 = 16 * BATCH as u32;
 
 /// So many pairs are measured before the limit is lowered.
-const AT_ONCE: usize = 4 * TOGETHER;
+const AT_ONCE: usize = 4 * BATCH;
 
 /// A node of a tree, and the first of its links.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct TreePlace {
     node: usize,
     first: usize,
 }
 
-impl Place {
+impl TreePlace {
     const ROOT: Self = Self { node: 0, first: 0 };
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    places: [Place; 2],
+struct QueuedPair {
+    places: [TreePlace; 2],
     at_least: Real,
 }
 
 /// What a pair of links must not exceed to be looked at.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limit {
+pub(super) struct PairLimit {
     distance: Real,
     /// The links that are that far, if some are.
     links: Option<[usize; 2]>,
 }
 
-impl Limit {
+impl PairLimit {
     /// Nothing is looked at any more.
     pub const NOTHING: Self = Self { distance: Real::NEG_INFINITY, links: None };
 
@@ -69,7 +69,7 @@ impl Limit {
     }
 
     /// Whether what is at least so far apart needs no look, if these are its lowest links.
-    fn leaves_out(&self, at_least: Real, firsts: [usize; 2]) -> bool {
+    fn excludes(&self, at_least: Real, firsts: [usize; 2]) -> bool {
         at_least > self.distance || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
     }
 
@@ -84,14 +84,14 @@ impl Limit {
 #[derive(Clone, Debug)]
 pub(super) struct Descent {
     level: Level,
-    stack: Vec<Entry>,
+    stack: Vec<QueuedPair>,
     /// Nodes of the first robot whose links are asked about group by group.
-    waiting: Vec<Place>,
-    frame: SearchFrame,
+    waiting: Vec<TreePlace>,
+    frame: PairFrame,
     /// Those of both robots; of a robot and itself the first.
     balls: [Balls; 2],
-    asked_from: Vec<usize>,
-    together: LinksTogether,
+    queried_from: Vec<usize>,
+    together: LinkPairBatch,
 }
 
 impl Default for Descent {
@@ -100,26 +100,26 @@ impl Default for Descent {
             level: Level::new(),
             stack: Vec::new(),
             waiting: Vec::new(),
-            frame: SearchFrame::default(),
+            frame: PairFrame::default(),
             balls: Default::default(),
-            asked_from: Vec::new(),
-            together: LinksTogether::default(),
+            queried_from: Vec::new(),
+            together: LinkPairBatch::default(),
         }
     }
 }
 
 impl Descent {
-    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `asked_from` tells from which
+    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `queried_from` tells from which
     /// of the second robot's links on one of the first robot's is asked for; it never falls from one link to the next.
     pub fn run(
         &mut self,
         robots: [&PlacedRobot; 2],
-        limit: Limit,
-        asked_from: impl Fn(usize) -> usize,
-        mut visit: impl FnMut(RobotProximity) -> Limit,
+        limit: PairLimit,
+        queried_from: impl Fn(usize) -> usize,
+        mut visit: impl FnMut(RobotProximity) -> PairLimit,
     ) {
         self.begin(robots);
-        self.run_from(Place::ROOT, robots, limit, asked_from, |found| visit(found.answer()));
+        self.run_from(TreePlace::ROOT, robots, limit, queried_from, |found| visit(found.answer()));
     }
 
     /// Shows `visit` all pairs of links that are at most `limit` apart, with their distances: the links of the first robot in groups
@@ -138,7 +138,7 @@ impl Descent {
         let most_links = (most / robots[1].links().len()).max(1);
         let all = self.frame.outline(robots[1], 0);
         self.waiting.clear();
-        self.waiting.push(Place::ROOT);
+        self.waiting.push(TreePlace::ROOT);
         while let Some(place) = self.waiting.pop() {
             let outline = self.frame.outline(robots[0], place.node);
             if self.frame.outside(outline.at_least(&all)) > limit {
@@ -152,11 +152,11 @@ impl Descent {
             self.run_from(
                 place,
                 robots,
-                Limit::of(limit),
+                PairLimit::of(limit),
                 |_| 0,
                 |found| {
                     visit(visitor, found.links, found.distance);
-                    Limit::of(limit)
+                    PairLimit::of(limit)
                 },
             );
             end_group(visitor);
@@ -170,7 +170,7 @@ impl Descent {
         for (balls, robot) in self.balls.iter_mut().zip(robots).take(apart) {
             balls.start(robot.links().len());
         }
-        self.frame = SearchFrame::around(robots);
+        self.frame = PairFrame::around(robots);
     }
 
     /// Shows `visit` the pairs of a link of the first robot, as [`run`](Self::run) does with all.
@@ -178,35 +178,35 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         link: usize,
-        mut visit: impl FnMut(RobotProximity) -> Limit,
+        mut visit: impl FnMut(RobotProximity) -> PairLimit,
     ) {
-        let leaf = Place { node: place_of_leaf(link, robots[0].links().len()), first: link };
-        self.run_from(leaf, robots, Limit::of(Real::INFINITY), |_| 0, |found| visit(found.answer()));
+        let leaf = TreePlace { node: place_of_leaf(link, robots[0].links().len()), first: link };
+        self.run_from(leaf, robots, PairLimit::of(Real::INFINITY), |_| 0, |found| visit(found.answer()));
     }
 
     /// From a place in the first robot's tree, and all of the second's.
     fn run_from(
         &mut self,
-        place: Place,
+        place: TreePlace,
         robots: [&PlacedRobot; 2],
-        mut limit: Limit,
-        asked_from: impl Fn(usize) -> usize,
-        mut visit: impl FnMut(&Measured) -> Limit,
+        mut limit: PairLimit,
+        queried_from: impl Fn(usize) -> usize,
+        mut visit: impl FnMut(&Measured) -> PairLimit,
     ) {
         self.stack.clear();
-        self.stack.push(Entry { places: [place, Place::ROOT], at_least: 0.0 });
+        self.stack.push(QueuedPair { places: [place, TreePlace::ROOT], at_least: 0.0 });
         while let Some(entry) = self.stack.pop() {
             let firsts = entry.places.map(|place| place.first);
             let links = [0, 1].map(|robot: usize| {
-                let Place { node, first, .. } = entry.places[robot];
+                let TreePlace { node, first, .. } = entry.places[robot];
                 first..first + robots[robot].link_tree()[node].links()
             });
-            if limit.leaves_out(entry.at_least, firsts) || asked_from(firsts[0]) >= links[1].end {
+            if limit.excludes(entry.at_least, firsts) || queried_from(firsts[0]) >= links[1].end {
                 continue;
             }
             if links.iter().all(|links| links.len() <= SWEPT) {
-                self.asked_from.clear();
-                self.asked_from.extend(links[0].clone().map(&asked_from));
+                self.queried_from.clear();
+                self.queried_from.extend(links[0].clone().map(&queried_from));
                 let outlines =
                     [0, 1].map(|robot: usize| self.frame.outline(robots[robot], entry.places[robot].node));
                 limit = self.sweep(robots, links, &outlines, limit, &mut visit);
@@ -219,7 +219,7 @@ impl Descent {
                 let mut places = entry.places;
                 places[divided] = half;
                 let outline = frame.outline(robots[divided], half.node);
-                Entry { places, at_least: frame.outside(outline.at_least(&kept)) }
+                QueuedPair { places, at_least: frame.outside(outline.at_least(&kept)) }
             });
             // The nearer one is taken first, and of equals that with the lower links.
             let [low, high] = halves;
@@ -233,11 +233,11 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         links: [Range<usize>; 2],
-        outlines: &[Outline; 2],
-        mut limit: Limit,
-        visit: &mut impl FnMut(&Measured) -> Limit,
-    ) -> Limit {
-        let Self { level, frame, balls: [first, second], asked_from, together, .. } = self;
+        outlines: &[NodeCapsule; 2],
+        mut limit: PairLimit,
+        visit: &mut impl FnMut(&Measured) -> PairLimit,
+    ) -> PairLimit {
+        let Self { level, frame, balls: [first, second], queried_from, together, .. } = self;
         first.place(robots[0], frame, links[0].clone());
         let second = if std::ptr::eq(robots[0], robots[1]) {
             first.place(robots[1], frame, links[1].clone());
@@ -246,7 +246,7 @@ impl Descent {
             second.place(robots[1], frame, links[1].clone());
             &*second
         };
-        let sweep = Sweep { balls: [first, second], links, asked_from };
+        let sweep = Sweep { balls: [first, second], links, queried_from };
         let heights = Heights::of_tiny(&sweep, outlines, frame);
         if let Some(heights) = &heights
             && heights.at_least() > frame.length(limit.distance)
@@ -270,7 +270,7 @@ impl Descent {
             };
             let pairs = looked_at.into_iter().flat_map(|pair| sweep.beside(pair));
             limit = measure(*level, robots, &sweep, together, pairs, limit, visit);
-            if limit.leaves_out(0.0, sweep.links.each_ref().map(|links| links.start)) {
+            if limit.excludes(0.0, sweep.links.each_ref().map(|links| links.start)) {
                 return limit;
             }
             if !is_bounded || limit.distance < before {
@@ -292,11 +292,11 @@ fn measure(
     level: Level,
     robots: [&PlacedRobot; 2],
     sweep: &Sweep,
-    together: &mut LinksTogether,
+    together: &mut LinkPairBatch,
     mut pairs: impl Iterator<Item = [usize; 2]>,
-    mut limit: Limit,
-    visit: &mut impl FnMut(&Measured) -> Limit,
-) -> Limit {
+    mut limit: PairLimit,
+    visit: &mut impl FnMut(&Measured) -> PairLimit,
+) -> PairLimit {
     let mut links = [[0; 2]; AT_ONCE];
     loop {
         together.clear();
@@ -305,7 +305,7 @@ fn measure(
             let Some(pair) = pairs.next() else { break };
             if let Some(first) = sweep.balls[0].link(pair[0])
                 && let Some(second) = sweep.balls[1].link(pair[1])
-                && !limit.leaves_out(0.0, pair)
+                && !limit.excludes(0.0, pair)
                 && limit.links != Some(pair)
             {
                 together.push(first, second);
@@ -331,7 +331,7 @@ struct Measured<'a, 'r> {
     robots: [&'a PlacedRobot<'r>; 2],
     links: [usize; 2],
     distance: Real,
-    together: &'a LinksTogether,
+    together: &'a LinkPairBatch,
     pair: usize,
 }
 
@@ -349,11 +349,11 @@ pub(super) fn measure_pair(robots: [&PlacedRobot; 2], links: [usize; 2]) -> Robo
 }
 
 /// The two children of a node.
-fn halves(tree: &[LinkNode], Place { node, first }: Place) -> [Place; 2] {
-    let low = Place { node: node + 1, first };
+fn halves(tree: &[LinkNode], TreePlace { node, first }: TreePlace) -> [TreePlace; 2] {
+    let low = TreePlace { node: node + 1, first };
     let below = match tree[low.node] {
         LinkNode::Inner { below, .. } => below,
         LinkNode::Leaf(_) => 0,
     };
-    [low, Place { node: low.node + 1 + below, first: first + tree[low.node].links() }]
+    [low, TreePlace { node: low.node + 1 + below, first: first + tree[low.node].links() }]
 }

@@ -19,7 +19,7 @@
 //! 64 u: the [`SLACK`] of capsules.
 
 use super::balls::{SWEPT, Sweep};
-use super::outline::{Outline, SLACK, SearchFrame};
+use super::pair_frame::{NodeCapsule, PairFrame, SLACK};
 use crate::distance::lanes::set_bits;
 use parry3d_f64::math::Real;
 
@@ -36,7 +36,7 @@ pub(super) struct Heights {
 
 impl Heights {
     /// Those of two nodes, if both are tiny and a way leads from one to the other.
-    pub fn of_tiny(sweep: &Sweep, outlines: &[Outline; 2], frame: &SearchFrame) -> Option<Self> {
+    pub fn of_tiny(sweep: &Sweep, outlines: &[NodeCapsule; 2], frame: &PairFrame) -> Option<Self> {
         if outlines.iter().any(|outline| outline.size() > TINY) {
             return None;
         }
@@ -86,7 +86,7 @@ impl Heights {
         let [first, second] = &sweep.links;
         let (mut most, mut found) = (Real::NEG_INFINITY, None);
         for (row, link) in first.clone().enumerate() {
-            for other in sweep.asked_from[row].max(second.start)..second.end {
+            for other in sweep.queried_from[row].max(second.start)..second.end {
                 let top = tops[row] + others[other - second.start];
                 if top > most {
                     (most, found) = (top, Some([link, other]));
@@ -128,13 +128,14 @@ mod tests {
             let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
                 panic!("both poses are rigid")
             };
-            let frame = SearchFrame::around([&a, &b]);
+            let frame = PairFrame::around([&a, &b]);
             let mut balls = [Balls::default(), Balls::default()];
             for (balls, robot) in balls.iter_mut().zip([&a, &b]) {
                 balls.start(40);
                 balls.place(robot, &frame, 0..40);
             }
-            let sweep = Sweep { balls: [&balls[0], &balls[1]], links: [0..40, 0..40], asked_from: &[0; 40] };
+            let sweep =
+                Sweep { balls: [&balls[0], &balls[1]], links: [0..40, 0..40], queried_from: &[0; 40] };
             let outlines = [&a, &b].map(|robot| frame.outline(robot, 0));
             let heights = Heights::of_tiny(&sweep, &outlines, &frame).expect("they are tiny");
             let distances: Vec<Vec<_>> = a

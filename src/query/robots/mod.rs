@@ -3,15 +3,15 @@
 mod balls;
 mod descent;
 mod heights;
-mod local_minima;
-mod one_robot;
-mod outline;
 mod own_faces;
-mod own_tube;
+mod pair_frame;
+mod pair_minima;
+mod robot_with_itself;
+mod self_tube;
 mod tubes;
 mod two_robots;
 
-pub(crate) use one_robot::{OneRobot, OwnMemory};
-pub(crate) use own_tube::{OwnTubeMemory, own_tube_clears};
+pub(crate) use robot_with_itself::{RobotWithItself, SelfMemory};
+pub(crate) use self_tube::{SelfTubeMemory, self_clears_tube};
 pub(crate) use tubes::{TubesMemory, clearance_between, place_tubes, tubes_clear};
 pub(crate) use two_robots::{PairMemory, TwoRobots};

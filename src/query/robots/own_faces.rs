@@ -44,7 +44,7 @@
 //! largest coordinate cover all. What [`JoinedLink`] takes for a local minimum, since the way may
 //! err, is shown too.
 
-use super::one_robot::Turns;
+use super::robot_with_itself::Turns;
 use crate::distance::Scalar;
 use crate::pair::{PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};
@@ -161,7 +161,7 @@ impl OwnFaces {
                 if two < one + 2 || self.with_faces[..number].contains(&other) {
                     continue;
                 }
-                let in_band = turns.quarter_from[one] <= two && two < turns.asked_from[one];
+                let in_band = turns.quarter_from[one] <= two && two < turns.queried_from[one];
                 let look = faces(robot, one)[1] && faces(robot, two)[0];
                 if !in_band && !look {
                     continue;
@@ -262,7 +262,7 @@ impl OwnFaces {
         let mut in_band = last >= turns.quarter_from[one.first];
         if band == Band::Faces {
             let has_face = one.has_face() || two.has_face();
-            in_band &= has_face && two.first < turns.asked_from[one.first + one.count - 1];
+            in_band &= has_face && two.first < turns.queried_from[one.first + one.count - 1];
         }
         let look = one.some[1] && two.some[0];
         if !in_band && !look {
@@ -431,8 +431,8 @@ pub(super) fn faces(robot: &PlacedRobot, link: usize) -> [bool; 2] {
 
 #[cfg(test)]
 mod tests {
-    use crate::query::robots::OwnMemory;
-    use crate::query::robots::one_robot::OneRobot;
+    use crate::query::robots::SelfMemory;
+    use crate::query::robots::robot_with_itself::RobotWithItself;
     use crate::robot::Chain;
     use parry3d_f64::math::{Real, Vector};
 
@@ -471,8 +471,8 @@ mod tests {
         let robot =
             if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
         let robot = robot.expect("points that differ");
-        let mut memory = OwnMemory::default();
-        let found = OneRobot::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
+        let mut memory = SelfMemory::default();
+        let found = RobotWithItself::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
         (memory.faces().looked_at, found.is_some())
     }
 

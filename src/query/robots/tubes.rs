@@ -2,18 +2,18 @@
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
 use crate::pieces::{
-    Beginning, Divided, FoundBetween, Outer, PendingPieces, PiecePair, PlacedTube, TwoTubes,
+    Divided, Outer, PairQueue, PairUpperBound, PendingPieces, PiecePair, PlacedTube, TubePair,
 };
-use crate::query::clearance::{BetweenBounds, BoundsSearch, Hint, Wanted, keeps};
+use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clears_pieces};
 use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TubesMemory {
-    beginning: Beginning,
+    beginning: PairQueue,
     pairs: Vec<PiecePair>,
-    pending: PendingPieces<PiecePair, [Outer; 2], FoundBetween>,
+    pending: PendingPieces<PiecePair, [Outer; 2], PairUpperBound>,
     /// The sections and arc lengths where a query ended.
     last: Option<([u32; 2], [Real; 2])>,
 }
@@ -24,7 +24,7 @@ impl TubesMemory {
     }
 
     /// A first upper bound: where the last query ended, if that is a place of these tubes.
-    fn first_bound(&self, tubes: &TwoTubes) -> FoundBetween {
+    fn first_bound(&self, tubes: &TubePair) -> PairUpperBound {
         match self.last.filter(|(sections, _)| tubes.have(*sections)) {
             Some((sections, arcs)) => tubes.bound_at(sections, arcs),
             None => tubes.first_bound(),
@@ -40,10 +40,10 @@ pub(crate) fn place_tubes<'a>(
     tubes: [&'a Tube; 2],
     poses: [&Pose; 2],
     names: [&'static str; 2],
-) -> Result<TwoTubes<'a>, ProximityError> {
+) -> Result<TubePair<'a>, ProximityError> {
     let placed =
         |k: usize| PlacedTube::new(tubes[k], poses[k], 0.0).map_err(|error| error.of_robot(names[k]));
-    Ok(TwoTubes::new([placed(0)?, placed(1)?]))
+    Ok(TubePair::new([placed(0)?, placed(1)?]))
 }
 
 /// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow that. A stated turn makes no
@@ -52,7 +52,7 @@ pub(crate) fn place_tubes<'a>(
 /// # Errors
 /// A curve is not finite.
 pub(crate) fn clearance_between(
-    tubes: &mut TwoTubes,
+    tubes: &mut TubePair,
     memory: &mut TubesMemory,
     tolerance: Real,
 ) -> Result<RobotClearance, ProximityError> {
@@ -66,7 +66,7 @@ pub(crate) fn clearance_between(
 }
 
 fn clearance_as_stated(
-    tubes: &mut TwoTubes,
+    tubes: &mut TubePair,
     memory: &mut TubesMemory,
     tolerance: Real,
 ) -> Result<RobotClearance, ProximityError> {
@@ -93,8 +93,8 @@ fn clearance_as_stated(
         // Pairs that are farther apart than the hint are needed too.
         hint.upper = Real::INFINITY;
     };
-    let (best, BetweenBounds { lower, resolved, uncertainty }) = best;
-    let FoundBetween { upper, sections, arcs, points: [on_first, on_second] } = best;
+    let (best, BoundedClearance { lower, resolved, uncertainty }) = best;
+    let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = best;
     *last = Some((sections, arcs));
     Ok(RobotClearance {
         lower,
@@ -113,7 +113,7 @@ fn clearance_as_stated(
 /// # Errors
 /// A curve is not finite, or samples do not allow a decision at that resolution.
 pub(crate) fn tubes_clear(
-    tubes: &mut TwoTubes,
+    tubes: &mut TubePair,
     memory: &mut TubesMemory,
     margin: Real,
     resolution: Real,
@@ -134,7 +134,7 @@ pub(crate) fn tubes_clear(
 }
 
 fn clear_as_stated(
-    tubes: &mut TwoTubes,
+    tubes: &mut TubePair,
     memory: &mut TubesMemory,
     margin: Real,
     resolution: Real,
@@ -144,8 +144,8 @@ fn clear_as_stated(
     let TubesMemory { beginning, pairs, pending, last } = memory;
     tubes.begin(Real::INFINITY, margin, usize::MAX, beginning, pairs)?;
     let wanted = Wanted { margin, resolution, start: None };
-    let (decision, found) = keeps(tubes, pending, pairs.drain(..), Some(best), wanted)?;
-    if let Some(FoundBetween { sections, arcs, .. }) = found {
+    let (decision, found) = clears_pieces(tubes, pending, pairs.drain(..), Some(best), wanted)?;
+    if let Some(PairUpperBound { sections, arcs, .. }) = found {
         *last = Some((sections, arcs));
     }
     Ok(decision)

@@ -1,20 +1,20 @@
 //! The questions about two robots at their poses.
 
-use super::descent::{Descent, Limit, measure_pair};
-use super::local_minima::LocalMinima;
+use super::descent::{Descent, PairLimit, measure_pair};
+use super::pair_minima::PairMinima;
 use crate::answer::{ProximityError, RobotProximity};
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
 /// So many pairs of links are kept at once where all places within a margin are asked for: some megabytes.
-const MOST_PAIRS: usize = 1 << 16;
+const MAX_PAIRS: usize = 1 << 16;
 
 /// What one query leaves for the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairMemory {
     descent: Descent,
-    minima: LocalMinima,
+    minima: PairMinima,
     /// The links that were nearest, which are the first to be looked at again.
     nearest: Option<[usize; 2]>,
     /// The links that did not keep a margin.
@@ -64,7 +64,9 @@ impl<'a> TwoRobots<'a> {
     pub fn minimum(&self, memory: &mut PairMemory) -> RobotProximity {
         let last = memory.nearest.filter(|links| self.have(*links));
         let mut best = last.map(|links| measure_pair(self.both(), links));
-        memory.descent.run(self.both(), Limit::at_best(&best), all, |found| Limit::at(best.insert(found)));
+        memory
+            .descent
+            .run(self.both(), PairLimit::at_best(&best), all, |found| PairLimit::at(best.insert(found)));
         // Without a limit the first pair that is looked at is within it.
         let best = best.unwrap_or_else(|| measure_pair(self.both(), [0, 0]));
         memory.nearest = Some(best.links.map(|link| link as usize));
@@ -77,7 +79,7 @@ impl<'a> TwoRobots<'a> {
         descent.begin(self.both());
         for link in 0..self.robots[0].links().len() {
             let mut best = None;
-            descent.run_of_link(self.both(), link, |found| Limit::at(best.insert(found)));
+            descent.run_of_link(self.both(), link, |found| PairLimit::at(best.insert(found)));
             out.push(best.unwrap_or_else(|| measure_pair(self.both(), [link, 0])));
         }
     }
@@ -93,9 +95,9 @@ impl<'a> TwoRobots<'a> {
         }
         memory.met = None;
         let met = &mut memory.met;
-        memory.descent.run(self.both(), Limit::of(margin), all, |found| {
+        memory.descent.run(self.both(), PairLimit::of(margin), all, |found| {
             *met = Some(found.links.map(|link| link as usize));
-            Limit::NOTHING
+            PairLimit::NOTHING
         });
         memory.met.is_none()
     }
@@ -104,8 +106,8 @@ impl<'a> TwoRobots<'a> {
     pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
-        let (push, end_rows) = (LocalMinima::push, LocalMinima::end_rows);
-        descent.run_in_groups(self.both(), margin, MOST_PAIRS, minima, push, end_rows);
+        let (push, end_rows) = (PairMinima::push, PairMinima::end_rows);
+        descent.run_in_groups(self.both(), margin, MAX_PAIRS, minima, push, end_rows);
         out.extend(minima.finish().iter().map(|&links| measure_pair(self.both(), links)));
     }
 

@@ -25,7 +25,7 @@
 //!
 //! # A link that loses its length
 //! It is marked: during an interval in which its length may vanish, queries take its flat ends for
-//! round, which holds both (`lasting`).
+//! round, which holds both (`persistence`).
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;

@@ -10,8 +10,8 @@ mod motion_path;
 mod moving_base;
 mod rigid;
 mod rigid_path;
-mod sampled;
-mod sections;
+mod sampled_shape;
+mod section_signature;
 mod shape_path;
 #[cfg(test)]
 mod tests;
@@ -24,7 +24,7 @@ pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
-pub(crate) use sections::Sections;
+pub(crate) use section_signature::SectionSignature;
 pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;
 

@@ -14,8 +14,8 @@
 //! A course is compared with three shapes: those at both ends of its time, and the one at its middle, where what moves at a constant
 //! acceleration is farthest off.
 
-use super::sampled::{Moved, Sampled, SampledPlace, places};
-use super::{Motion, Sections, rigid_pose};
+use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
+use super::{Motion, SectionSignature, rigid_pose};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::Real;
@@ -67,11 +67,12 @@ use parry3d_f64::math::Real;
 /// ```
 pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError> {
     let steps = steps.max(1);
-    let (mut tube, mut sections, mut here) = (Tube::empty(), Sections::default(), Sampled::default());
+    let (mut tube, mut sections, mut here) =
+        (Tube::empty(), SectionSignature::default(), SampledShape::default());
     let (mut all, mut stated) = (Vec::new(), Vec::new());
     let mut ranges = Ranges::default();
     // The first shape; then the last one of every step, of every second one, of every fourth and so on.
-    let mut kept = Vec::<Sampled>::new();
+    let mut kept = Vec::<SampledShape>::new();
     for step in 0..=steps {
         let t = Real::from(step) / Real::from(steps);
         tube.forget_error();
@@ -98,7 +99,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
             }
         }
         let due = if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
-        kept.resize_with(kept.len().max(2 + steps.ilog2() as usize), Sampled::default);
+        kept.resize_with(kept.len().max(2 + steps.ilog2() as usize), SampledShape::default);
         let first = usize::from(step > 0);
         for before in kept.iter_mut().take(due).skip(first) {
             before.clone_from(&here);
@@ -195,15 +196,15 @@ fn holds(range: [Real; 2], shares: [Real; 2]) -> bool {
 /// # Errors
 /// Something moved faster than stated on the way from an earlier shape to a later one.
 fn check(
-    before: &Sampled,
-    here: &Sampled,
+    before: &SampledShape,
+    here: &SampledShape,
     places: &[SampledPlace],
     stated: &[[Real; 2]],
 ) -> Result<(), RobotError> {
     let times = [before.t, here.t];
     let (t, apart) = (0.5 * (times[0] + times[1]), times[1] - times[0]);
     for (number, (place, &whole)) in places.iter().zip(stated).enumerate() {
-        let Some(Moved { way, angle }) = before.moved(here, number) else { continue };
+        let Some(PlaceMotion { way, angle }) = before.moved(here, number) else { continue };
         let steps = before.stated(number);
         // Sums of fewer than 2^32 terms above 0, each of which has a few roundings.
         let up = 1.0 + 2.0_f64.powi(34) * Real::UNIT_ROUNDOFF;
@@ -231,8 +232,8 @@ fn check(
 /// # Errors
 /// A place is farther off its course between two shapes than stated, at the last one or at the one in the middle.
 fn check_courses(
-    [before, here]: [&Sampled; 2],
-    middle: Option<&Sampled>,
+    [before, here]: [&SampledShape; 2],
+    middle: Option<&SampledShape>,
     places: &[SampledPlace],
     motion: &impl Motion,
     ranges: &Ranges,
@@ -257,7 +258,7 @@ fn check_courses(
             let Some(course) = course else { continue };
             let length = shares[1] - shares[0];
             let way = course.way(if length > 0.0 { (share - shares[0]) / length } else { 0.0 });
-            let left = |from: &Sampled, to: &Sampled| {
+            let left = |from: &SampledShape, to: &SampledShape| {
                 let share = (to.t - from.t) / (times[1] - times[0]);
                 let (found, off) = from.way(to, number)?;
                 Some((found - way * share).length() - off)

@@ -9,7 +9,7 @@
 //! t(0) = m1 + E, E = - integral over the first of (1 - s / l1) t'
 //! m1 - m2 = - integral over both of w t', w = s / l1 in the first, (l1 + l2 - s) / l2 in the second.
 //!
-//! **Plain.** |E| <= k l1 / 2, and as an angle the same (`pieces::outer`): the first segment's direction is
+//! **Plain.** |E| <= k l1 / 2, and as an angle the same (`pieces::bounding_body`): the first segment's direction is
 //! that of the face to k l1 / 2. If the turn between the segments is less than it could be, little more can be said: a
 //! curve that bends by k the one way next to the face and the other way farther on shows no turn at all.
 //!

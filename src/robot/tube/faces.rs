@@ -21,15 +21,15 @@
 //! what is not, the ball sticks out by that rounding, and by no more from the discs behind the plane.
 
 use super::Tube;
-use super::section::Face;
-use crate::robot::steps::Steps;
+use super::section::EndFace;
+use crate::robot::radius_steps::RadiusSteps;
 use parry3d_f64::math::Vector;
 
 impl Tube {
     /// One walk of Algorithm 1: each section with the one at whose end the last limit is, which comes before it.
     pub(super) fn walk(&mut self, end: usize, mut visit: impl FnMut(&mut Self, usize, usize)) {
         let count = self.sections.len();
-        let (mut limit, mut steps) = (0, Steps::default());
+        let (mut limit, mut steps) = (0, RadiusSteps::default());
         for step in 0..count {
             let number = if end == 0 { step } else { count - 1 - step };
             if steps.is_up(self.sections[number].radius) {
@@ -42,7 +42,7 @@ impl Tube {
     /// Whether a section of a curve is flat at an end with this centre, if the last limit is at that end of `limit`.
     pub(super) fn is_flat(&self, end: usize, number: usize, limit: usize, centre: Vector) -> bool {
         let radius = self.sections[number].radius;
-        let is_free = |limit: Face| {
+        let is_free = |limit: EndFace| {
             let ahead = limit.centre - centre;
             let apart = ahead.length();
             apart > 2.0 * radius || ahead.dot(limit.outward) - apart * limit.tilt >= radius

@@ -15,13 +15,13 @@
 //! missed are flat faces: there the bounds are a radius apart, and that is what not stating a direction costs.
 //!
 //! With a stated `turn`, every direction near a face is within it of the fitted one, and the derivation of bodies at a
-//! face holds with the tilt `turn` (`pieces::outer`).
+//! face holds with the tilt `turn` (`pieces::bounding_body`).
 
 use super::Tube;
 use super::curve::{CurveBound, NextPoint};
-use super::laid::Laid;
 use super::section::stretch;
 use super::smoothing_spline::{Smoother, SmoothingSpline};
+use super::tube_builder::TubeBuilder;
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
@@ -35,11 +35,11 @@ const CLOSEST: Real = 1.0 / (1 << 20) as Real;
 const PASSES: u32 = 3;
 
 /// In how many steps forces are looked for that bring the spline within the deviation, and for how many weights.
-const MOST_STEPS: u32 = 200;
-const MOST_SOFTENED: u32 = 32;
+const MAX_STEPS: u32 = 200;
+const MAX_SOFTENED: u32 = 32;
 
 /// A segment is laid in no more parts.
-const MOST_PARTS: u32 = 64;
+const MAX_PARTS: u32 = 64;
 
 impl Tube {
     /// The tube around a smooth curve within `deviation` of each of the measured `points`, with one radius for each
@@ -149,7 +149,7 @@ fn within(
     }
     let wanted = deviation * (1.0 - 1.0 / 64.0);
     let (mut forces, mut ahead) = (vec![Vector::ZERO; points.len()], vec![Vector::ZERO; points.len()]);
-    for _ in 0..MOST_SOFTENED {
+    for _ in 0..MAX_SOFTENED {
         let smoother = Smoother::new(knots, weight);
         // A softer spline gives way to smaller forces; and where it is far too stiff, forces would only bend it in jerks.
         weight /= 16.0;
@@ -160,7 +160,7 @@ fn within(
         forces.fill(Vector::ZERO);
         ahead.fill(Vector::ZERO);
         let mut pace: Real = 1.0;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let moved = points.iter().zip(&ahead).map(|(point, force)| *point + *force);
             smoother.fill(moved, &mut spline);
             if spline.largest_residual(points) <= deviation {
@@ -243,7 +243,7 @@ fn lay(
 ) -> Result<(), RobotError> {
     let place = |point: Vector| origin + point * (1.0 / scale);
     let curve = std::mem::take(&mut tube.curve);
-    let mut laid = Laid::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
+    let mut builder = TubeBuilder::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
     // Chords leave the curve by little beside what is open anyway.
     let target = (deviation / 64.0).max(2.0_f64.powi(-24));
     let (mut stretched, mut gap): (Real, Real) = (1.0, 0.0);
@@ -253,7 +253,7 @@ fn lay(
         let bend = spline.seconds[k].length().max(spline.seconds[k + 1].length());
         let chord = (spline.values[k + 1] - spline.values[k]).length();
         let wanted = (h * (bend / (8.0 * target)).sqrt()).max(2.0 * h * bend).ceil();
-        let parts = (wanted as u32).clamp(1, MOST_PARTS);
+        let parts = (wanted as u32).clamp(1, MAX_PARTS);
         let mut next = Vec::new();
         for part in 0..parts {
             let [from, to] = [part, part + 1].map(|part| Real::from(part) / Real::from(parts));
@@ -289,7 +289,7 @@ fn lay(
             continue;
         }
         let ends = [0.0, 1.0].map(|share| direction(spline.at(k, share)[1]));
-        laid.lay(k as u32, radius, ends, next.into_iter());
+        builder.lay(k as u32, radius, ends, next.into_iter());
     }
-    laid.finish(tube, Real::INFINITY, stretched, gap / scale)
+    builder.finish(tube, Real::INFINITY, stretched, gap / scale)
 }

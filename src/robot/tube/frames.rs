@@ -1,5 +1,5 @@
 //! A tube from frames: points of the centreline with the directions that it has there. What is assumed between two of them is
-//! told in `arch`.
+//! told in `hermite_segment`.
 //!
 //! **A frame that is taken twice**, as where one section ends and the next begins. The curve arrives in the direction of the first and
 //! leaves in that of the last. Let q be by how much these differ. A curve that turned by q there would have a corner: the discs
@@ -10,20 +10,23 @@
 //! between the points.
 
 use super::Tube;
-use super::arch::Arch;
-use super::laid::Laid;
+use super::hermite_segment::HermiteSegment;
+use super::tube_builder::TubeBuilder;
 use crate::distance::Scalar;
 use crate::robot::RobotError;
 use crate::robot::chain::check_segments;
+use crate::robot::radius_steps::is_same;
 use crate::robot::scale::direction;
-use crate::robot::steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
 /// How far the directions of two frames at one place may be apart.
 pub(super) const ONE_DIRECTION: Real = 1.0 / (1_u64 << 16) as Real;
 
 /// The two neighbours of an arch on either side, as far as there are any.
-fn around<'a>(number: usize, find: impl Fn(usize) -> Option<&'a Arch>) -> [[Option<&'a Arch>; 2]; 2] {
+fn around<'a>(
+    number: usize,
+    find: impl Fn(usize) -> Option<&'a HermiteSegment>,
+) -> [[Option<&'a HermiteSegment>; 2]; 2] {
     let before = number.checked_sub(1).and_then(&find);
     let far = before.and(number.checked_sub(2)).and_then(&find);
     let behind = find(number + 1);
@@ -79,7 +82,7 @@ impl Tube {
         let scale = reach.power_of_two_to_unity();
         let reach = reach * scale;
         let (rounding, one_place) = (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
-        let (mut arches, mut last, mut gap) = (Vec::<Arch>::new(), 0, 0.0);
+        let (mut arches, mut last, mut gap) = (Vec::<HermiteSegment>::new(), 0, 0.0);
         let (mut leaving, mut most_turn): (_, Real) = (directions[0], 0.0);
         let (mut widest, mut longest): (Real, Real) = (0.0, 0.0);
         for (k, &radius) in segment_radii.iter().enumerate() {
@@ -96,12 +99,18 @@ impl Tube {
                 (gap, leaving, most_turn) = (apart.max(gap), arriving, turn.max(most_turn));
                 continue;
             }
-            arches.extend(Arch::between(k as u32, radius, ends, [leaving, arriving], rounding + gap));
+            arches.extend(HermiteSegment::between(
+                k as u32,
+                radius,
+                ends,
+                [leaving, arriving],
+                rounding + gap,
+            ));
             (last, leaving) = (k + 1, arriving);
         }
         let unscale = 1.0 / scale;
         let curve = std::mem::take(&mut tube.curve);
-        let mut laid = Laid::begin(curve, std::mem::take(&mut tube.sections), points[0]);
+        let mut builder = TubeBuilder::begin(curve, std::mem::take(&mut tube.sections), points[0]);
         let mut stretch: Real = 1.0;
         for (number, arch) in arches.iter().enumerate() {
             let own = |k: usize| arches.get(k).filter(|other| is_same(arch.radius, other.radius));
@@ -116,11 +125,11 @@ impl Tube {
             })?;
             stretch = stretch.max(known.stretch);
             let end = arches.get(number + 1).map_or(points[last] * scale, |next| next.start);
-            laid.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
+            builder.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
         }
         // 0.15 is more than 4/27, and than an arch is longer than its chord.
         let turned = most_turn * (widest + 0.15 * longest * unscale);
-        laid.finish(&mut tube, 0.0, stretch, gap * unscale + turned)?;
+        builder.finish(&mut tube, 0.0, stretch, gap * unscale + turned)?;
         Ok(tube)
     }
 }

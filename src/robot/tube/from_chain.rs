@@ -1,9 +1,9 @@
 //! A chain is a tube whose pieces are straight: each link is a section without curvature.
 
 use super::Tube;
+use super::cap_persistence::CapPersistence;
 use super::curve::{Curve, Samples};
-use super::lasting::Lasting;
-use super::section::{Face, Section};
+use super::section::{EndFace, Section};
 use crate::robot::algorithm_1;
 use crate::robot::modified_cylinder::has_direction;
 use crate::robot::scale::{direction, length};
@@ -31,13 +31,13 @@ impl Tube {
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
     pub fn set_chain(&mut self, chain: &Chain) {
-        let links = chain.links().iter().enumerate().map(|(number, link)| Straight {
+        let links = chain.links().iter().enumerate().map(|(number, link)| StraightSection {
             ends: [link.start(), link.end()],
             radius: link.radius(),
             caps: link.caps(),
             segment: chain.segment_of(number) as u32,
         });
-        self.set_straight(links, Lasting::WhileAllNear);
+        self.set_straight(links, CapPersistence::WhileAllNear);
     }
 
     /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball. `segments` are those of
@@ -62,10 +62,10 @@ impl Tube {
             |(((ends, &radius), &caps), &segment)| {
                 let ends = [ends[0], ends[1]];
                 let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
-                Straight { ends, radius, caps, segment }
+                StraightSection { ends, radius, caps, segment }
             },
         );
-        self.set_straight(links, Lasting::WhileNear);
+        self.set_straight(links, CapPersistence::WhileNear);
         (self.ends, self.caps) = (ends, caps);
     }
 
@@ -77,9 +77,13 @@ impl Tube {
         links: impl Iterator<Item = ([Vector; 2], Real, u32)>,
         deviation: Real,
     ) {
-        let links =
-            links.map(|(ends, radius, segment)| Straight { ends, radius, caps: [Cap::Round; 2], segment });
-        self.set_straight(links, Lasting::Never);
+        let links = links.map(|(ends, radius, segment)| StraightSection {
+            ends,
+            radius,
+            caps: [Cap::Round; 2],
+            segment,
+        });
+        self.set_straight(links, CapPersistence::Never);
         self.error = deviation;
         let count = self.sections.len();
         for number in 0..count {
@@ -92,8 +96,12 @@ impl Tube {
             ];
             for end in [0, 1] {
                 let centre = self.point(&self.sections[number], ticks[end]);
-                let face =
-                    Face { centre, outward: Vector::ZERO, tilt: Real::INFINITY, lasting: Lasting::Never };
+                let face = EndFace {
+                    centre,
+                    outward: Vector::ZERO,
+                    tilt: Real::INFINITY,
+                    persistence: CapPersistence::Never,
+                };
                 self.sections[number].faces[end] = is_end[end].then_some(face);
             }
         }
@@ -102,12 +110,12 @@ impl Tube {
     /// Whether only places of it are known, and no directions ([`Tube::set_loose_links`]).
     pub(crate) fn is_loose(&self) -> bool {
         let first = self.sections.first().and_then(|section| section.faces[0]);
-        first.is_some_and(|face| face.tilt == Real::INFINITY && face.lasting == Lasting::Never)
+        first.is_some_and(|face| face.tilt == Real::INFINITY && face.persistence == CapPersistence::Never)
     }
 
     /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
-    /// `lasting` knows flat ends that are not so by the radii alone.
-    fn set_straight(&mut self, sections: impl Iterator<Item = Straight>, lasting: Lasting) {
+    /// `persistence` knows flat ends that are not so by the radii alone.
+    fn set_straight(&mut self, sections: impl Iterator<Item = StraightSection>, persistence: CapPersistence) {
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -116,12 +124,17 @@ impl Tube {
         arcs.clear();
         self.sections.clear();
         let mut start = 0.0;
-        for Straight { ends, radius, caps, segment } in sections {
+        for StraightSection { ends, radius, caps, segment } in sections {
             let along = ends[1] - ends[0];
             let (axis, end) = (direction(along), start + length(along));
             let face = |end: usize| {
                 let outward = if end == 0 { -axis } else { axis };
-                (caps[end] == Cap::Flat).then_some(Face { centre: ends[end], outward, tilt: 0.0, lasting })
+                (caps[end] == Cap::Flat).then_some(EndFace {
+                    centre: ends[end],
+                    outward,
+                    tilt: 0.0,
+                    persistence,
+                })
             };
             self.sections.push(Section {
                 first: points.len() as u32,
@@ -148,12 +161,12 @@ impl Tube {
         // Lengths along the tube are rounded too.
         self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
-        self.mark_lasting_faces();
+        self.mark_persistent_faces();
     }
 }
 
 /// A section without curvature.
-struct Straight {
+struct StraightSection {
     ends: [Vector; 2],
     radius: Real,
     caps: [Cap; 2],

@@ -1,8 +1,8 @@
 //! A tube whose centreline is a function of arc length.
 
+use super::cap_persistence::CapPersistence;
 use super::curve::{Curve, TICKS};
-use super::lasting::Lasting;
-use super::section::{Face, Section};
+use super::section::{EndFace, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -61,7 +61,7 @@ impl Tube {
                     return Err(RobotError::BadTangent { parameter: "curve", index, value: tangent });
                 }
                 let outward = direction(if end == 0 { -tangent } else { tangent });
-                Ok(Some(Face { centre, outward, tilt: 0.0, lasting: Lasting::Either }))
+                Ok(Some(EndFace { centre, outward, tilt: 0.0, persistence: CapPersistence::Either }))
             };
             // The ends of sections are rounded.
             let curvature = given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
@@ -88,14 +88,14 @@ impl Tube {
         for end in [0, 1] {
             tube.walk(end, |tube, number, limit| {
                 let face = tube.sections[number].faces[end];
-                let is_flat = |face: &Face| tube.is_flat(end, number, limit, face.centre);
+                let is_flat = |face: &EndFace| tube.is_flat(end, number, limit, face.centre);
                 tube.sections[number].faces[end] = face.filter(is_flat);
             });
         }
         for (index, section) in tube.sections.iter().enumerate() {
             check_faces(section, || index)?;
         }
-        tube.mark_lasting_faces();
+        tube.mark_persistent_faces();
         tube.curve = Curve::Function(Arc::new(curve));
         Ok(tube)
     }

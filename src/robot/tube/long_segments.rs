@@ -2,9 +2,9 @@
 //! long segment between them.
 //!
 //! At a sample the curve goes in the direction of the short segment beside it, but for half of what that bends at most. So a long
-//! segment is one between two frames whose directions are known to the errors p and q. It is laid as the cubic of `arch`, whose
+//! segment is one between two frames whose directions are known to the errors p and q. It is laid as the cubic of `hermite_segment`, whose
 //! letters are used here. What is assumed stays what it was, that the curvature is nowhere more than k. So |y''| <= k, and of the ball
-//! in `arch` the centre is 0 and the radius k.
+//! in `hermite_segment` the centre is 0 and the radius k.
 //!
 //! - With T and U off by p and q, m is off by (p + q) / l and (T + U) / l as well. So the line h'' is at least as large in the mean of
 //!   squares as it seems, less 2 (p + q) / l.
@@ -24,8 +24,8 @@
 //! section is the same place whether a segment is laid so or not.
 
 use super::Tube;
-use super::arch::{Arch, MOST_PARTS};
 use super::curve::{Curve, CurveBound, NextPoint, Samples};
+use super::hermite_segment::{HermiteSegment, MAX_PARTS};
 use super::section::Section;
 use super::segment::Segment;
 use crate::distance::Scalar;
@@ -47,8 +47,8 @@ struct SampledCurve<'a> {
 }
 
 /// A long segment as an arch.
-struct Long {
-    arch: Arch,
+struct LongSegment {
+    arch: HermiteSegment,
     bound: CurveBound,
 }
 
@@ -73,7 +73,7 @@ impl SampledCurve<'_> {
     }
 
     /// A segment as an arch, if that tells more of it than its chord.
-    fn long(&self, from: usize, radius: Real) -> Option<Long> {
+    fn long(&self, from: usize, radius: Real) -> Option<LongSegment> {
         let scale = self.scale;
         let chord = self.segment(from)?;
         let most = SHORT * chord.length;
@@ -81,14 +81,14 @@ impl SampledCurve<'_> {
         let behind = self.direction(1, Some(from + 1), most)?;
         let ends = [from, from + 1].map(|k| self.samples.points[k] * scale);
         let number = self.samples.segments[from];
-        let arch = Arch::between(number, radius, ends, [before.0, behind.0], self.off * scale)?;
+        let arch = HermiteSegment::between(number, radius, ends, [before.0, behind.0], self.off * scale)?;
         let curvature = self.samples.bounds[from].curvature / scale;
         // The chord is off as well, between the two.
         let tilts = [before, behind].map(|(_, tilt)| tilt + 2.0 * chord.noise);
         let found = arch.bound_bend(curvature, tilts, self.off * scale)?;
         let length = chord.length * scale;
         let is_better = found.bound.off < 0.5 * curvature * length * length / 8.0;
-        is_better.then_some(Long { arch, bound: found.bound })
+        is_better.then_some(LongSegment { arch, bound: found.bound })
     }
 }
 
@@ -100,7 +100,7 @@ impl Tube {
             return;
         }
         // Either of the two is laid into one day. In a loop the memory is to last, however many arches there will be.
-        let most = 1 + MOST_PARTS as usize * (samples.points.len() - 1);
+        let most = 1 + MAX_PARTS as usize * (samples.points.len() - 1);
         let mut laid = std::mem::take(&mut self.spare.0).into_samples();
         samples.reserve(most);
         laid.reserve(most);
@@ -138,7 +138,7 @@ impl Tube {
                 let long = if section.is_even { None } else { curve.long(from, section.radius) };
                 let (number, point) = (segments[from], points[from + 1]);
                 let length = arcs[from + 1] - arcs[from];
-                if let Some(Long { arch, bound }) = long {
+                if let Some(LongSegment { arch, bound }) = long {
                     is_laid = true;
                     let length = length / Real::from(arch.parts(bound));
                     for next in arch.points(bound, point * scale, 1.0 / scale) {

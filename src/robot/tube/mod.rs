@@ -1,7 +1,6 @@
 //! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
 
-mod arch;
-mod crowds;
+mod cap_persistence;
 mod curve;
 mod direction_at_end;
 mod faces;
@@ -9,34 +8,35 @@ mod fit;
 mod frames;
 mod from_chain;
 mod function;
-mod laid;
-mod lasting;
+mod hermite_segment;
 mod long_segments;
 mod open_section;
-mod own_samples;
+mod sample_clusters;
 mod samples;
 mod section;
+mod section_samples;
 mod segment;
 mod smoothing_spline;
-mod stated;
 #[cfg(test)]
 mod tests;
+mod tube_builder;
 mod turns;
+mod uncertainty;
 mod verify;
 
+pub(crate) use cap_persistence::{CapPersistence, Drift};
 pub use function::TubeSection;
 pub(super) use function::check_sections;
-pub(crate) use lasting::{Drift, Lasting};
-pub(crate) use section::{Face, Section};
+pub(crate) use section::{EndFace, Section};
 pub(crate) use turns::{TooSharp, TubeTurns};
 
 use super::chain::radius_for_all;
 use super::{Cap, RobotError};
-use crowds::Crowd;
 pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
-use own_samples::Hat;
 use parry3d_f64::math::{Real, Vector};
+use sample_clusters::SampleCluster;
+use section_samples::Hat;
 
 /// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius for each section.
 ///
@@ -92,7 +92,7 @@ pub struct Tube {
     /// The largest coordinate of the centreline, or its length, or more.
     reach: Real,
     /// Memory for samples that crowd.
-    crowds: [Vec<Crowd>; 2],
+    crowds: [Vec<SampleCluster>; 2],
     /// Memory for what samples show.
     hats: Vec<Hat>,
     /// Memory for the next links: their ends and caps.
@@ -282,7 +282,7 @@ impl Tube {
 /// face whose direction nobody knows nothing is said.
 fn check_faces(section: &Section, index: impl FnOnce() -> usize) -> Result<(), RobotError> {
     let Section { shown_at, radius, faces, .. } = *section;
-    let is_known = |face: &Option<Face>| face.is_some_and(|face| face.tilt < Real::INFINITY);
+    let is_known = |face: &Option<EndFace>| face.is_some_and(|face| face.tilt < Real::INFINITY);
     match faces.iter().zip(shown_at).find(|(face, curvature)| is_known(face) && curvature * radius >= 1.0) {
         Some((_, curvature)) => Err(RobotError::BendsWithinRadius { index: index(), curvature, radius }),
         None => Ok(()),

@@ -1,24 +1,24 @@
 //! A section on its way from sample to sample.
 
-use super::crowds::Crowd;
 use super::curve::CurveBound;
-use super::own_samples::{Bend, Hat, OwnSamples};
+use super::sample_clusters::SampleCluster;
 use super::section::{Section, stretch};
+use super::section_samples::{Bend, Hat, SectionSamples};
 use super::segment::{Segment, curvature_between, curvature_from};
-use crate::robot::steps::is_same;
+use crate::robot::radius_steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
 /// All samples so far.
-pub(super) struct SoFar<'a> {
+pub(super) struct SamplePrefix<'a> {
     pub points: &'a [Vector],
     /// The length of the polyline up to each of them.
     pub arcs: &'a [Real],
     /// Those that crowd.
-    pub crowds: &'a [Crowd],
+    pub crowds: &'a [SampleCluster],
 }
 
 /// A section on its way.
-pub(super) struct Open {
+pub(super) struct OpenSection {
     pub section: Section,
     longest: Real,
     /// The sample before its longest segment.
@@ -40,7 +40,7 @@ pub(super) struct Open {
     pub least_radius: Real,
 }
 
-impl Open {
+impl OpenSection {
     pub(super) fn new(first: usize, start: Real, radius: Real) -> Self {
         let section = Section::beginning(first, start, radius);
         let [first_radius, least_radius] = [radius; 2];
@@ -123,14 +123,14 @@ impl Open {
         mut self,
         last: usize,
         rounding: Real,
-        so_far: &SoFar,
+        so_far: &SamplePrefix,
         hats: &mut Vec<Hat>,
         bounds: &mut Vec<CurveBound>,
     ) -> Result<(Section, Option<usize>), Bend> {
-        let SoFar { points, arcs, crowds } = *so_far;
+        let SamplePrefix { points, arcs, crowds } = *so_far;
         let first = self.section.first as usize;
         (self.section.last, self.section.end) = (last as u32, arcs[last]);
-        let own = OwnSamples {
+        let own = SectionSamples {
             points: &points[first..=last],
             arcs: &arcs[first..=last],
             tangents: self.tangents,

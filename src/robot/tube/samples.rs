@@ -6,7 +6,7 @@
 //! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
 //! a section that has fewer than two of its own. What means over two segments hide of a curvature that changes evenly is
 //! added (`between_samples`). Where samples lie unevenly, what a sample shows counts for the two segments on either side of it
-//! (`own_samples`).
+//! (`section_samples`).
 //!
 //! With that curvature k, and h the length of a segment:
 //! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
@@ -15,19 +15,19 @@
 //!
 //! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on from within the gap: the
 //! directions on either side are unknown by the gap over the length, and every point by the gap. Samples that are not quite at one
-//! place, where a sample was taken twice, are told of in `crowds`.
+//! place, where a sample was taken twice, are told of in `sample_clusters`.
 //!
 //! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost everywhere. Which way a
 //! face stands is told in `direction_at_end`.
 
 use super::Tube;
-use super::crowds::{self, Crowd};
+use super::cap_persistence::CapPersistence;
 use super::curve::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
-use super::lasting::Lasting;
-use super::open_section::{Open, SoFar};
-use super::own_samples::Hat;
-use super::section::{Face, Section};
+use super::open_section::{OpenSection, SamplePrefix};
+use super::sample_clusters::{self, SampleCluster};
+use super::section::{EndFace, Section};
+use super::section_samples::Hat;
 use super::segment::{Segment, curvature_between};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -36,7 +36,7 @@ use crate::robot::modified_cylinder::COORDINATE_LIMIT;
 use parry3d_f64::math::{Real, Vector};
 
 /// How often samples that crowd are looked for.
-const MOST_TRIED: u32 = 16;
+const MAX_TRIALS: u32 = 16;
 
 /// A face's direction is told from so many samples behind it.
 const FACE_SAMPLES: usize = 3;
@@ -66,12 +66,12 @@ impl Tube {
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
         // Coordinates that were computed in two ways may differ by so much.
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
-        let given = Given { samples, radii, tangents, reach, one_place };
+        let given = InputSamples { samples, radii, tangents, reach, one_place };
         let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
         let mut hats = std::mem::take(&mut self.hats);
         crowds.clear();
         let (mut result, mut crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
-        for _ in 0..MOST_TRIED {
+        for _ in 0..MAX_TRIALS {
             let at = match result {
                 Err(RobotError::TurnsTooSharply { index, .. }) => Some(index),
                 Ok(()) | Err(RobotError::BendsWithinRadius { .. }) => crowding,
@@ -79,7 +79,9 @@ impl Tube {
             };
             let is_good = result.is_ok();
             good.clone_from(&crowds);
-            if !at.is_some_and(|at| crowds::find(samples, radii, tangents, at, one_place, &mut crowds)) {
+            if !at
+                .is_some_and(|at| sample_clusters::find(samples, radii, tangents, at, one_place, &mut crowds))
+            {
                 break;
             }
             (result, crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
@@ -100,8 +102,8 @@ impl Tube {
     /// do is returned as well.
     fn lay_samples(
         &mut self,
-        given: &Given,
-        crowds: &mut [Crowd],
+        given: &InputSamples,
+        crowds: &mut [SampleCluster],
         hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
         // Nearly always nothing crowds, and a loop that need not look is faster.
@@ -114,11 +116,11 @@ impl Tube {
 
     fn lay<const CROWD: bool>(
         &mut self,
-        given: &Given,
-        crowds: &mut [Crowd],
+        given: &InputSamples,
+        crowds: &mut [SampleCluster],
         hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
-        let Given { samples, radii, tangents, reach, one_place } = *given;
+        let InputSamples { samples, radii, tangents, reach, one_place } = *given;
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -133,7 +135,7 @@ impl Tube {
         let (mut gap, mut widest_gap): (Real, Real) = (0.0, 0.0);
         self.merged = 0.0;
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
-        let mut open = Open::new(0, 0.0, radii[0]);
+        let mut open = OpenSection::new(0, 0.0, radii[0]);
         // The next crowd, and how far the curve may be from the last point.
         let (mut number, mut off) =
             (0, crowds.first().filter(|crowd| crowd.first == 0).map_or(0.0, |crowd| crowd.gap));
@@ -162,9 +164,10 @@ impl Tube {
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
-                    let done = std::mem::replace(&mut open, Open::behind_step(last, arc, radius, turn));
+                    let done =
+                        std::mem::replace(&mut open, OpenSection::behind_step(last, arc, radius, turn));
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
-                    let so_far = SoFar { points: &points, arcs: &arcs, crowds };
+                    let so_far = SamplePrefix { points: &points, arcs: &arcs, crowds };
                     match done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
                         Ok((section, near)) => {
                             self.sections.push(section);
@@ -174,7 +177,7 @@ impl Tube {
                     }
                 }
             } else {
-                open = Open::new(0, 0.0, radius);
+                open = OpenSection::new(0, 0.0, radius);
                 if let Some([tangent, _]) = tangents {
                     open.bend_from(0, 0, tangent, &segment);
                 }
@@ -200,7 +203,7 @@ impl Tube {
         segments.truncate(last + 1);
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
         self.merged += crowds.iter().fold(0.0, |widest: Real, crowd| widest.max(crowd.gap));
-        let so_far = SoFar { points: &points, arcs: &arcs, crowds };
+        let so_far = SamplePrefix { points: &points, arcs: &arcs, crowds };
         match open.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
             Ok((section, near)) => {
                 self.sections.push(section);
@@ -233,8 +236,8 @@ impl Tube {
         points: &[Vector],
         bounds: &[CurveBound],
         rounding: Real,
-        given: &Given,
-        crowds: &[Crowd],
+        given: &InputSamples,
+        crowds: &[SampleCluster],
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
         for end in [0, 1] {
@@ -267,13 +270,13 @@ impl Tube {
                     }
                 };
                 tube.sections[number].faces[end] =
-                    Some(Face { centre, outward, tilt, lasting: Lasting::Either });
+                    Some(EndFace { centre, outward, tilt, persistence: CapPersistence::Either });
             });
         }
         for section in &self.sections {
             super::check_faces(section, || given.position_of(section.first as usize, crowds))?;
         }
-        self.mark_lasting_faces();
+        self.mark_persistent_faces();
         Ok(())
     }
 }
@@ -289,7 +292,7 @@ fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
 }
 
 /// Samples as they were given.
-struct Given<'a> {
+struct InputSamples<'a> {
     samples: &'a [Vector],
     radii: &'a [Real],
     /// The directions of the curve at its ends, of unit length.
@@ -300,13 +303,13 @@ struct Given<'a> {
     one_place: Real,
 }
 
-impl Given<'_> {
+impl InputSamples<'_> {
     /// Where a point stood among the samples before those at one place were dropped.
-    fn position_of(&self, point: usize, crowds: &[Crowd]) -> usize {
+    fn position_of(&self, point: usize, crowds: &[SampleCluster]) -> usize {
         let (mut last, mut count) = (0, 0);
         for (k, &sample) in self.samples.iter().enumerate().skip(1) {
             let is_apart = |segment: Segment| segment.length > self.one_place;
-            let is_dropped = |crowd: &Crowd| crowd.first < k && k <= crowd.last;
+            let is_dropped = |crowd: &SampleCluster| crowd.first < k && k <= crowd.last;
             if count < point
                 && !crowds.iter().any(is_dropped)
                 && Segment::between(self.samples[last], sample, 0.0).is_some_and(is_apart)

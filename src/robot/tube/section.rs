@@ -1,7 +1,7 @@
 //! A stretch of the tube with one radius, and its flat faces.
 
+use super::cap_persistence::CapPersistence;
 use super::curve::CurveBound;
-use super::lasting::Lasting;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
@@ -28,7 +28,7 @@ pub(crate) struct Section {
     /// The curve between two ticks is at most so many times as long as the polyline.
     pub stretch: Real,
     /// The flat ends. The others are round.
-    pub faces: [Option<Face>; 2],
+    pub faces: [Option<EndFace>; 2],
     /// Whether the direction of the flat ends may get lost in other shapes: bodies take them for
     /// round then.
     pub fades: bool,
@@ -36,14 +36,14 @@ pub(crate) struct Section {
 
 /// A flat end of a section.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Face {
+pub(crate) struct EndFace {
     pub centre: Vector,
     /// The unit normal, out of the section.
     pub outward: Vector,
     /// How large the angle between `outward` and the true normal may be.
     pub tilt: Real,
     /// Whether it is there in other shapes of the robot, too.
-    pub lasting: Lasting,
+    pub persistence: CapPersistence,
 }
 
 impl Section {

@@ -28,12 +28,12 @@ const HIDDEN: Real = 4.0 * ONE_DIRECTION;
 
 /// A function is asked for its direction so often that it turns by 1 / 64 rad from one to the next, or a little less often
 /// where that would be more than this.
-const MOST_DIRECTIONS: u32 = 4096;
+const MAX_DIRECTIONS: u32 = 4096;
 
 /// Of samples that may be off, so many are left out that a chord's direction is open by no more than this, unless the curve
-/// turns by more than [`MOST_TURN`] along it.
-const LEAST_DOUBT: Real = 1.0 / 1024.0;
-const MOST_TURN: Real = 0.25;
+/// turns by more than [`MAX_TURN`] along it.
+const MIN_DOUBT: Real = 1.0 / 1024.0;
+const MAX_TURN: Real = 0.25;
 
 /// What a tube's turns are measured in, which is used again.
 #[derive(Clone, Debug, Default)]
@@ -132,7 +132,7 @@ impl Tube {
                     let arcs = [samples.arcs[start], samples.arcs[to]];
                     let chord = samples.points[to] - samples.points[start];
                     let doubt = if off > 0.0 { 4.0 * off / length(chord) } else { 0.0 };
-                    let is_long = doubt <= LEAST_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MOST_TURN;
+                    let is_long = doubt <= MIN_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MAX_TURN;
                     if is_long || tick + 1 == section.last {
                         if doubt <= 1.0 {
                             head(direction(chord), doubt, arcs[0], arcs[1]);
@@ -158,7 +158,7 @@ impl Tube {
             } else {
                 let turn = section.curvature * (section.end - section.start);
                 // A number out of range becomes the nearest that is in it.
-                let count = ((64.0 * turn).ceil() as u32).clamp(1, MOST_DIRECTIONS);
+                let count = ((64.0 * turn).ceil() as u32).clamp(1, MAX_DIRECTIONS);
                 for k in 0..=count {
                     let share = Real::from(k) / Real::from(count);
                     let arc = section.start + (section.end - section.start) * share;

@@ -10,7 +10,7 @@ const SPHERE_ROWS: usize = 4;
 /// Rows of a block that hold its triangles: three vertices and the dual basis.
 const FACE_ROWS: usize = 15;
 /// How many blocks one thread works on at a time.
-const SHARE: usize = 64;
+const TASK_SIZE: usize = 64;
 
 /// The triangles of a mesh, near one, with what is computed once for each.
 #[derive(Clone)]
@@ -35,10 +35,11 @@ impl<E: Lane> Blocks<E> {
         self.spheres.resize(blocks * BLOCK * SPHERE_ROWS, E::default());
         self.faces.resize(blocks * BLOCK * FACE_ROWS, E::default());
         let frame = &self.frame;
-        let faces = self.faces.chunks_mut(SHARE * BLOCK * FACE_ROWS);
-        let mut shares: Vec<_> = faces.zip(self.spheres.chunks_mut(SHARE * BLOCK * SPHERE_ROWS)).collect();
+        let faces = self.faces.chunks_mut(TASK_SIZE * BLOCK * FACE_ROWS);
+        let mut shares: Vec<_> =
+            faces.zip(self.spheres.chunks_mut(TASK_SIZE * BLOCK * SPHERE_ROWS)).collect();
         each(&mut shares, |share, (faces, spheres)| {
-            fill(frame, mesh, share * SHARE, faces);
+            fill(frame, mesh, share * TASK_SIZE, faces);
             prepare(faces, spheres);
         });
     }

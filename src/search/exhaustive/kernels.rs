@@ -2,7 +2,7 @@
 //! instruction set in this crate and not again in each that uses an engine.
 
 use super::blocks::prepare;
-use super::scan::{Findings, Job};
+use super::scan::{Job, ThreadFindings};
 use crate::distance::dispatch;
 use crate::distance::lanes::Lane;
 use fearless_simd::Level;
@@ -14,9 +14,9 @@ pub(crate) trait Kernels: Lane {
     /// [`Job::first_bounds`].
     fn first_bounds(level: Level, job: &Job<Self>);
     /// [`Job::scan`] with culling.
-    fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings);
+    fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
     /// [`Job::scan`] without.
-    fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings);
+    fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
 }
 
 macro_rules! kernels {
@@ -33,12 +33,12 @@ macro_rules! kernels {
             }
 
             #[inline(never)]
-            fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings) {
+            fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
                 dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, true>(simd, chunk, findings));
             }
 
             #[inline(never)]
-            fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut Findings) {
+            fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
                 dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, false>(simd, chunk, findings));
             }
         }

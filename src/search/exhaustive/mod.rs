@@ -6,4 +6,4 @@ mod pass;
 mod scan;
 
 pub(crate) use kernels::Kernels;
-pub(crate) use pass::{Pass, Sought, Triangles};
+pub(crate) use pass::{Pass, PassGoal, Triangles};

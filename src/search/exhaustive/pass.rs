@@ -2,7 +2,7 @@
 
 use super::blocks::Blocks;
 use super::kernels::Kernels;
-use super::scan::{Findings, Job, JobLink, SharedBound};
+use super::scan::{Job, JobLink, SharedBound, ThreadFindings};
 use crate::answer::{LinkProximity, ProximityError, Work};
 use crate::distance::Scalar;
 use crate::mesh::Mesh;
@@ -44,7 +44,7 @@ impl<T: Kernels> Triangles<T> {
 
 /// What a pass looks for.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Sought {
+pub(crate) enum PassGoal {
     /// The nearest triangle of every link.
     EachLink,
     /// The nearest triangle of all links of a robot together, if it is at most so far away.
@@ -55,7 +55,7 @@ pub(crate) enum Sought {
     Every(Real),
 }
 
-impl Sought {
+impl PassGoal {
     fn bound(self) -> Real {
         match self {
             Self::EachLink => Real::INFINITY,
@@ -75,7 +75,7 @@ pub(crate) struct Pass<T> {
     robots: Vec<Result<Range<usize>, ProximityError>>,
     bounds: Vec<SharedBound>,
     /// One for each thread; the first has what all have found.
-    findings: Vec<Findings>,
+    findings: Vec<ThreadFindings>,
     /// Whether there may be more than was kept of what is within the bound.
     is_full: bool,
 }
@@ -103,15 +103,15 @@ impl<T: Kernels> Pass<T> {
         triangles: &Triangles<T>,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         links: Range<usize>,
-        aim: Sought,
+        aim: PassGoal,
     ) -> Work {
         let links = self.place(level, triangles, robots, links, aim);
         let Self { links: resolved, double, bounds, findings, robots, is_full, .. } = self;
         bounds.clear();
-        bounds.resize_with(if aim == Sought::EachLink { links } else { robots.len() }, || {
+        bounds.resize_with(if aim == PassGoal::EachLink { links } else { robots.len() }, || {
             SharedBound::new(aim.bound())
         });
-        findings.resize_with(threads_for(links * triangles.mesh.len()), Findings::default);
+        findings.resize_with(threads_for(links * triangles.mesh.len()), ThreadFindings::default);
         for findings in &mut *findings {
             findings.work = Work::default();
             findings.within.clear();
@@ -119,10 +119,10 @@ impl<T: Kernels> Pass<T> {
             findings.nearest.resize(links, None);
         }
         let mesh = &triangles.mesh;
-        let stop_at_first = matches!(aim, Sought::Within(_));
+        let stop_at_first = matches!(aim, PassGoal::Within(_));
         // A single link has all that it is near to, or nothing could be told of it.
         let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
-        let every = matches!(aim, Sought::Every(_)).then_some(most);
+        let every = matches!(aim, PassGoal::Every(_)).then_some(most);
         let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
         scan(level, culling, &job, findings);
         if !double.is_empty() {
@@ -145,7 +145,7 @@ impl<T: Kernels> Pass<T> {
         triangles: &Triangles<T>,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         of_each: Range<usize>,
-        aim: Sought,
+        aim: PassGoal,
     ) -> usize {
         let Self { links, double, placed, robots: ranges, .. } = self;
         links.clear();
@@ -165,7 +165,7 @@ impl<T: Kernels> Pass<T> {
                 }
             };
             for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
-                let bound = if aim == Sought::EachLink { place } else { number };
+                let bound = if aim == PassGoal::EachLink { place } else { number };
                 let searched = SearchLink::new(&link, frame);
                 if is_double || searched.as_ref().is_some_and(|searched| searched.is_resolved(frame)) {
                     links.push(JobLink { link, searched, place, bound });
@@ -231,7 +231,7 @@ fn threads_for(pairs: usize) -> usize {
 }
 
 /// Has every thread take the next chunk until there is none.
-fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [Findings]) {
+fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [ThreadFindings]) {
     if culling && !job.stop_at_first && job.every.is_none() {
         E::first_bounds(level, job);
     }

@@ -60,7 +60,7 @@ impl SharedBound {
         self.distance.load(Ordering::Relaxed).checked_sub(1).map(Real::from_bits)
     }
 
-    fn shrink_to(&self, distance: Real) {
+    fn lower_to(&self, distance: Real) {
         self.distance.fetch_min(distance.abs().to_bits() + 1, Ordering::Relaxed);
     }
 
@@ -71,7 +71,7 @@ impl SharedBound {
     /// Notes that a triangle touches.
     fn touch(&self, triangle: u32) {
         self.touching.fetch_min(triangle, Ordering::Relaxed);
-        self.shrink_to(0.0);
+        self.lower_to(0.0);
     }
 
     fn end(&self) {
@@ -81,7 +81,7 @@ impl SharedBound {
 
 /// What one thread has found.
 #[derive(Default)]
-pub(crate) struct Findings {
+pub(crate) struct ThreadFindings {
     /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
     pub nearest: Vec<Option<Nearest>>,
     /// Where every triangle is wanted, each link's place and each triangle that may be within its bound.
@@ -89,9 +89,9 @@ pub(crate) struct Findings {
     pub work: Work,
 }
 
-impl Findings {
+impl ThreadFindings {
     /// Adds what another thread found.
-    pub(crate) fn merge(&mut self, other: &Findings) {
+    pub(crate) fn merge(&mut self, other: &ThreadFindings) {
         self.work += other.work;
         self.within.extend(&other.within);
         for (mine, theirs) in self.nearest.iter_mut().zip(&other.nearest) {
@@ -126,7 +126,7 @@ impl<E: Lane> Job<'_, E> {
             let mut reaches = [E::round(Real::INFINITY); BLOCK];
             reach.store(&mut reaches);
             let least = reaches.into_iter().fold(E::round(Real::INFINITY), Scalar::min);
-            self.bounds[link.bound].shrink_to(searched.bound_within(least));
+            self.bounds[link.bound].lower_to(searched.bound_within(least));
         }
     }
 
@@ -137,7 +137,7 @@ impl<E: Lane> Job<'_, E> {
         &self,
         token: L::Token,
         chunk: usize,
-        findings: &mut Findings,
+        findings: &mut ThreadFindings,
     ) {
         let blocks = chunk * CHUNK..self.blocks.len().min((chunk + 1) * CHUNK);
         for link in self.links {
@@ -149,8 +149,8 @@ impl<E: Lane> Job<'_, E> {
             }
             let best = Best::resume(bound, findings.nearest[link.place]);
             let best = best.touching_below(touching.saturating_add(1));
-            let Findings { within, work, .. } = &mut *findings;
-            let mut turn = Turn { job: self, link: &link.link, place: link.place, best, within, work };
+            let ThreadFindings { within, work, .. } = &mut *findings;
+            let mut turn = LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
             match &link.searched {
                 Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
                 None => turn.measure_all(blocks.clone()),
@@ -162,14 +162,14 @@ impl<E: Lane> Job<'_, E> {
             } else if let Some(nearest) = best.nearest().filter(|nearest| nearest.distance <= 0.0) {
                 shared.touch(nearest.triangle);
             } else {
-                shared.shrink_to(best.bound());
+                shared.lower_to(best.bound());
             }
         }
     }
 }
 
 /// One link's turn with a chunk.
-struct Turn<'a, E> {
+struct LinkScan<'a, E> {
     job: &'a Job<'a, E>,
     link: &'a PlacedLink,
     place: usize,
@@ -178,7 +178,7 @@ struct Turn<'a, E> {
     work: &'a mut Work,
 }
 
-impl<E: Lane> Turn<'_, E> {
+impl<E: Lane> LinkScan<'_, E> {
     #[inline(always)]
     fn scan<L: Pack<Element = E>, const CULLING: bool>(
         &mut self,
@@ -228,7 +228,7 @@ impl<E: Lane> Turn<'_, E> {
     /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest so far.
     #[inline(never)] // the same code whatever the instruction set
     fn measure(&mut self, triangle: usize) -> bool {
-        if triangle >= self.job.mesh.len().min(self.best.wanted_below() as usize) {
+        if triangle >= self.job.mesh.len().min(self.best.triangle_limit() as usize) {
             return false;
         }
         if let Some(most) = self.job.every {

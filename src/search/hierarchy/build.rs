@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 /// How many leaves one thread works on at a time.
-const SHARE: usize = 64;
+const TASK_SIZE: usize = 64;
 
 /// The hierarchy of a mesh.
 #[derive(Clone)]
@@ -78,13 +78,13 @@ impl<E: Lane> WideBvh<E> {
     pub(crate) fn refit(&mut self, level: Level, mesh: &Mesh) {
         self.frame = SearchFrame::new(mesh);
         let frame = &self.frame;
-        each(&mut self.leaves.chunks_mut(SHARE).collect::<Vec<_>>(), |_, leaves| {
+        each(&mut self.leaves.chunks_mut(TASK_SIZE).collect::<Vec<_>>(), |_, leaves| {
             leaves.iter_mut().for_each(|leaf| leaf.fill(frame, mesh));
         });
         // No bound waits for another.
         let leaves = &self.leaves;
         let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
-        each(&mut self.nodes.chunks_mut(SHARE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
+        each(&mut self.nodes.chunks_mut(TASK_SIZE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
             dispatch!(level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
     }
@@ -116,8 +116,8 @@ type Item<E> = (u32, [E; 3]);
 /// All triangles of a mesh.
 fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
     let mut items = vec![Item::default(); mesh.len()];
-    each(&mut items.chunks_mut(Mesh::SHARE).collect::<Vec<_>>(), |share, items| {
-        for (triangle, item) in (share * Mesh::SHARE..).zip(items.iter_mut()) {
+    each(&mut items.chunks_mut(Mesh::TASK_SIZE).collect::<Vec<_>>(), |share, items| {
+        for (triangle, item) in (share * Mesh::TASK_SIZE..).zip(items.iter_mut()) {
             let [a, b, c] = mesh.corners(triangle as u32).map(|corner| frame.point(corner));
             *item = (triangle as u32, (a + b + c).into());
         }
@@ -156,7 +156,7 @@ fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
         // Every coordinate in this frame is a number.
         a.1[axis].partial_cmp(&b.1[axis]).unwrap_or(Ordering::Equal)
     });
-    let is_worth_it = items.len() >= Mesh::SHARE;
+    let is_worth_it = items.len() >= Mesh::TASK_SIZE;
     let (low, high) = items.split_at_mut(middle);
     both(is_worth_it, || arrange(low, most / 2, unit), || arrange(high, most / 2, unit));
 }

@@ -2,7 +2,7 @@
 
 /// Brings the candidates with the least bounds to the first `count` places. The others stay where they are but for those
 /// that make room: they were met leaf by leaf, and triangles that are near each other often are in memory too.
-pub(crate) fn bring_forward<E: Copy + PartialOrd>(candidates: &mut [(E, u32)], count: usize) {
+pub(crate) fn select_least<E: Copy + PartialOrd>(candidates: &mut [(E, u32)], count: usize) {
     let Some((first, others)) = candidates.split_at_mut_checked(count) else { return };
     let mut farthest = farthest_of(first);
     for other in others {
@@ -33,7 +33,7 @@ mod tests {
             let before: Vec<_> = (0..length).map(|triangle| (random.below(12), triangle)).collect();
             let count = random.below(10) as usize;
             let mut after = before.clone();
-            bring_forward(&mut after, count);
+            select_least(&mut after, count);
             let (mut sorted, mut kept) = (before.clone(), after.clone());
             sorted.sort_unstable();
             kept.sort_unstable();

@@ -79,7 +79,7 @@ impl MeshSearch<'_> {
 
     /// The same without a bound, unless few triangles are in question: they are then added to `few`, the likeliest first, and
     /// not measured.
-    pub(crate) fn nearest_or_few(
+    pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
         start: [Option<u32>; 2],
@@ -88,7 +88,7 @@ impl MeshSearch<'_> {
         resolved!(
             self,
             link,
-            |traversal, searched| traversal.nearest_or_few(link, &searched, start, few),
+            |traversal, searched| traversal.nearest_or_candidates(link, &searched, start, few),
             Some(self.nearest(link, Best::within(Real::INFINITY), start))
         )
     }
@@ -96,7 +96,7 @@ impl MeshSearch<'_> {
     /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the least, with a triangle about as
     /// near if one was met.
     /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
-    pub(crate) fn nearest_and_kept(
+    pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
         best: Best,
@@ -106,14 +106,14 @@ impl MeshSearch<'_> {
         resolved!(
             self,
             link,
-            |traversal, searched| traversal.nearest_and_kept(link, &searched, best, far, start),
+            |traversal, searched| traversal.nearest_with_lower_bound(link, &searched, best, far, start),
             (self.nearest(link, best, start), 0.0, None)
         )
     }
 
     /// About the triangle nearest to a capsule around links, if any is within reach.
-    pub(crate) fn about_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
-        resolved!(self, capsule, |traversal, searched| traversal.about_nearest(&searched), None)
+    pub(crate) fn approximate_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
+        resolved!(self, capsule, |traversal, searched| traversal.approximate_nearest(&searched), None)
     }
 
     /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.

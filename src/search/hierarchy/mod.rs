@@ -3,13 +3,13 @@
 mod bound;
 mod build;
 mod candidates;
-mod fit;
+mod capped_gather;
 mod hierarchies;
 mod leaf_visitor;
 mod mesh_search;
 mod moving_mesh;
-mod near_triangles;
 mod node;
+mod oriented_box;
 mod traverse;
 
 pub(crate) use build::WideBvh;

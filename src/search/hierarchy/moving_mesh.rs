@@ -19,12 +19,12 @@ use parry3d_f64::math::{Real, Vector};
 
 /// From where to where a coordinate reaches in a box.
 #[derive(Clone, Copy, Debug)]
-struct Sides {
+struct CoordinateRange {
     low: Vector,
     high: Vector,
 }
 
-impl Sides {
+impl CoordinateRange {
     const NOTHING: Self = Self { low: Vector::INFINITY, high: Vector::NEG_INFINITY };
 
     fn with(self, point: Vector) -> Self {
@@ -37,7 +37,7 @@ impl Sides {
 }
 
 /// The boxes around what is below a child, at both ends of the time.
-type MovingBox = [Sides; 2];
+type MovingBox = [CoordinateRange; 2];
 
 /// Where the vertices of a mesh go, and boxes around its triangles on the way.
 #[derive(Clone, Default)]
@@ -62,7 +62,7 @@ impl MovingMesh {
         self.leaves.clear();
         (self.speed, self.reach) = (0.0, 0.0);
         for leaf in &tree.leaves {
-            let mut sides = [Sides::NOTHING; 2];
+            let mut sides = [CoordinateRange::NOTHING; 2];
             for vertex in leaf.triangles().flat_map(|triangle| mesh.indices()[triangle as usize]) {
                 let ends = [mesh.vertices()[vertex as usize], to[vertex as usize]];
                 sides = [sides[0].with(ends[0]), sides[1].with(ends[1])];
@@ -74,10 +74,10 @@ impl MovingMesh {
         // Differences and a length.
         self.speed *= 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
         self.nodes.clear();
-        self.nodes.resize(tree.nodes.len(), [Sides::NOTHING; 2]);
+        self.nodes.resize(tree.nodes.len(), [CoordinateRange::NOTHING; 2]);
         // Children have higher numbers than their node.
         for (number, node) in tree.nodes.iter().enumerate().rev() {
-            let mut sides = [Sides::NOTHING; 2];
+            let mut sides = [CoordinateRange::NOTHING; 2];
             for child in node.children() {
                 let below = self.sides(child);
                 sides = [sides[0].and(below[0]), sides[1].and(below[1])];
@@ -136,7 +136,7 @@ impl MeshAt<'_> {
         waiting.clear();
         waiting.push((0.0, Child::Node(0).pack()));
         while let Some((bound, child)) = waiting.pop() {
-            if bound > best.bound() || best.wanted_below() == 0 {
+            if bound > best.bound() || best.triangle_limit() == 0 {
                 continue;
             }
             match Child::unpack(child) {
@@ -155,7 +155,7 @@ impl MeshAt<'_> {
                     for triangle in tree.leaves[leaf as usize].triangles() {
                         work.visited += 1;
                         let corners = self.corners(mesh, triangle);
-                        let sides = corners.into_iter().fold(Sides::NOTHING, Sides::with);
+                        let sides = corners.into_iter().fold(CoordinateRange::NOTHING, CoordinateRange::with);
                         if axis.bound(&[sides; 2], 0.0) <= best.bound() {
                             work.measured += 1;
                             best.measure(link, triangle, corners);
@@ -212,8 +212,10 @@ impl MeshAt<'_> {
                 }
                 Child::Leaf(leaf) => {
                     found.extend(tree.leaves[leaf as usize].triangles().filter(|&triangle| {
-                        let sides =
-                            self.corners(mesh, triangle).into_iter().fold(Sides::NOTHING, Sides::with);
+                        let sides = self
+                            .corners(mesh, triangle)
+                            .into_iter()
+                            .fold(CoordinateRange::NOTHING, CoordinateRange::with);
                         axis.bound(&[sides; 2], 0.0) <= bound
                     }))
                 }

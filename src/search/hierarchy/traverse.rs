@@ -8,15 +8,15 @@
 //! measured in double precision.
 
 use super::build::WideBvh;
-use super::candidates::bring_forward;
+use super::candidates::select_least;
+use super::capped_gather::CappedGather;
 use super::leaf_visitor::LeafVisitor;
-use super::near_triangles::NearTriangles;
 use super::node::{Child, Node, WIDTH};
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, dispatch};
 use crate::mesh::{BLOCK, Mesh, load_vertices};
-use crate::pair::{Best, LinkLanes, PlacedLink, SearchLink, TOGETHER};
+use crate::pair::{BATCH, Best, LinkLanes, PlacedLink, SearchLink};
 use fearless_simd::Level;
 
 /// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
@@ -25,7 +25,7 @@ const LEAVES_FOR_A_GUESS: u32 = 8;
 
 /// So many triangles in question or fewer share their packs with those of other links. Measured: more fill packs of their
 /// own well enough.
-const FEW: usize = TOGETHER / 2;
+const FEW: usize = BATCH / 2;
 
 /// Memory that is used again.
 #[derive(Clone, Default)]
@@ -54,10 +54,10 @@ struct Target<'a, E> {
     limit: E,
     /// What its number must be below.
     below: u32,
-    aim: Aim<'a>,
+    aim: Goal<'a>,
 }
 
-enum Aim<'a> {
+enum Goal<'a> {
     /// The nearest triangle of a link that improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
@@ -76,10 +76,10 @@ impl<E: Lane> Target<'_, E> {
     /// Whether nothing can change the answer any more.
     fn is_settled(&self) -> bool {
         match &self.aim {
-            Aim::Nearest(..) => self.below == 0,
+            Goal::Nearest(..) => self.below == 0,
             // Once a triangle overlaps, the limit is 0 and nothing is below it.
-            Aim::About(_, leaves) => *leaves == 0,
-            Aim::Any(found) => *found,
+            Goal::About(_, leaves) => *leaves == 0,
+            Goal::Any(found) => *found,
         }
     }
 }
@@ -95,16 +95,16 @@ impl<E: Lane> Traversal<'_, E> {
         start: [Option<u32>; 2],
     ) -> Best {
         let limit = searched.axis_limit(best.bound());
-        let below = best.wanted_below();
-        let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
+        let below = best.triangle_limit();
+        let mut target = Target { searched, limit, below, aim: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.settle(&mut target);
-        if let Aim::Nearest(_, best) = target.aim { best } else { best }
+        if let Goal::Nearest(_, best) = target.aim { best } else { best }
     }
 
     /// The same without a bound where many triangles are in question. Where they are few, none is measured: they are added
     /// to `few`, the likeliest first, for a pack that they share with those of other links.
-    pub(crate) fn nearest_or_few(
+    pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
         searched: &SearchLink<E>,
@@ -112,19 +112,19 @@ impl<E: Lane> Traversal<'_, E> {
         few: &mut Vec<u32>,
     ) -> Option<Best> {
         let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
-        let mut target = Target { searched, limit, below: u32::MAX, aim: Aim::Nearest(link, best) };
+        let mut target = Target { searched, limit, below: u32::MAX, aim: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.drop_candidates(&target);
         let candidates = &mut self.stack.candidates;
-        if matches!(target.aim, Aim::Nearest(_, best) if best.nearest().is_none())
+        if matches!(target.aim, Goal::Nearest(_, best) if best.nearest().is_none())
             && (1..=FEW).contains(&candidates.len())
         {
-            bring_forward(candidates, 1);
+            select_least(candidates, 1);
             few.extend(candidates.iter().map(|candidate| candidate.1));
             return None;
         }
         self.measure_candidates(&mut target);
-        if let Aim::Nearest(_, best) = target.aim { Some(best) } else { None }
+        if let Goal::Nearest(_, best) = target.aim { Some(best) } else { None }
     }
 
     /// The same as [`Traversal::nearest`], and what the link keeps from all triangles at the least, with the triangle that
@@ -132,7 +132,7 @@ impl<E: Lane> Traversal<'_, E> {
     ///
     /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So nothing is nearer than
     /// the nearest candidate, the limit that is left, and what was measured: a triangle that overlaps is at once.
-    pub(crate) fn nearest_and_kept(
+    pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
         searched: &SearchLink<E>,
@@ -140,8 +140,8 @@ impl<E: Lane> Traversal<'_, E> {
         far: f64,
         start: [Option<u32>; 2],
     ) -> (Best, f64, Option<u32>) {
-        let (limit, below) = (searched.axis_limit(far), best.wanted_below());
-        let mut target = Target { searched, limit, below, aim: Aim::Nearest(link, best) };
+        let (limit, below) = (searched.axis_limit(far), best.triangle_limit());
+        let mut target = Target { searched, limit, below, aim: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         let mut least = (target.limit, None);
         for &(lower, triangle) in &self.stack.candidates {
@@ -151,27 +151,27 @@ impl<E: Lane> Traversal<'_, E> {
         }
         target.limit = target.limit.min(searched.axis_limit(best.bound()));
         self.settle(&mut target);
-        let best = if let Aim::Nearest(_, best) = target.aim { best } else { best };
+        let best = if let Goal::Nearest(_, best) = target.aim { best } else { best };
         let apart = searched.at_least(least.0.into());
         (best, best.nearest().map_or(apart, |nearest| apart.min(nearest.distance)), least.1)
     }
 
     /// A triangle nearly as near as the nearest, or any that overlaps the link.
-    pub(crate) fn about_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
+    pub(crate) fn approximate_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
         let limit = searched.axis_limit(f64::INFINITY);
         let below = u32::MAX;
-        let mut target = Target { searched, limit, below, aim: Aim::About(None, LEAVES_FOR_A_GUESS) };
+        let mut target = Target { searched, limit, below, aim: Goal::About(None, LEAVES_FOR_A_GUESS) };
         self.search(&mut target, [None; 2]);
-        if let Aim::About(found, _) = target.aim { found } else { None }
+        if let Goal::About(found, _) = target.aim { found } else { None }
     }
 
     /// Whether some triangle with a lower number than `below` may be at most `bound` from the link; false only if none
     /// is.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below, aim: Aim::Any(false) };
+        let mut target = Target { searched, limit, below, aim: Goal::Any(false) };
         self.search(&mut target, [None; 2]);
-        matches!(target.aim, Aim::Any(true))
+        matches!(target.aim, Goal::Any(true))
     }
 
     /// All triangles that may be at most `bound` from the link, in no order; false if they are more than `most`.
@@ -183,7 +183,7 @@ impl<E: Lane> Traversal<'_, E> {
         found: &mut Vec<u32>,
     ) -> bool {
         let limit = searched.axis_limit(bound);
-        let mut near = NearTriangles { limit, most, found, is_overfull: false };
+        let mut near = CappedGather { limit, most, found, is_overfull: false };
         dispatch!(self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
         !near.is_overfull
     }
@@ -324,13 +324,13 @@ impl<E: Lane> Traversal<'_, E> {
             near |= bounds.nearer << lane;
         }
         match &mut target.aim {
-            Aim::Any(found) => {
+            Goal::Any(found) => {
                 // A triangle whose number is too high does no harm.
                 *found = near != 0;
                 return;
             }
-            Aim::About(_, leaves) => *leaves -= 1,
-            Aim::Nearest(..) => {}
+            Goal::About(_, leaves) => *leaves -= 1,
+            Goal::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
         // The lowest of those that overlap for certain: of these no other is wanted.
@@ -342,7 +342,7 @@ impl<E: Lane> Traversal<'_, E> {
             if lower[lane] >= target.limit || triangle >= target.below {
                 continue;
             }
-            if let Aim::About(found, _) = &mut target.aim {
+            if let Goal::About(found, _) = &mut target.aim {
                 *found = Some(triangle);
                 target.limit = upper[lane];
             } else if upper[lane] + error < radius {
@@ -372,21 +372,21 @@ impl<E: Lane> Traversal<'_, E> {
     /// Measures the candidates, several at a time and first those that are likely to rule out others.
     #[inline(never)] // the same code whatever the instruction set
     fn measure_candidates(&mut self, target: &mut Target<E>) {
-        let Aim::Nearest(link, best) = &mut target.aim else { return };
+        let Goal::Nearest(link, best) = &mut target.aim else { return };
         let candidates = &mut self.stack.candidates;
-        bring_forward(candidates, TOGETHER);
+        select_least(candidates, BATCH);
         let (mut limit, mut place) = (target.limit, 0);
         while place < candidates.len() {
-            let (mut together, mut count) = ([0; TOGETHER], 0);
-            while place < candidates.len() && count < TOGETHER {
-                if candidates[place].0 < limit && candidates[place].1 < best.wanted_below() {
+            let (mut together, mut count) = ([0; BATCH], 0);
+            while place < candidates.len() && count < BATCH {
+                if candidates[place].0 < limit && candidates[place].1 < best.triangle_limit() {
                     together[count] = candidates[place].1;
                     count += 1;
                 }
                 place += 1;
             }
             self.work.measured += count as u64;
-            if best.measure_together(self.level, link, self.mesh, &together[..count]) {
+            if best.measure_batch(self.level, link, self.mesh, &together[..count]) {
                 limit = limit.min(target.searched.axis_limit(best.bound()));
             }
         }
@@ -394,11 +394,11 @@ impl<E: Lane> Traversal<'_, E> {
 
     /// Measures one triangle in double precision.
     fn measure(&mut self, target: &mut Target<E>, triangle: u32) {
-        let Aim::Nearest(link, best) = &mut target.aim else { return };
+        let Goal::Nearest(link, best) = &mut target.aim else { return };
         self.work.measured += 1;
         if best.measure(link, triangle, self.mesh.corners(triangle)) {
             target.limit = target.limit.min(target.searched.axis_limit(best.bound()));
-            target.below = best.wanted_below();
+            target.below = best.triangle_limit();
         }
     }
 }

@@ -1,10 +1,10 @@
 //! What a query leaves for the next one about a robot that has moved a little.
 
-mod kept_distances;
+mod link_lower_bounds;
+mod look_ahead;
 mod odometer;
-mod outline;
-mod widening;
+mod placed_outline;
 
-pub(crate) use kept_distances::KeptDistances;
+pub(crate) use link_lower_bounds::LinkLowerBounds;
 pub(crate) use odometer::Odometer;
-pub(crate) use outline::Outline;
+pub(crate) use placed_outline::PlacedOutline;

@@ -4,7 +4,7 @@
 //! before. The odometer reads the sum of all steps. So if the links kept `apart` from something still when it read R, they keep
 //! `apart` - (R' - R) at least when it reads R'.
 //!
-//! A step follows the rule of [`Origin::moved_to`](super::outline::Origin::moved_to): the ends of the axis move by s at most, a
+//! A step follows the rule of [`ReferenceOutline::moved_to`](super::placed_outline::ReferenceOutline::moved_to): the ends of the axis move by s at most, a
 //! radius grows by g at most, and a flat cap of radius r turns with its axis by 2 r x (1 + 2 x) at most, for x up to 1/2 as there, and
 //! beyond because that is more than 2 r. The largest of each over all links makes a step no less than that of any link,
 //! s + 2 (r x) (1 + 2 x) + g, and leaves three roots for all of them. Other caps and another number of links are no step: the
@@ -12,9 +12,9 @@
 //!
 //! Rounding. Relatively a step errs by less than [`ROUNDING`], and x by 3 u, which is 18 u of the radius: both are added. Sums are
 //! rounded upwards, so that no difference of two readings is less than the steps between them. Squares vanish where what is
-//! measured is below 2^-537 of the extent: 2^400 such steps are next to nothing beside [`ends_err`](Odometer::ends_err).
+//! measured is below 2^-537 of the extent: 2^400 such steps are next to nothing beside [`ends_err`](Odometer::error_from_ends).
 
-use super::outline::{Outline, ROUNDING};
+use super::placed_outline::{PlacedOutline, ROUNDING};
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::{Real, Vector};
@@ -23,7 +23,7 @@ use parry3d_f64::math::{Real, Vector};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Odometer {
     /// At the last question, from the tip to the base.
-    links: Vec<Outline>,
+    links: Vec<PlacedOutline>,
     /// The largest coordinate of links and pose then.
     extent: Real,
     /// How much farther than both ends of its axis any point of a link can move: the rim of a flat cap.
@@ -36,13 +36,13 @@ impl Odometer {
     /// Counts the way to where a robot is now. False where that can't be told, and the odometer begins anew.
     pub(crate) fn advance(&mut self, robot: PlacedRobot) -> bool {
         let translation = robot.placed(Vector::ZERO).abs().max_element();
-        let extent = Outline::around_all(robot).extent().max(translation);
+        let extent = PlacedOutline::around_all(robot).extent().max(translation);
         let before = std::mem::replace(&mut self.extent, extent);
         if self.links.len() == robot.links().len() {
             self.step = self.step_to(robot, before.max(extent));
         } else {
             self.links.clear();
-            self.links.extend(Outline::of_all(robot));
+            self.links.extend(PlacedOutline::of_all(robot));
             // What caps add is told by the next step.
             (self.step, self.lever) = (Real::INFINITY, Real::INFINITY);
         }
@@ -61,7 +61,7 @@ impl Odometer {
         let squared = |way: Vector| (way * scale).length_squared();
         let mut is_known = true;
         let [mut shift, mut turn, mut rim, mut lever, mut grown, mut radius]: [Real; 6] = [0.0; 6];
-        for (then, now) in self.links.iter_mut().zip(Outline::of_all(robot)) {
+        for (then, now) in self.links.iter_mut().zip(PlacedOutline::of_all(robot)) {
             is_known &= then.flat == now.flat;
             let [start, end] = [squared(now.ends[0] - then.ends[0]), squared(now.ends[1] - then.ends[1])];
             shift = larger(larger(start, end), shift);
@@ -85,7 +85,7 @@ impl Odometer {
     }
 
     /// The last step; infinite where it can't be told.
-    pub(crate) fn step(&self) -> Real {
+    pub(crate) fn last_step(&self) -> Real {
         self.step
     }
 
@@ -102,7 +102,7 @@ impl Odometer {
     /// How far any point of a link can be from where it is, if the ends of all axes err by `error`.
     ///
     /// A flat cap of radius r turns with its axis of length l, by less than 4 `error` / l, and its rim by r times that.
-    pub(crate) fn ends_err(&self, error: Real) -> Real {
+    pub(crate) fn error_from_ends(&self, error: Real) -> Real {
         error * self.lever
     }
 }

@@ -1,0 +1,220 @@
+//! Height fields and moving composites, element by element: what parry has no version of that serves here.
+//!
+//! parry's cast against a height field looks at the starting cells only when the motion has no height component, and its
+//! nonlinear cast against a composite bisects for the balls around the parts, without end where a number is large. None
+//! of its queries on fields names the element that answered. So the elements are visited here: those whose boxes meet the box that
+//! the other shape occupies, reaches or sweeps, loosened by what rounding can have taken from it.
+
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::{
+    ClosestPoints, Contact, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastOptions,
+    ShapeDistance, ShapeIntersection, Unsupported,
+};
+use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Triangle};
+
+/// A height field and another shape, whose pose is in the field's frame.
+pub(super) struct HeightFieldPair<'a, D> {
+    pub dispatcher: &'a D,
+    pub field: &'a HeightField,
+    pub pos12: &'a Pose,
+    pub other: &'a dyn Shape,
+}
+
+impl<D: QueryDispatcher> HeightFieldPair<'_, D> {
+    pub fn distance(&self) -> Result<ShapeDistance, Unsupported> {
+        let near = self.distance_to(&self.some_element().ok_or(Unsupported)?)?.distance;
+        let nearest = least_element(self.field, &self.around(near), |element| {
+            let found = self.distance_to(element)?;
+            Ok(Some((found.distance, found)))
+        })?;
+        let (id, found) = nearest.ok_or(Unsupported)?;
+        Ok(ShapeDistance { subshape1: id, ..found })
+    }
+
+    pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
+        let nearest = self.distance()?.subshape1;
+        let element = self.field.triangle_at_id(nearest).ok_or(Unsupported)?;
+        self.dispatcher.closest_points(self.pos12, &element, self.other, max_dist)
+    }
+
+    pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
+        let touching = least_element(self.field, &self.around(0.0), |element| {
+            let found = self.dispatcher.intersection_test(self.pos12, element, self.other)?;
+            Ok(found.intersecting.then_some((0.0, found)))
+        })?;
+        Ok(touching.map_or(ShapeIntersection::new(false), |(id, found)| ShapeIntersection {
+            subshape1: id,
+            ..found
+        }))
+    }
+
+    pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
+        let deepest = least_element(self.field, &self.around(prediction.max(0.0)), |element| {
+            let contact = self.dispatcher.contact(self.pos12, element, self.other, prediction)?;
+            Ok(contact.map(|contact| (contact.dist, contact)))
+        })?;
+        Ok(deepest.map(|(id, contact)| Contact { subshape1: id, ..contact }))
+    }
+
+    pub fn cast_shapes(
+        &self,
+        vel12: Vector,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let start = self.around(options.target_distance.max(0.0));
+        let swept = swept(&start, self.field.root_aabb(), vel12 * options.max_time_of_impact);
+        let first = least_element(self.field, &swept, |element| {
+            let hit = self.dispatcher.cast_shapes(self.pos12, vel12, element, self.other, options)?;
+            Ok(hit.map(|hit| (hit.time_of_impact, hit)))
+        })?;
+        Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
+    }
+
+    fn distance_to(&self, element: &Triangle) -> Result<ShapeDistance, Unsupported> {
+        self.dispatcher.distance(self.pos12, element, self.other)
+    }
+
+    /// The other shape's box, loosened by `margin` and by rounding.
+    fn around(&self, margin: Real) -> Aabb {
+        let bounds = self.other.compute_aabb(self.pos12);
+        let rounding = rounding(&bounds, self.field.root_aabb());
+        bounds.loosened(margin + rounding + 16.0 * Real::EPSILON * margin)
+    }
+
+    /// An element below or above the other shape, or any.
+    fn some_element(&self) -> Option<Triangle> {
+        let centre = self.other.compute_aabb(self.pos12).center();
+        let (i, j) = self.field.closest_cell_at_point(centre);
+        let (left, right) = self.field.triangles_at(i, j);
+        left.or(right).or_else(|| self.field.triangles().next())
+    }
+}
+
+/// The first hit of a moving shape on a moving height field.
+pub(super) fn cast_nonlinear(
+    dispatcher: &impl QueryDispatcher,
+    (motion1, field): (&NonlinearRigidMotion, &HeightField),
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+    stop_at_penetration: bool,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    let bounds = reached(motion1, (motion2, other), (start_time, end_time))?;
+    let first = least_element(field, &bounds, |element| {
+        let hit = dispatcher.cast_shapes_nonlinear(
+            motion1,
+            element,
+            motion2,
+            other,
+            start_time,
+            end_time,
+            stop_at_penetration,
+        )?;
+        Ok(hit.map(|hit| (hit.time_of_impact, hit)))
+    })?;
+    Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
+}
+
+/// What rounding can have taken from the meeting of two boxes.
+pub(super) fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
+    let size = [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
+    16.0 * Real::EPSILON * size.into_iter().fold(0.0, Real::max)
+}
+
+/// What a box sweeps along `path`, as far as there is something in `root`: the path may be infinite.
+pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
+    let mut swept = *start;
+    for i in 0..3 {
+        if path[i] > 0.0 {
+            swept.maxs[i] = (start.maxs[i] + path[i]).min(root.maxs[i]).max(start.maxs[i]);
+        } else if path[i] < 0.0 {
+            swept.mins[i] = (start.mins[i] + path[i]).max(root.mins[i]).min(start.mins[i]);
+        }
+    }
+    swept
+}
+
+/// A box in the first shape's frame that the second does not leave: in that frame the centre of the ball around it
+/// travels no further than both move and turn it together.
+pub(super) fn reached(
+    motion1: &NonlinearRigidMotion,
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+) -> Result<Aabb, Unsupported> {
+    let (pos1, pos2) = (motion1.position_at_time(start_time), motion2.position_at_time(start_time));
+    let ball = other.compute_local_bounding_sphere();
+    let centre = pos2 * ball.center;
+    let duration = end_time - start_time;
+    let swing = motion2.angvel.length() * (ball.center - motion2.local_center).length();
+    let shift = duration * (motion1.linvel.length() + motion2.linvel.length() + swing);
+    let lever = (centre - pos1 * motion1.local_center).length() + shift;
+    let reach = ball.radius + shift + duration * motion1.angvel.length() * lever;
+    let local = pos1.inverse_transform_point(centre);
+    let rounding = 16.0 * Real::EPSILON * (local.abs().max_element() + lever + reach);
+    let bounds = Aabb::new(local, local).loosened((reach + rounding).max(0.0));
+    if !(bounds.mins.is_finite() && bounds.maxs.is_finite()) {
+        return Err(Unsupported);
+    }
+    Ok(bounds)
+}
+
+/// The first hit of a moving shape on the moving parts of a composite.
+pub(super) fn cast_parts_nonlinear(
+    dispatcher: &impl QueryDispatcher,
+    (motion1, parts): (&NonlinearRigidMotion, &dyn CompositeShape),
+    (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
+    (start_time, end_time): (Real, Real),
+    stop_at_penetration: bool,
+) -> Result<Option<ShapeCastHit>, Unsupported> {
+    // What has no bounds, as a half-space, meets any part.
+    let bounds =
+        reached(motion1, (motion2, other), (start_time, end_time)).unwrap_or(parts.bvh().root_aabb());
+    let mut first: Result<Option<ShapeCastHit>, Unsupported> = Ok(None);
+    for id in parts.bvh().intersect_aabb(&bounds) {
+        parts.map_part_at(id, &mut |place, part, _| {
+            let Ok(so_far) = first else { return };
+            let motion1 = place.map_or(*motion1, |place| motion1.prepend(*place));
+            let end_time = so_far.map_or(end_time, |hit| hit.time_of_impact);
+            first = dispatcher
+                .cast_shapes_nonlinear(
+                    &motion1,
+                    part,
+                    motion2,
+                    other,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )
+                .map(|hit| {
+                    let hit = hit.map(|hit| place.map_or(hit, |place| hit.transform1_by(place)));
+                    let hit = hit.map(|hit| ShapeCastHit { subshape1: id, ..hit });
+                    let is_first = |hit: &ShapeCastHit| {
+                        so_far.is_none_or(|so_far| hit.time_of_impact < so_far.time_of_impact)
+                    };
+                    hit.filter(is_first).or(so_far)
+                });
+        });
+    }
+    first
+}
+
+/// The element in `bounds` that costs least, its id and what else `cost` says of it.
+fn least_element<T>(
+    field: &HeightField,
+    bounds: &Aabb,
+    cost: impl Fn(&Triangle) -> Result<Option<(Real, T)>, Unsupported>,
+) -> Result<Option<(u32, T)>, Unsupported> {
+    let mut best: Result<Option<(Real, u32, T)>, Unsupported> = Ok(None);
+    field.map_elements_in_local_aabb(bounds, &mut |id, element| {
+        if let Ok(so_far) = &best {
+            match cost(element) {
+                Ok(Some((cost, what))) if so_far.as_ref().is_none_or(|so_far| cost < so_far.0) => {
+                    best = Ok(Some((cost, id, what)));
+                }
+                Ok(_) => {}
+                Err(refused) => best = Err(refused),
+            }
+        }
+    });
+    Ok(best?.map(|(_, id, what)| (id, what)))
+}

@@ -1,0 +1,140 @@
+//! A mesh as every engine keeps it.
+
+use super::checks::{check_triangles, check_vertices};
+use super::shared_parts::SharedParts;
+use crate::answer::MeshError;
+use crate::threads::{Lazy, each};
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::TriMesh;
+use std::sync::Arc;
+
+/// Vertices and triangles.
+#[derive(Clone)]
+pub(crate) struct Mesh {
+    vertices: Vec<Vector>,
+    indices: Vec<[u32; 3]>,
+    /// The vertices that triangles use, unless all are used.
+    used: Option<Vec<u32>>,
+    /// For those who ask which triangles are joined, found at the first question.
+    parts: Lazy<Arc<SharedParts>>,
+    /// What they were before the vertices moved.
+    parts_before: Option<Arc<SharedParts>>,
+}
+
+impl Mesh {
+    /// Vertices that one thread goes through at a time.
+    pub(crate) const TASK_SIZE: usize = 1 << 14;
+
+    /// A copy of `mesh`.
+    ///
+    /// # Errors
+    /// As [`from_triangles`](Self::from_triangles).
+    pub(crate) fn new(mesh: &TriMesh) -> Result<Self, MeshError> {
+        Self::from_triangles(mesh.vertices(), mesh.indices())
+    }
+
+    /// A copy of vertices and triangles.
+    ///
+    /// # Errors
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    pub(crate) fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        check_all(vertices)?;
+        check_triangles(triangles, vertices.len())?;
+        Ok(Self::of(vertices.to_vec(), triangles.to_vec()))
+    }
+
+    pub(crate) fn of(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Self {
+        let mut is_used = vec![false; vertices.len()];
+        indices.as_flattened().iter().for_each(|&vertex| is_used[vertex as usize] = true);
+        let used = (!is_used.iter().all(|&is_used| is_used)).then(|| {
+            (0..).zip(&is_used).filter(|(_, is_used)| **is_used).map(|(vertex, _)| vertex).collect()
+        });
+        Self { vertices, indices, used, parts: Lazy::new(), parts_before: None }
+    }
+
+    /// Whether the vertices can move there.
+    ///
+    /// # Errors
+    /// Their number differs, or one is not finite or out of range.
+    pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
+        if vertices.len() != self.vertices.len() {
+            return Err(MeshError::VertexCount { expected: self.vertices.len(), got: vertices.len() });
+        }
+        check_all(vertices)
+    }
+
+    /// Moves the vertices to these places, which were checked.
+    pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
+        let shares = self.vertices.chunks_mut(Mesh::TASK_SIZE).zip(vertices.chunks(Mesh::TASK_SIZE));
+        each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
+        // Whether they stay the same is for those to find out who ask.
+        self.parts_before = self.parts.take().or(self.parts_before.take());
+    }
+
+    pub(crate) fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    pub(crate) fn indices(&self) -> &[[u32; 3]] {
+        &self.indices
+    }
+
+    /// How many triangles there are.
+    pub(crate) fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
+        self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+
+    /// The corners and edges that triangles share.
+    pub(crate) fn parts(&self) -> &SharedParts {
+        self.parts.get_or_build(|| {
+            let before = self.parts_before.as_ref().filter(|before| before.stay(&self.vertices));
+            before.map_or_else(|| Arc::new(SharedParts::new(&self.vertices, &self.indices)), Arc::clone)
+        })
+    }
+
+    /// For each edge of a triangle the third corner of another that has it; not a number where there is none.
+    pub(crate) fn corners_across(&self, triangle: u32) -> [Vector; 3] {
+        [3, 4, 5].map(|edge| {
+            let across = self.parts().across(triangle, edge);
+            across.map_or(Vector::NAN, |(other, corner)| self.corners(other)[corner])
+        })
+    }
+
+    /// The corners of the box around all triangles. Vertices that no triangle uses do not count: exported meshes have
+    /// some anywhere.
+    pub(crate) fn bounds(&self) -> [Vector; 2] {
+        match &self.used {
+            None => box_around(&self.vertices, |&point| point),
+            Some(used) => box_around(used, |&vertex| self.vertices[vertex as usize]),
+        }
+    }
+}
+
+/// [`check_vertices`], on all cores.
+fn check_all(vertices: &[Vector]) -> Result<(), MeshError> {
+    let mut shares: Vec<_> = vertices.chunks(Mesh::TASK_SIZE).map(|share| (share, true)).collect();
+    each(&mut shares, |_, (share, is_right)| *is_right = check_vertices(share).is_ok());
+    // The error names the vertex by its place among all.
+    if shares.iter().all(|(_, is_right)| *is_right) { Ok(()) } else { check_vertices(vertices) }
+}
+
+/// The corners of the box around the points of all items.
+fn box_around<T: Sync>(items: &[T], point: impl Fn(&T) -> Vector + Sync + Send) -> [Vector; 2] {
+    let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
+    let mut shares: Vec<_> = items.chunks(Mesh::TASK_SIZE).map(|share| (share, nothing)).collect();
+    each(&mut shares, |_, (share, corners)| {
+        *corners =
+            share.iter().map(&point).fold(nothing, |[low, high], point| [low.min(point), high.max(point)]);
+    });
+    let corners = shares.into_iter().map(|(_, corners)| corners);
+    corners.fold(nothing, |[low, high], [other_low, other_high]| [low.min(other_low), high.max(other_high)])
+}

@@ -1,0 +1,223 @@
+//! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on every instruction set.
+
+use super::contact::contact_of;
+use super::coordinates::Pair;
+use super::nearest::Nearest;
+use super::nearest_features::{NearestFeatures, NearestParts, link_feature, triangle_feature};
+use super::nearest_rows::NearestRows;
+use super::pair_lanes::{BATCH, PairLanes, PairRows, Rows, put_pair, store};
+use super::placed_link::PlacedLink;
+use crate::answer::{Contact, LinkProximity};
+use crate::distance::lanes::Pack;
+use crate::distance::{Unfused, dispatch};
+use crate::robot::length;
+use fearless_simd::Level;
+use parry3d_f64::math::{Real, Vector};
+use std::convert::Infallible;
+
+/// What a contact is made of beside its answer: the link and the triangle in the mesh's frame.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedPair {
+    pub ends: [Vector; 2],
+    pub radius: Real,
+    pub flat: [bool; 2],
+    pub corners: [Vector; 3],
+    /// The length of the links before it.
+    pub before: Real,
+}
+
+/// What is computed of several pairs.
+struct ContactRows {
+    /// The fraction, the normal, the depth and the lever.
+    numbers: Rows<8>,
+    /// One bit for each pair, as [`NearestParts`] has them.
+    caps: [u64; 2],
+    corners: [u64; 3],
+    edges: [u64; 3],
+    has_normal: u64,
+    needs_closer_look: u64,
+    nearest: NearestRows,
+}
+
+impl PlacedPair {
+    /// The link, ready to be measured.
+    pub(crate) fn link(&self) -> PlacedLink {
+        let [start, end] = self.ends;
+        PlacedLink::between(start, end, self.radius, self.flat)
+    }
+}
+
+/// Adds the contacts of `answers`, each at the place that `place` gives.
+pub(crate) fn add_contacts(
+    level: Level,
+    answers: &[LinkProximity],
+    mut place: impl FnMut(&LinkProximity) -> PlacedPair,
+    out: &mut Vec<Contact>,
+) {
+    let place = |answer: &LinkProximity| Ok::<_, Infallible>(place(answer));
+    let add = try_add_contacts(level, answers, place, |_, _, _| Ok(()), out);
+    add.unwrap_or_else(|never| match never {});
+}
+
+/// The same where `place` may have none, and `check` may refuse an answer beside what is measured there.
+///
+/// # Errors
+/// The first that either gives. Contacts of some answers before it stand in `out`.
+pub(crate) fn try_add_contacts<E>(
+    level: Level,
+    answers: &[LinkProximity],
+    mut place: impl FnMut(&LinkProximity) -> Result<PlacedPair, E>,
+    check: impl Fn(&LinkProximity, &PlacedPair, &Nearest) -> Result<(), E>,
+    out: &mut Vec<Contact>,
+) -> Result<(), E> {
+    let mut rows = [[0.0; BATCH]; 18];
+    for answers in answers.chunks(BATCH) {
+        let mut places = [None; BATCH];
+        for (lane, answer) in answers.iter().enumerate() {
+            let PlacedPair { ends, radius, flat, corners, .. } = *places[lane].insert(place(answer)?);
+            put_pair(&mut rows, lane, corners, ends, radius, flat);
+        }
+        let parts = parts_at(level, &rows, answers.len());
+        let with_places = answers.iter().zip(places.iter().flatten());
+        for (lane, (answer, place)) in with_places.clone().enumerate() {
+            check(answer, place, &parts.nearest.nearest(lane, answer.triangle))?;
+        }
+        out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
+            let [start, end] = place.ends;
+            let found = if parts.needs_closer_look >> lane & 1 == 1 {
+                NearestFeatures::of(&place.link(), place.corners)
+            } else {
+                parts.of(lane)
+            };
+            contact_of(answer, length(end - start), place.before, &found)
+        }));
+    }
+    Ok(())
+}
+
+impl ContactRows {
+    fn of(&self, lane: usize) -> NearestFeatures {
+        let number = |row: usize| self.numbers[row][lane];
+        let vector = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
+        let is = |bits: u64| bits >> lane & 1 == 1;
+        let has_normal = is(self.has_normal);
+        NearestFeatures {
+            link: link_feature(self.caps.map(is)),
+            triangle: triangle_feature(self.corners.map(is), self.edges.map(is)),
+            fraction: number(0),
+            normal: has_normal.then(|| vector(1)),
+            depth: number(4),
+            lever: vector(5),
+            kink: false,
+        }
+    }
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn parts_at(level: Level, pairs: &PairRows, count: usize) -> ContactRows {
+    let mut parts = ContactRows {
+        numbers: [[0.0; BATCH]; 8],
+        caps: [0; 2],
+        corners: [0; 3],
+        edges: [0; 3],
+        has_normal: 0,
+        needs_closer_look: 0,
+        nearest: NearestRows::new(),
+    };
+    dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut parts));
+    parts
+}
+
+#[inline(always)]
+fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, parts: &mut ContactRows) {
+    for lane in (0..count).step_by(L::LANES) {
+        let pack = PairLanes::<L>::new(token, pairs, lane);
+        parts.nearest.take(lane, &pack);
+        let PairLanes { pair: Pair { triangle, link, unit, .. }, face, axial, closest, .. } = pack;
+        let found = NearestParts::new(&triangle, &link, &axial, &closest);
+        parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
+        for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {
+            *bits |= L::bits(masks) << lane;
+        }
+        for (bits, masks) in parts.corners.iter_mut().zip(found.corners) {
+            *bits |= L::bits(masks) << lane;
+        }
+        for (bits, masks) in parts.edges.iter_mut().zip(found.edges) {
+            *bits |= L::bits(masks) << lane;
+        }
+        parts.has_normal |= L::bits(found.has_normal) << lane;
+        found.fraction.store(&mut parts.numbers[0][lane..]);
+        store(&mut parts.numbers, 1, lane, found.normal);
+        (found.depth * unit).store(&mut parts.numbers[4][lane..]);
+        store(&mut parts.numbers, 5, lane, found.lever * unit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::{LinkFeature, TriangleFeature};
+    use crate::distance::lanes::tests::levels;
+    use continuum_testing::Random;
+
+    /// A link and a triangle, many of them parallel, level or touching.
+    fn place(random: &mut Random) -> PlacedPair {
+        let (size, level) = (2.0_f64.powi(random.below(41) as i32 - 20), random.below(3) == 0);
+        let mut point = || {
+            let point = random.point();
+            (if level { (point * 3.0).round() / 3.0 } else { point }) * size
+        };
+        let (corners, start, way) = ([point(), point(), point()], point(), point());
+        let radius = size * [0.0, 0.1, 0.5, 2.0][random.below(4) as usize];
+        let flat = [random.below(2) == 0, random.below(2) == 0].map(|flat| flat && way != Vector::ZERO);
+        let before = random.between(0.0, 9.0);
+        PlacedPair { ends: [start, start + way], radius, flat, corners, before }
+    }
+
+    /// Each contact computed with any others, on each instruction set, has the bits it has alone.
+    #[test]
+    fn together_is_alone_bit_for_bit() {
+        let (mut kinks, mut touching, mut at_cap, mut parts) = (0, 0, 0, [0; 3]);
+        for seed in 0..4000 {
+            let random = &mut Random::new(seed);
+            let places: Vec<_> = (0..1 + seed as usize % 19).map(|_| place(random)).collect();
+            let link = |place: &PlacedPair| {
+                let [start, end] = place.ends;
+                PlacedLink::between(start, end, place.radius, place.flat)
+            };
+            let measured = places.iter().enumerate();
+            let answers: Vec<_> = measured
+                .map(|(k, place)| link(place).answer(k, &link(place).measure(0, place.corners)))
+                .collect();
+            let alone = |answer: &LinkProximity| {
+                let place = &places[answer.link as usize];
+                let length = length(place.ends[1] - place.ends[0]);
+                contact_of(answer, length, place.before, &NearestFeatures::of(&link(place), place.corners))
+            };
+            let alone: Vec<_> = answers.iter().map(alone).collect();
+            for level in levels() {
+                let mut together = Vec::new();
+                add_contacts(level, &answers, |answer| places[answer.link as usize], &mut together);
+                // Their text tells -0 from 0.
+                assert_eq!(format!("{together:?}"), format!("{alone:?}"), "{level:?}, {seed}");
+            }
+            for contact in &alone {
+                kinks += usize::from(contact.kink);
+                touching += usize::from(contact.distance <= 0.0);
+                let at_flat = match contact.feature.link {
+                    LinkFeature::StartCap => places[contact.link as usize].flat[0],
+                    LinkFeature::EndCap => places[contact.link as usize].flat[1],
+                    LinkFeature::Side => false,
+                };
+                at_cap += usize::from(contact.distance > 0.0 && at_flat);
+                parts[match contact.feature.triangle {
+                    TriangleFeature::Face => 0,
+                    TriangleFeature::Edge(_) => 1,
+                    TriangleFeature::Vertex(_) => 2,
+                }] += 1;
+            }
+        }
+        let seen = [kinks, touching, at_cap, parts[0], parts[1], parts[2]];
+        assert!(seen.iter().all(|&count| count > 300), "{seen:?}");
+    }
+}

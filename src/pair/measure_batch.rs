@@ -1,0 +1,178 @@
+//! Several triangles against one link in double precision, a pack at a time: the bits are those of
+//! [`PlacedLink::measure`], on every instruction set.
+
+use super::best::Best;
+use super::coordinates::Placed;
+use super::nearest_rows::NearestRows;
+use super::pair_lanes::{BATCH, PairLanes, Rows, put_corners};
+use super::placed_link::PlacedLink;
+use crate::distance::lanes::{Pack, set_bits};
+use crate::distance::{Unfused, dispatch};
+use crate::mesh::Mesh;
+use crate::pair::pair_lanes;
+use fearless_simd::Level;
+use parry3d_f64::math::Real;
+
+/// Fewer are measured one by one: half a pack takes less time than two of them.
+const MIN_FOR_PACK: usize = 2;
+
+/// The corners of up to [`BATCH`] triangles in the mesh's frame, each coordinate in a row of its own.
+type CornerRows = Rows<9>;
+
+impl Best {
+    /// Measures up to [`BATCH`] triangles. True if one of them is the best so far.
+    #[inline(never)] // the same code wherever it is called from
+    pub(crate) fn measure_batch(
+        &mut self,
+        level: Level,
+        link: &PlacedLink,
+        mesh: &Mesh,
+        triangles: &[u32],
+    ) -> bool {
+        if triangles.len() < MIN_FOR_PACK {
+            let measure = |is_best, &triangle| self.measure(link, triangle, mesh.corners(triangle)) | is_best;
+            return triangles.iter().fold(false, measure);
+        }
+        let mut is_best = false;
+        let mut answers = NearestRows::new();
+        let near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
+        for lane in set_bits(near) {
+            // Most that are not farther than the bound are as far, and most of these need no report.
+            if self.is_worse_than(answers.distance(lane), triangles[lane]) {
+                is_best |= self.take(answers.nearest(lane, triangles[lane]));
+            }
+        }
+        is_best
+    }
+}
+
+/// Measures up to [`BATCH`] triangles. Returns which are at most `bound` away, one bit for each.
+#[inline(always)]
+fn measure_pack(
+    level: Level,
+    link: &PlacedLink,
+    mesh: &Mesh,
+    triangles: &[u32],
+    bound: Real,
+    answers: &mut NearestRows,
+) -> u64 {
+    let mut corners = [[0.0; BATCH]; 9];
+    for (lane, &triangle) in triangles.iter().enumerate().take(BATCH) {
+        put_corners(&mut corners, lane, mesh.corners(triangle));
+    }
+    closest_at(narrowed(level, triangles.len()), link, &corners, triangles.len(), bound, answers)
+}
+
+/// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
+pub(super) fn narrowed(
+    level: Level,
+    #[cfg_attr(not(any(target_arch = "x86", target_arch = "x86_64")), expect(unused))] count: usize,
+) -> Level {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if 2 * count <= BATCH
+        && let Some(avx2) = level.as_avx2()
+    {
+        return Level::Avx2(avx2);
+    }
+    level
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn closest_at(
+    level: Level,
+    link: &PlacedLink,
+    corners: &CornerRows,
+    count: usize,
+    bound: Real,
+    answers: &mut NearestRows,
+) -> u64 {
+    dispatch!(level, simd => closest::<Unfused<_>>(simd, link, corners, count, bound, answers))
+}
+
+/// [`PlacedLink::measure`] in lanes, step by step.
+#[inline(always)]
+fn closest<L: Pack<Element = f64>>(
+    token: L::Token,
+    link: &PlacedLink,
+    corners: &CornerRows,
+    count: usize,
+    bound: Real,
+    answers: &mut NearestRows,
+) -> u64 {
+    let (bound, link) = (L::splat(token, bound), Placed::<L>::splat(token, link));
+    let mut near = 0;
+    for lane in (0..count).step_by(L::LANES) {
+        let corners = pair_lanes::corners::<L, 9>(token, corners, lane);
+        let distance = answers.take(lane, &PairLanes::between(&link, corners));
+        near |= L::bits(distance.le(bound)) << lane;
+    }
+    near & ((1 << count) - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::lanes::tests::levels;
+    use crate::robot::{Cap, ModifiedCylinder};
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// Numbers in [-1, 1), many of them on a coarse lattice, where ties and parallels are common.
+    fn numbers(seed: u64) -> impl FnMut(u32) -> f64 {
+        let mut state = seed;
+        move |lattice| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let number = (state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0;
+            if lattice == 0 { (number * 4.0).round() / 4.0 } else { number }
+        }
+    }
+
+    /// Each triangle measured with any others, on each instruction set, has the bits it has alone.
+    #[test]
+    fn together_is_alone_bit_for_bit() {
+        let mut next = numbers(3);
+        let bits = |best: &Best| {
+            let nearest = best.nearest().expect("no bound");
+            let points = [nearest.on_robot, nearest.on_mesh].map(|point| point.to_array().map(f64::to_bits));
+            (nearest.triangle, nearest.distance.to_bits(), points)
+        };
+        let (mut touching, mut discs, mut compared) = (0, 0, 0);
+        for round in 0..3000_u32 {
+            let mut point = |size: f64| Vector::from([0; 3].map(|_| next(round % 5) * size));
+            let size = 2.0_f64.powi(round as i32 % 41 - 20);
+            let (start, way) = (point(1.0), point(size));
+            let radius = size * [0.0, 0.01, 0.3, 3.0][round as usize % 4];
+            let caps = [Cap::Flat, Cap::Round];
+            let caps = [caps[round as usize / 2 % 2], caps[round as usize / 3 % 2]];
+            let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { continue };
+            let link = PlacedLink::new(&link, &Pose::IDENTITY);
+            let corners: Vec<_> = (0..24).map(|_| start + way * 0.5 + point(3.0 * size)).collect();
+            let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + (round + k) % 3]).collect();
+            let mesh = Mesh::of(corners, triangles);
+            for triangle in 0..8 {
+                let mut alone = Best::within(f64::INFINITY);
+                alone.take(link.measure(triangle, mesh.corners(triangle)));
+                touching += usize::from(alone.bound() <= 0.0);
+                discs += usize::from(link.flat() != [false; 2]);
+                for level in levels() {
+                    let mut together = Best::within(f64::INFINITY);
+                    // Of several of itself and one beyond any bound, in a lane that moves.
+                    let others = [triangle; BATCH];
+                    let count = 1 + (round as usize + triangle as usize) % BATCH;
+                    together.measure_batch(level, &link, &mesh, &others[..count]);
+                    assert_eq!(bits(&together), bits(&alone), "{level:?}, round {round}");
+                    compared += 1;
+                }
+            }
+            let mut alone = Best::within(f64::INFINITY);
+            (0..8).for_each(|triangle| {
+                alone.take(link.measure(triangle, mesh.corners(triangle)));
+            });
+            for level in levels() {
+                let mut together = Best::within(f64::INFINITY);
+                together.measure_batch(level, &link, &mesh, &[7, 3, 0, 1, 6, 2, 5, 4]);
+                assert_eq!(bits(&together), bits(&alone), "{level:?}, round {round}");
+            }
+        }
+        assert!(touching > 1000 && discs > 5000 && compared > 20_000, "{touching} {discs} {compared}");
+    }
+}

@@ -1,0 +1,151 @@
+//! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at its middle.
+
+use super::approach_bound::{ApproachBound, check_subdivision};
+use super::relative_motion::RelativeMotion;
+use crate::answer::ProximityError;
+use crate::pieces::{Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound};
+use parry3d_f64::math::Real;
+
+/// What may turn by no more than this beyond what a shape shows, in rad, is decided by the shape.
+const MIN_EXTRA_TURN: Real = 1.0 / 64.0;
+
+/// The margin that is to be kept, and how near to it an answer may stay open.
+#[derive(Clone, Copy)]
+pub(crate) struct MarginQuery {
+    pub margin: Real,
+    pub resolution: Real,
+}
+
+/// What the middle shape of an interval shows.
+pub(crate) struct IntervalResult<F> {
+    /// A place where it is at most the margin away.
+    pub contact: Option<F>,
+    /// Whether that place moves by no more than half of the resolution.
+    pub is_fine: bool,
+    /// Whether a piece is too near to the margin for the resolution.
+    pub is_undecided: bool,
+    /// Whether the shape is above the margin by no more than the resolution.
+    pub is_near: bool,
+    /// Whether it was not looked at to the end, nor is any other shape to be.
+    pub gives_up: bool,
+    /// Why samples do not allow a decision for a piece. A contact elsewhere counts more.
+    pub too_fine: Option<ProximityError>,
+}
+
+impl<F> IntervalResult<F> {
+    /// Nothing, before anything is looked at.
+    pub(super) fn empty() -> Self {
+        let (is_fine, is_undecided, is_near, gives_up) = (false, false, false, false);
+        Self { contact: None, is_fine, is_undecided, is_near, gives_up, too_fine: None }
+    }
+}
+
+/// What moves during an interval, and what its middle shape shows.
+pub(crate) struct IntervalTest<V, F> {
+    pub moving: V,
+    pub approach_bound: ApproachBound,
+    pub wanted: MarginQuery,
+    pub result: IntervalResult<F>,
+}
+
+impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTest<V, D::Upper> {
+    const NEARER_HALF_FIRST: bool = false;
+
+    fn is_done(&self) -> bool {
+        self.moving.is_exhausted()
+    }
+
+    fn body_query(
+        &mut self,
+        tube: &D,
+        part: &P,
+        piece: &D::Piece,
+        outer: &D::Body,
+    ) -> Result<BodyQuery, ProximityError> {
+        self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
+        self.approach_bound.growth = self.moving.extra_turn(part, tube);
+        let (reach, MarginQuery { margin, resolution }) = (self.approach_bound.max_approach(), self.wanted);
+        let is_wide = outer.excess() > 2.0 * reach.max(resolution)
+            && outer.excess() > 0.5 * tube.radius(piece).max(margin);
+        let aim = reach.max(0.5 * resolution);
+        Ok(BodyQuery { bound: self.bound(tube.slack()), is_wide, aim, start: self.moving.seed_triangle() })
+    }
+
+    fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {}
+
+    fn decide(&mut self, tube: &D, near: &BoundedPiece<D, P>) -> Result<RefineAction, ProximityError> {
+        self.moving.record(near);
+        let upper = near.found.upper();
+        if upper <= self.wanted.margin {
+            self.result.contact = Some(*near.found);
+            self.result.is_fine = self.is_fine();
+            self.approach_bound.limit_hold(0.0);
+            self.moving.record_unresolved(near, &self.approach_bound);
+            return Ok(RefineAction::Answered);
+        }
+        let is_time_to_blame = !self.is_fine()
+            && (upper <= self.bound(tube.slack())
+                || near.outer.excess() <= 0.25 * self.approach_bound.max_approach());
+        if is_time_to_blame {
+            self.record_unresolved(tube, near)?;
+            return Ok(RefineAction::Settled);
+        }
+        let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
+        if self.is_fine() && apart <= 0.5 * self.wanted.resolution {
+            self.result.is_undecided = true;
+            return Ok(RefineAction::Settled);
+        }
+        Ok(RefineAction::Halve(0.25 * near.outer.excess()))
+    }
+
+    fn decide_indivisible(&mut self, tube: &D, near: &BoundedPiece<D, P>) -> Result<(), ProximityError> {
+        let (may_open, resolution) = (tube.may_become_round(near.piece), self.wanted.resolution);
+        if self.is_fine() && !may_open && tube.is_entirely_queried(near.piece, near.found) {
+            let stated = tube.uncertainty(near.piece);
+            let possible = near.found.upper() - D::distance(near.nearest) - stated;
+            if let Err(error) = tube.check_resolved(possible, resolution) {
+                self.result.too_fine.get_or_insert(error);
+                (self.result.is_undecided, self.result.is_near) = (true, true);
+                return Ok(());
+            }
+        }
+        let moved = self.approach_bound.max_approach().max(self.approach_bound.cap_change);
+        let is_open_end_decided =
+            moved <= resolution / 128.0 || self.approach_bound.caps_change_too_fast(resolution);
+        if self.is_fine() && (!may_open || is_open_end_decided) {
+            self.result.is_undecided = true;
+            return Ok(());
+        }
+        self.record_unresolved(tube, near)
+    }
+}
+
+impl<V, F> IntervalTest<V, F> {
+    /// What the body of a piece must be farther away than for it to keep the margin all the time.
+    fn bound(&self, slack: Real) -> Real {
+        self.wanted.margin + self.approach_bound.max_approach() + slack
+    }
+
+    /// Whether it moves so little that the shape decides.
+    fn is_fine(&self) -> bool {
+        self.approach_bound.max_approach() <= 0.5 * self.wanted.resolution
+            && self.approach_bound.growth <= MIN_EXTRA_TURN
+    }
+
+    /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.
+    fn record_unresolved<D: Refinable, P>(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+    ) -> Result<(), ProximityError>
+    where
+        V: RelativeMotion<D, P>,
+    {
+        let (speed, MarginQuery { margin, resolution }) = (self.approach_bound.speed, self.wanted);
+        check_subdivision(speed, resolution, || self.moving.fastest_section(near, speed))?;
+        self.result.is_near |= near.found.upper() <= margin + resolution + tube.uncertainty(near.piece);
+        self.approach_bound.limit_hold(D::distance(near.nearest) - margin - tube.slack());
+        self.moving.record_unresolved(near, &self.approach_bound);
+        Ok(())
+    }
+}

@@ -1,0 +1,285 @@
+//! How near a motion comes, between bounds.
+//!
+//! Every shape that is looked at bounds the least clearance from above. A piece whose body is d away in the middle shape of an
+//! interval, and moves at V or slower, is at least d - tau V away in all of it, tau being half of the interval: where that is
+//! not below the least upper bound so far by more than the tolerance, nothing that matters is there. What is left is halved, in
+//! time or along the curve, as for a margin (`motion_search`); the margin is what would still matter, and falls as nearer
+//! shapes are found. The interval that may come nearest is looked at first. So a path of many motions costs little more
+//! than its nearest parts, and those that stay farther away one shape each, or a few.
+//!
+//! **When it ends.** A piece that moves by no more than half of the tolerance in its interval is settled as soon as its body fits it
+//! as closely. Where samples or stated errors leave more open than that, no interval is worth dividing in which the piece
+//! moves less than they leave open.
+
+use super::approach_bound::ApproachBound;
+use super::motion_search::{Interval, MotionSearch};
+use super::moving_tube::{Left, MovingTube};
+use super::pending_piece::PendingPiece;
+use super::progress::MAX_SHAPES;
+use super::relative_motion::RelativeMotion;
+use crate::answer::{MotionClearance, ProximityError};
+use crate::pieces::{
+    BodyQuery, BoundedPiece, BoundingBody, MeshUpperBound, Piece, PlacedTube, RefineAction, RefinePolicy,
+    TubeInMesh, refine,
+};
+use crate::robot::Motion;
+use parry3d_f64::math::Real;
+
+/// After so many pieces none is halved any more in a shape.
+const MAX_PIECES: u32 = 1 << 16;
+
+impl<M: Motion> MotionSearch<'_, M> {
+    /// How near the motion comes, with bounds no farther apart than the tolerance where that can be.
+    pub(crate) fn clearance(&mut self, tolerance: Real) -> Result<MotionClearance, ProximityError> {
+        let nothing = UnresolvedGap { lower: Real::INFINITY, doubt: 0.0 };
+        let mut known = MinimumBounds {
+            tolerance,
+            uncertainty: 0.0,
+            best: None,
+            lower: Real::INFINITY,
+            doubtful: nothing,
+        };
+        self.begin();
+        while let Some(interval) = self.pop_nearest() {
+            if known.is_settled(interval.lower) || self.shapes >= MAX_SHAPES {
+                // The others come no nearer.
+                known.lower = known.lower.min(interval.lower);
+                break;
+            }
+            let t = interval.midpoint();
+            let ((nearest, hold, is_left), pieces) =
+                self.with_middle_shape(&interval, |tube, turn, moving, approach_bound| {
+                    known.seed(tube, t);
+                    turn.begin(tube, known.upper().max(tolerance));
+                    let mut approach = MinimumPolicy::new(moving, approach_bound, &mut known, t, tube);
+                    refine(tube, turn.pieces, &mut approach)?;
+                    if approach.is_done() {
+                        approach.settle(0.0);
+                    }
+                    let is_left =
+                        if approach.is_done() { [true; 2] } else { approach.clear_by_displacement(tube) };
+                    Ok((approach.nearest, approach.approach_bound.hold, is_left))
+                })?;
+            let interval = interval.with_lower_bound(nearest);
+            self.memory.intervals.extend(interval.halves(hold, is_left, &pieces).into_iter().flatten());
+        }
+        known.answer()
+    }
+
+    /// Takes the interval that may come nearest.
+    fn pop_nearest(&mut self) -> Option<Interval> {
+        let intervals = &mut self.memory.intervals;
+        let all = intervals.iter().enumerate();
+        let (place, _) = all.min_by(|a, b| a.1.lower.total_cmp(&b.1.lower))?;
+        intervals.swap_remove_back(place)
+    }
+}
+
+/// What is known of the least clearance.
+struct MinimumBounds {
+    tolerance: Real,
+    /// What stated errors cost in the shapes so far.
+    uncertainty: Real,
+    /// What bounds it from above, and when.
+    best: Option<(MeshUpperBound, Real)>,
+    /// Whatever is settled comes no nearer.
+    lower: Real,
+    /// The part of that where it is not known which way a face stands.
+    doubtful: UnresolvedGap,
+}
+
+/// What is settled although its bounds are farther apart, because more is not known.
+struct UnresolvedGap {
+    lower: Real,
+    /// How much farther.
+    doubt: Real,
+}
+
+impl MinimumBounds {
+    fn upper(&self) -> Real {
+        self.best.map_or(Real::INFINITY, |(found, _)| found.upper)
+    }
+
+    /// Whether what comes no nearer than this does not matter.
+    fn is_settled(&self, lower: Real) -> bool {
+        let wanted = self.upper() - (self.tolerance + self.uncertainty);
+        wanted <= 0.0 || lower >= wanted
+    }
+
+    /// Takes note of a place of the shape at `t`.
+    fn offer(&mut self, found: MeshUpperBound, t: Real) {
+        if found.upper < self.upper() {
+            self.best = Some((found, t));
+        }
+    }
+
+    /// A first look at a shape: where the nearest one so far is nearest.
+    fn seed(&mut self, tube: &mut TubeInMesh, t: Real) {
+        self.uncertainty = self.uncertainty.max(tube.tube.position_uncertainty());
+        let found = match self.best {
+            Some((MeshUpperBound { section, witness, .. }, _)) => {
+                tube.bound_at(section, witness.arc_length, witness.triangle)
+            }
+            None => tube.first_bound(),
+        };
+        self.offer(found, t);
+    }
+
+    fn answer(self) -> Result<MotionClearance, ProximityError> {
+        // Every motion has a shape, and every shape a section.
+        let Some((MeshUpperBound { upper, section, witness }, t)) = self.best else {
+            return Err(ProximityError::EmptyTube);
+        };
+        let lower = self.lower.min(upper).max(0.0);
+        // It matters if nothing else is as near.
+        let matters = self.doubtful.lower < upper - (self.tolerance + self.uncertainty);
+        let uncertainty = self.uncertainty + if matters { self.doubtful.doubt } else { 0.0 };
+        let resolved = upper - lower <= self.tolerance + uncertainty;
+        Ok(MotionClearance { lower, upper, resolved, uncertainty, t, section, witness })
+    }
+}
+
+/// The pieces of the shape at the middle of an interval.
+struct MinimumPolicy<'a, 'b, M> {
+    moving: MovingTube<'a, M>,
+    approach_bound: ApproachBound,
+    known: &'b mut MinimumBounds,
+    t: Real,
+    /// How far apart the bounds of the answer may stay.
+    aim: Real,
+    /// How near the pieces that failed come at least.
+    nearest: Real,
+    /// How many pieces may still be halved.
+    left: u32,
+}
+
+impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
+    fn new(
+        moving: MovingTube<'a, M>,
+        approach_bound: ApproachBound,
+        known: &'b mut MinimumBounds,
+        t: Real,
+        tube: &TubeInMesh,
+    ) -> Self {
+        // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+        let aim = (known.tolerance + known.uncertainty - 4.0 * tube.tube.slack()).max(0.0);
+        Self { moving, approach_bound, known, t, aim, nearest: Real::INFINITY, left: MAX_PIECES }
+    }
+
+    /// What comes nearer than this still matters.
+    fn wanted(&self) -> Real {
+        self.known.upper() - self.aim
+    }
+
+    /// How near a piece comes at least whose body is so far away now.
+    fn at_least(&self, distance: Real, tube: &PlacedTube) -> Real {
+        distance - self.approach_bound.max_approach() - tube.slack()
+    }
+
+    fn settle(&mut self, lower: Real) {
+        self.known.lower = self.known.lower.min(lower);
+    }
+
+    /// Asks by courses which of the failed pieces come no nearer than `wanted`, and settles these
+    /// at that. A piece failed beside a `wanted` of its own, which has fallen since if a nearer
+    /// shape was found.
+    fn clear_by_displacement(&mut self, tube: &mut TubeInMesh) -> [bool; 2] {
+        let wanted = self.wanted();
+        let Left { sides, is_any_settled } = self.moving.clear_by_displacement(tube, wanted);
+        if is_any_settled {
+            self.settle(wanted);
+        }
+        sides
+    }
+
+    /// Takes note of a piece that has to be looked at at other times.
+    fn record_unresolved(&mut self, near: &BoundedPiece<TubeInMesh, PendingPiece>, tube: &PlacedTube) {
+        let wanted = self.wanted();
+        self.nearest = self.nearest.min(self.at_least(near.nearest.distance, tube));
+        // As long as it is still, it comes no nearer than that.
+        self.settle(wanted);
+        self.approach_bound.limit_hold(near.nearest.distance - wanted - tube.slack());
+        self.moving.record_unresolved(near, &self.approach_bound);
+    }
+}
+
+impl<'m, M: Motion> RefinePolicy<TubeInMesh<'m>, PendingPiece> for MinimumPolicy<'_, '_, M> {
+    const NEARER_HALF_FIRST: bool = true;
+
+    /// Nothing below 0 is left to be found.
+    fn is_done(&self) -> bool {
+        self.wanted() < 0.0
+    }
+
+    fn body_query(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        part: &PendingPiece,
+        piece: &Piece,
+        outer: &BoundingBody,
+    ) -> Result<BodyQuery, ProximityError> {
+        self.left = self.left.saturating_sub(1);
+        self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
+        let (reach, upper) = (self.approach_bound.max_approach(), self.known.upper());
+        let is_wide = self.left > 0
+            && outer.excess > 2.0 * self.aim.max(reach)
+            && (outer.is_flat() || outer.excess > 0.25 * upper);
+        let bound = self.wanted() + reach + tube.tube.slack();
+        Ok(BodyQuery { bound, is_wide, aim: self.aim.max(reach), start: *self.moving.last })
+    }
+
+    fn on_cleared(&mut self, _: &Piece, _: &BoundingBody, _: Real) {
+        self.settle(self.wanted());
+    }
+
+    fn decide(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
+    ) -> Result<RefineAction, ProximityError> {
+        *self.moving.last = Some(near.nearest.triangle);
+        self.known.offer(*near.found, self.t);
+        if self.is_done() {
+            return Ok(RefineAction::Answered);
+        }
+        let (lower, wanted) = (self.at_least(near.nearest.distance, &tube.tube), self.wanted());
+        if lower >= wanted || self.left == 0 {
+            self.settle(lower);
+            return Ok(RefineAction::Settled);
+        }
+        let (reach, doubt) =
+            (self.approach_bound.max_approach(), tube.tube.direction_uncertainty(near.piece));
+        if doubt > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - doubt {
+            let UnresolvedGap { lower: least, doubt: most } = self.known.doubtful;
+            self.known.doubtful = UnresolvedGap { lower: least.min(lower), doubt: most.max(doubt) };
+            self.settle(lower);
+            return Ok(RefineAction::Settled);
+        }
+        if reach > 0.25 * self.aim
+            && (near.found.upper <= wanted + reach || near.outer.excess <= 0.25 * reach)
+        {
+            self.record_unresolved(near, &tube.tube);
+            return Ok(RefineAction::Settled);
+        }
+        Ok(RefineAction::Halve(self.aim.max(0.25 * near.outer.excess)))
+    }
+
+    fn decide_indivisible(
+        &mut self,
+        tube: &TubeInMesh<'m>,
+        near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
+    ) -> Result<(), ProximityError> {
+        let reach = self.approach_bound.max_approach();
+        let is_fine = if tube.tube.may_become_round(near.piece) {
+            reach.max(self.approach_bound.cap_change) <= self.aim / 128.0
+        } else {
+            reach <= (0.25 * self.aim).max(near.found.upper - near.nearest.distance)
+        };
+        if is_fine {
+            self.settle(self.at_least(near.nearest.distance, &tube.tube));
+        } else {
+            self.record_unresolved(near, &tube.tube);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,32 @@
+//! What waits for its turn: a piece of the robot, whatever its shape.
+
+use crate::pieces::{Piece, PlacedTube, TubeInMesh, WorkItem};
+use parry3d_f64::math::Real;
+
+/// What is between two shares of a section.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PendingPiece {
+    pub section: u32,
+    pub shares: [Real; 2],
+    /// Whether it is left before and after the middle shape in which it failed.
+    pub is_left: [bool; 2],
+}
+
+impl PendingPiece {
+    /// What a piece of a shape is in any shape.
+    pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
+        Self { section: piece.section, shares: tube.shares(piece), is_left: [true; 2] }
+    }
+}
+
+impl WorkItem<TubeInMesh<'_>> for PendingPiece {
+    fn piece(&self, tube: &TubeInMesh) -> Piece {
+        tube.tube.between(self.section, self.shares)
+    }
+
+    fn halves(self, tube: &TubeInMesh, halves: [Piece; 2]) -> [Self; 2] {
+        let [_, between] = tube.tube.shares(&halves[0]);
+        let [from, to] = self.shares;
+        [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
+    }
+}

@@ -1,0 +1,179 @@
+//! Where a link is, and how far from there any of its points can be when it has moved.
+
+use crate::distance::Scalar;
+use crate::pair::PlacedRobot;
+use crate::robot::{LinkNode, length};
+use parry3d_f64::math::{Real, Vector};
+
+/// What rounding can do to two distances and to what is between them, for coordinates of size one: 16 u of the extent, which
+/// is at most two, for each distance, and 8 u for the ends of each link and their differences.
+pub(crate) const ROUNDING: Real = 128.0 * f64::EPSILON;
+
+/// A link in the mesh's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedOutline {
+    pub(super) ends: [Vector; 2],
+    pub(super) radius: Real,
+    pub(super) flat: [bool; 2],
+}
+
+/// A link where it was, from which its motion is counted.
+#[derive(Clone, Copy)]
+pub(crate) struct ReferenceOutline {
+    link: PlacedOutline,
+    /// A power of two that brings lengths to one, and its inverse.
+    scale: Real,
+    unit: Real,
+    /// The inverse of twice the axis' length, where a cap is flat.
+    per_length: Real,
+}
+
+impl PlacedOutline {
+    pub(crate) fn of(robot: PlacedRobot, link: usize) -> Self {
+        Self::of_node(robot, &LinkNode::Leaf(link))
+    }
+
+    /// The capsule around all links, or the only link.
+    pub(crate) fn around_all(robot: PlacedRobot) -> Self {
+        Self::of_node(robot, &robot.link_tree()[0])
+    }
+
+    fn of_node(robot: PlacedRobot, node: &LinkNode) -> Self {
+        let (ends, radius, flat) = robot.outline(node);
+        Self { ends, radius, flat }
+    }
+
+    /// The robot as one link from its base to its tip, with the radius and the caps of its last one.
+    pub(crate) fn of_whole(robot: PlacedRobot) -> Self {
+        let tip = &robot.links()[robot.links().len() - 1];
+        Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
+    }
+
+    /// All links from the tip to the base, each end placed once where two share it.
+    pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = Self> {
+        let mut shared: Option<(Vector, Vector)> = None;
+        robot.links().iter().rev().map(move |link| {
+            let end = match shared {
+                Some((point, placed)) if point == link.end() => placed,
+                _ => robot.placed(link.end()),
+            };
+            let start = robot.placed(link.start());
+            shared = Some((link.start(), start));
+            Self { ends: [start, end], radius: link.radius(), flat: link.flat() }
+        })
+    }
+
+    /// The largest coordinate.
+    pub(crate) fn extent(&self) -> Real {
+        self.ends[0].abs().max(self.ends[1].abs()).max_element() + self.radius
+    }
+
+    /// How long it is, with its radius at both ends.
+    pub(crate) fn size(&self) -> Real {
+        length(self.along()) + 2.0 * self.radius
+    }
+
+    pub(super) fn along(&self) -> Vector {
+        self.ends[1] - self.ends[0]
+    }
+}
+
+impl ReferenceOutline {
+    /// `reach` is the largest coordinate of the mesh.
+    pub(crate) fn new(link: PlacedOutline, reach: Real) -> Self {
+        let scale = (reach + link.extent()).power_of_two_to_unity();
+        let per_length = if link.flat == [false; 2] { 0.0 } else { 0.5 / (length(link.along()) * scale) };
+        Self { link, scale, unit: 1.0 / scale, per_length }
+    }
+
+    /// How far a point of the link, as it is `now`, can be from all points of it as it was. Not a number where that can't be
+    /// told.
+    ///
+    /// No point of an axis moves farther than the farther of its ends; the ball around it moves along; and where a flat cap
+    /// makes it a disc, that turns with the axis, by at most r |a' - a| at its rim, which is at most
+    /// 2 r |d' - d| / (|d'| + |d|) for the ways d and d' from start to end (Dunkl and Williams, 1964). With
+    /// x = |d' - d| / (2 |d|) and |d'| >= |d| - |d' - d| that is 2 r x / (1 - x) or less, and so 2 r x (1 + 2 x) or less up
+    /// to x = 1/2, where it is 2 r: more it never is. A radius that has grown adds its growth.
+    ///
+    /// Rounding: d and d' err by u of them, and so x by less than 3 u up to 1/2: 18 u r, for which the extent has room.
+    /// Squares vanish where what is measured is below 2^-537 of the extent and the mesh; a flat cap's radius is less than
+    /// 2^400 lengths of its axis, so that 2^-136 of them is lost.
+    #[inline(always)] // where links are looked at one after another
+    pub(crate) fn moved_to(&self, now: &PlacedOutline) -> Real {
+        let then = &self.link;
+        if now.flat != then.flat {
+            return Real::NAN;
+        }
+        let squared = |way: Vector| (way * self.scale).length_squared();
+        let [start, end] = [squared(now.ends[0] - then.ends[0]), squared(now.ends[1] - then.ends[1])];
+        let grown = (now.radius - then.radius).max(0.0);
+        let turned = if now.flat == [false; 2] {
+            0.0
+        } else {
+            let x = squared(now.along() - then.along()).sqrt() * self.per_length;
+            // Where it is not a number the cap has turned no more than halfway round either.
+            let x = if x < 0.5 { x } else { 0.5 };
+            2.0 * now.radius * (x * (1.0 + 2.0 * x))
+        };
+        start.max(end).sqrt() * self.unit + turned + grown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::{Vec3, point_modified_cylinder};
+    use continuum_testing::Random;
+
+    /// A point of a link on its rims, or on the half balls at its ends where they are round.
+    fn extreme(random: &mut Random, link: &PlacedOutline) -> Vector {
+        let (end, direction) = (random.below(2) as usize, random.direction());
+        let outward = link.along().normalize() * [-1.0, 1.0][end];
+        let ahead = direction.dot(outward);
+        let flat = (direction - outward * ahead).normalize();
+        let out = if link.flat[end] { flat } else { direction * ahead.signum() };
+        link.ends[end] + out * link.radius
+    }
+
+    /// No point of a link that has moved is farther from where the link was than this says, in any unit, and some are nearly as
+    /// far.
+    #[test]
+    fn no_point_has_moved_farther_than_told() {
+        let (mut nearly, mut turned, mut jumps) = (0, 0, 0);
+        for seed in 0..20_000_u64 {
+            let random = &mut Random::new(seed);
+            let size = [1.0, 2.0_f64.powi(-460), 2.0_f64.powi(300)][seed as usize % 3];
+            let flat = [0; 2].map(|_| random.below(2) == 0);
+            let (start, way) =
+                (random.point(), random.direction() * 10.0_f64.powf(random.between(-2.0, 0.5)));
+            let radius = 10.0_f64.powf(random.between(-2.0, 0.5));
+            let step = 10.0_f64.powf(random.between(-4.0, 0.5));
+            let (shift, turn) = match random.below(3) {
+                0 => (Vector::ZERO, random.direction()),
+                1 => (random.direction(), Vector::ZERO),
+                _ => (random.point(), random.point()),
+            };
+            let grown = if random.below(3) == 0 { random.between(-0.5, 0.5) * radius } else { 0.0 };
+            let link = |from: Vector, way: Vector, radius: Real| PlacedOutline {
+                ends: [from * size, (from + way) * size],
+                radius: radius * size,
+                flat,
+            };
+            let then = link(start, way, radius);
+            let now = link(start + shift * step, way + turn * (step * way.length()), radius + grown);
+            let told = ReferenceOutline::new(then, 4.0 * size).moved_to(&now);
+            let [from, to] = then.ends.map(Vec3::from);
+            let farthest = (0..40).map(|_| {
+                let point = Vec3::from(extreme(random, &now));
+                point_modified_cylinder(point, from, to, then.radius, flat).distance
+            });
+            let farthest = farthest.fold(0.0, Real::max);
+            assert!(farthest <= told + 1e-12 * size, "seed {seed}: {farthest:e} of {told:e}");
+            nearly += u32::from(farthest > 0.9 * told);
+            turned +=
+                u32::from(shift == Vector::ZERO && radius > 3.0 * way.length() && farthest > 0.6 * told);
+            jumps += u32::from((now.along() - then.along()).length() > way.length() * size);
+        }
+        assert!(nearly > 1000 && turned > 300 && jumps > 1000, "{nearly} {turned} {jumps}");
+    }
+}

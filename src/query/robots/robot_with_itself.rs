@@ -1,0 +1,387 @@
+//! A robot and itself: which of its parts can come to be near one another, and how near they are.
+//!
+//! Neighbouring links touch, and those around a bend are near for no other reason. So the question is about pairs of places
+//! that are a local minimum of the distance: two places that come no nearer when either moves along the robot. Three kinds
+//! of pairs are asked for, and no margin decides which.
+//!
+//! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two links, at which the
+//! distance of the axes is a local minimum, and v the unit vector from x to y. The part of the centreline from x to y and
+//! the way back along the chord are a closed polygon. Its exterior angles sum up to at least 2 pi (Fenchel; equality for
+//! plane convex polygons). At x the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
+//! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and t is at most pi / 2. The
+//! same holds at y, at a joint, where it holds of the direction on the way to y, and at the robot's ends. So the joints
+//! between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi. Where the axes meet there is one corner, of at most pi,
+//! and the same is left. The distance of two barrels is that of their axes less both radii.
+//!
+//! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip, or the wider side of a
+//! step in radius; c is its centre, n its normal, out of the robot. The shortest way leaves it at a point c + a e along v,
+//! where e is perpendicular to n, a >= 0, and v lies between n and e: at the angle alpha from n. It ends, prolonged by the
+//! other link's radius, at a place y of an axis, which it meets at a right angle as above. Close the polygon by the chord
+//! from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with alpha <= beta <= pi / 2. At y it
+//! has turned by beta - alpha, which adds so much to pi / 2. At c the centreline goes on along n, or comes from where n
+//! points away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no
+//! more than 3/2 pi, which leaves pi / 2 for the joints.
+//!
+//! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like
+//! a face. Of a link alone the place nearest to y may be its end for no other reason than that the
+//! robot is thinner beyond: going on along the centreline is no descent then, so that the corner at
+//! c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
+//! the joints. At a round base or tip the centreline does not go on, and the first rule has it.
+//!
+//! **Two faces that look at one another**, at any turn: the end of a link and the start of a later
+//! one. (Of other faces one is at the end of its link towards which the other's way leads anyway,
+//! so that the turn of pi / 2 is left.)
+//!
+//! The turn only spares work. Whether a face counts beside a link, or another face,
+//! `pair::JoinedLink` decides. It decides of two links with a turn of pi as well, if they are
+//! nearest at a face of one.
+//!
+//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two
+//! links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near
+//! whom, and the robot is refused.
+//!
+//! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`]
+//! of it, which is what the ball around a face is asked for first: it is smaller than the face's
+//! link, and so known better than what is measured.
+//!
+//! **Work.** [`Descent`] looks at the pairs with a turn of pi, [`OwnFaces`] at all others. If faces
+//! refuse [`MOST_REFUSED`] pairs of the former, nothing bounds the search, and [`OwnFaces`] looks
+//! at all pairs: it knows where the robot leads.
+//!
+//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is
+//! compared instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2
+//! and the sine |a - b| / 2; half of the turn up to a link is the product of as many complex numbers, and half of that
+//! between two links the quotient of two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their
+//! products over n joints by less than 20 n u of length, with the roundings of the products; a cosine of a quotient errs by
+//! twice that and 3 u. [`TurnSums`] asks for cosines up to 128 n u above the one that counts.
+
+use super::descent::{Descent, PairLimit, measure_pair};
+use super::own_faces::{Band, OwnFaces, faces};
+use crate::answer::{ProximityError, RobotProximity};
+use crate::distance::Scalar;
+use crate::pair::{JoinedLink, NearestOfLinks, PlacedLink, PlacedRobot};
+use crate::robot::{Chain, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real, Vector};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// Beyond so many pairs that were measured for nothing, the nodes of [`OwnFaces`] are cheaper.
+const MOST_REFUSED: usize = 64;
+
+/// What one query leaves for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SelfMemory {
+    descent: Descent,
+    turns: TurnSums,
+    faces: OwnFaces,
+    /// The links that were nearest.
+    nearest: Option<[usize; 2]>,
+}
+
+impl SelfMemory {
+    pub fn forget(&mut self) {
+        self.nearest = None;
+    }
+
+    #[cfg(test)]
+    pub(super) fn faces(&self) -> &OwnFaces {
+        &self.faces
+    }
+}
+
+/// How far a chain's centreline turns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TurnSums {
+    /// Half of what the joints up to each link turn by, together: its cosine and its sine.
+    before: Vec<[Real; 2]>,
+    slack: Real,
+    /// Of each link the first one behind a turn of at least pi that shares no joint with it; beyond the last if none is.
+    pub queried_from: Vec<usize>,
+    /// The same of a turn of at least pi / 2.
+    pub quarter_from: Vec<usize>,
+    /// The direction of each link.
+    pub directions: Vec<Vector>,
+}
+
+impl TurnSums {
+    /// # Errors
+    /// A joint is too sharp.
+    fn measure(&mut self, links: &[ModifiedCylinder]) -> Result<(), ProximityError> {
+        self.before.clear();
+        let of_link = |link: &ModifiedCylinder| {
+            let (length, axis) = link.length_and_axis();
+            (axis, length, link.radius())
+        };
+        let (mut last, mut turned) = (of_link(&links[0]), [1.0, 0.0]);
+        self.before.push(turned);
+        self.directions.clear();
+        self.directions.push(last.0);
+        for (joint, link) in links[1..].iter().enumerate() {
+            let next = of_link(link);
+            // Of half of the joint's angle.
+            let (cosine, sine) = (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
+            let (length, radius) = (next.1.min(last.1), next.2.max(last.2));
+            // Of a link that comes back along the one before, rounding leaves no cosine.
+            let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
+            if 2.0 * radius * sine > length * cosine || is_folded {
+                let angle = 2.0 * libm::atan2(sine, cosine);
+                return Err(ProximityError::JointTooSharp { joint: joint + 1, angle, radius, length });
+            }
+            let [real, imaginary] = turned;
+            turned = [real * cosine - imaginary * sine, real * sine + imaginary * cosine];
+            self.before.push(turned);
+            self.directions.push(next.0);
+            last = next;
+        }
+        self.slack = 128.0 * links.len() as Real * Real::UNIT_ROUNDOFF;
+        let (mut half, mut quarter) =
+            (std::mem::take(&mut self.queried_from), std::mem::take(&mut self.quarter_from));
+        self.find_queried(0.0, &mut half);
+        self.find_queried(FRAC_1_SQRT_2, &mut quarter);
+        (self.queried_from, self.quarter_from) = (half, quarter);
+        Ok(())
+    }
+
+    /// Finds from which link on each is asked for, at a turn of which half has this cosine: no
+    /// earlier than for the link before.
+    ///
+    /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less than pi, from here or from
+    /// the link before, and one joint more; or that of two joints. A joint turns by less than pi.
+    fn find_queried(&self, half_cosine: Real, queried_from: &mut Vec<usize>) {
+        queried_from.clear();
+        let mut from = 0;
+        for link in 0..self.before.len() {
+            from = from.max(link + 2);
+            while from < self.before.len() && !self.reach(half_cosine, link, from) {
+                from += 1;
+            }
+            queried_from.push(from);
+        }
+    }
+
+    /// Whether two links, the second after the first, have a turn of at least an angle between them, as far as rounding tells:
+    /// one whose half has this cosine. They have no more than 2 pi between them.
+    fn reach(&self, half_cosine: Real, first: usize, second: usize) -> bool {
+        let ([c1, s1], [c2, s2]) = (self.before[first], self.before[second]);
+        c1 * c2 + s1 * s2 <= half_cosine + self.slack
+    }
+}
+
+/// A robot in its own frame, and what can come to be near within it.
+pub(crate) struct RobotWithItself<'a> {
+    robot: PlacedRobot<'a>,
+}
+
+impl<'a> RobotWithItself<'a> {
+    /// # Errors
+    /// A joint is too sharp.
+    pub fn new(robot: &'a Chain, memory: &mut SelfMemory) -> Result<Self, ProximityError> {
+        let robot = PlacedRobot::new(robot, &Pose::IDENTITY)?;
+        memory.turns.measure(robot.links())?;
+        Ok(Self { robot })
+    }
+
+    /// The nearest of all pairs that count.
+    pub fn minimum(&self, memory: &mut SelfMemory) -> Option<RobotProximity> {
+        let SelfMemory { descent, turns, faces, nearest } = memory;
+        let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
+        let remembered =
+            remembered.filter(|&links| turns.queried_from[links[0]] <= links[1] && self.counts(links));
+        let mut best = remembered.map(|links| measure_pair([&self.robot; 2], links));
+        let mut refused = 0;
+        descent.run([&self.robot; 2], PairLimit::at_best(&best), queried_from(turns), |found| {
+            if self.counts(found.links.map(|link| link as usize)) {
+                return PairLimit::at(best.insert(found));
+            }
+            refused += 1;
+            if refused < MOST_REFUSED { PairLimit::at_best(&best) } else { PairLimit::NOTHING }
+        });
+        // Last, since faces cost most: what is near already spares most of them.
+        let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
+        let bound = best.map_or(Real::INFINITY, |best| best.distance);
+        self.beside_faces(turns, faces, band, bound, |found| {
+            let links = found.links.map(|link| link as usize);
+            if PairLimit::at_best(&best).admits(found.distance, links) {
+                best = Some(found);
+            }
+            best.map(|best| best.distance)
+        });
+        *nearest = best.map(|best| best.links.map(|link| link as usize));
+        best
+    }
+
+    /// Whether all pairs that count are farther apart than `margin`.
+    pub fn clears(&self, margin: Real, memory: &mut SelfMemory) -> bool {
+        let SelfMemory { descent, turns, faces, .. } = memory;
+        let (mut is_clear, mut refused) = (true, 0);
+        descent.run([&self.robot; 2], PairLimit::of(margin), queried_from(turns), |found| {
+            is_clear = !self.counts(found.links.map(|link| link as usize));
+            refused += usize::from(is_clear);
+            if is_clear && refused < MOST_REFUSED { PairLimit::of(margin) } else { PairLimit::NOTHING }
+        });
+        let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
+        let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
+        is_clear && self.beside_faces(turns, faces, band, margin, keep)
+    }
+
+    /// Whether two links with a turn of pi between them count.
+    fn counts(&self, links: [usize; 2]) -> bool {
+        let has_face = |link: &usize| faces(&self.robot, *link) != [false; 2];
+        if !links.iter().any(has_face) {
+            return true;
+        }
+        let [one, two] = links.map(|link| self.joined(link));
+        one.counts_beside(&two, one.tolerance(&two))
+    }
+
+    /// A link and its neighbours.
+    fn joined(&self, link: usize) -> JoinedLink {
+        let last = self.robot.links().len() - 1;
+        let before = link.checked_sub(1).map(|before| self.robot.link(before));
+        let behind = (link < last).then(|| self.robot.link(link + 1));
+        JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
+    }
+
+    /// Shows `keep` what counts beside faces, at most `bound` away, as long as it returns what is
+    /// the bound from then on.
+    /// Returns whether it always did.
+    fn beside_faces(
+        &self,
+        turns: &TurnSums,
+        faces: &mut OwnFaces,
+        band: Band,
+        bound: Real,
+        mut keep: impl FnMut(RobotProximity) -> Option<Real>,
+    ) -> bool {
+        if !faces.begin(&self.robot, turns) {
+            return true;
+        }
+        let mut now = bound;
+        faces.run(&self.robot, turns, band, bound, |links, [in_band, look]| {
+            let joined = links.map(|link| self.joined(link));
+            let [one, two] = &joined;
+            let tolerance = one.tolerance(two);
+            if look && one.is_face(1) && two.is_face(0) {
+                let may = one.face_gap(1, two, 0) <= now + tolerance.0
+                    && one.ball(1).may_be_within(now + tolerance.0, &two.ball(0));
+                if may {
+                    let nearest = one.face_to_face(1, two, 0);
+                    if one.faces_count(1, two, 0, &nearest, tolerance) {
+                        now = keep(nearest.answer(links, [&one.link, &two.link]))?;
+                    }
+                }
+            }
+            if !in_band || links[1] < turns.quarter_from[links[0]] {
+                return Some(now);
+            }
+            if links[1] >= turns.queried_from[links[0]] {
+                if band == Band::All
+                    && let Some(nearest) = one.link.measure_link_within(now, &two.link)
+                    && self.counts(links)
+                {
+                    now = keep(nearest.answer(links, [&one.link, &two.link]))?;
+                }
+                return Some(now);
+            }
+            for (on_face, other) in [(0, 1), (1, 0)] {
+                let [face, beside] = [&joined[on_face], &joined[other]];
+                for end in [0, 1] {
+                    // The ball around a face holds it, and spares most others.
+                    if !face.is_face(end) || !face.ball(end).may_be_within(now + tolerance.0, &beside.link) {
+                        continue;
+                    }
+                    let nearest = face.face_to_link(end, &beside.link);
+                    if face.face_counts(end, beside, &nearest, tolerance) {
+                        let places = [links[on_face], links[other]];
+                        now = keep(in_order(places, [&face.link, &beside.link], &nearest))?;
+                    }
+                }
+            }
+            Some(now)
+        })
+    }
+}
+
+/// From which link on each is asked for.
+fn queried_from(turns: &TurnSums) -> impl Fn(usize) -> usize {
+    |link| turns.queried_from[link]
+}
+
+/// The answer with the lower link first.
+fn in_order(links: [usize; 2], placed: [&PlacedLink; 2], nearest: &NearestOfLinks) -> RobotProximity {
+    if links[0] < links[1] {
+        return nearest.answer(links, placed);
+    }
+    nearest.swapped().answer([links[1], links[0]], [placed[1], placed[0]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use continuum_testing::Random;
+    use std::f64::consts::PI;
+
+    fn turns(points: &[Vector]) -> TurnSums {
+        let robot = Chain::with_constant_radius(points, 0.0).expect("points that differ");
+        let mut turns = TurnSums::default();
+        turns.measure(robot.links()).expect("no joint of a thin robot is too sharp");
+        turns
+    }
+
+    /// What an even polygon reaches at half a turn, rounded to either side, is asked for; and what it does not reach is not.
+    #[test]
+    fn half_a_turn_of_a_polygon_is_asked_for() {
+        for (corners, scale) in [(4, 1.0), (6, 1e-150), (20, 3.0), (360, 1e150), (2000, 0.1)] {
+            let corner = |k: i32| {
+                let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(corners)).sin_cos();
+                Vector::new(cos, sin * 0.6, sin * 0.8) * scale
+            };
+            let points: Vec<_> = (0..3 * corners).map(corner).collect();
+            let turns = turns(&points);
+            let half = corners as usize / 2;
+            for link in 0..points.len() - 1 {
+                assert_eq!(
+                    turns.queried_from[link],
+                    (link + half).min(points.len() - 1).max(link + 2),
+                    "{corners}"
+                );
+                let from = link + (corners as usize).div_ceil(4).max(2);
+                assert_eq!(turns.quarter_from[link], from.min(points.len() - 1).max(link + 2), "{corners}");
+            }
+        }
+    }
+
+    #[test]
+    fn turns_are_sums_of_angles() {
+        let mut random = Random::new(6);
+        let (mut asked, mut sharp) = (0, 0);
+        for round in 0..2000 {
+            // From nearly straight to nearly folded.
+            let bend = [0.05, 0.5, 3.0, 50.0][round % 4];
+            let mut way = random.direction();
+            let mut points = vec![random.point()];
+            for _ in 0..3 + random.below(40) {
+                way = (way + random.point() * bend).normalize();
+                way = if random.below(8) == 0 { -way } else { way };
+                points.push(points[points.len() - 1] + way * random.between(0.1, 1.0));
+            }
+            let ways: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).normalize()).collect();
+            let angle = |pair: &[Vector]| libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]));
+            let angles: Vec<_> = ways.windows(2).map(angle).collect();
+            if angles.iter().any(|&angle| angle > PI - 1e-6) {
+                continue;
+            }
+            sharp += usize::from(angles.iter().any(|&angle| angle > 3.0));
+            let turns = turns(&points);
+            for link in 0..ways.len() {
+                let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= PI;
+                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                assert_eq!(turns.queried_from[link], expected, "round {round}");
+                asked += usize::from(expected < ways.len());
+                let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= 0.5 * PI;
+                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                assert_eq!(turns.quarter_from[link], expected, "round {round}");
+            }
+        }
+        assert!(asked > 5000 && sharp > 100, "{asked} {sharp}");
+    }
+}

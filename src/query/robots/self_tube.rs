@@ -1,0 +1,44 @@
+//! The questions about a tube beside itself: whether it keeps a margin to itself.
+
+use crate::answer::{Decision, ProximityError};
+use crate::pieces::{PairUpperBound, PendingPieces, SelfPair, SelfPairQueue, TubeWithItself};
+use crate::query::clearance::{Wanted, clears_pieces};
+use crate::robot::{Tube, TubeTurns};
+use parry3d_f64::math::Real;
+
+/// What one query leaves for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SelfTubeMemory {
+    turns: TubeTurns,
+    beginning: SelfPairQueue,
+    pairs: Vec<SelfPair>,
+    pending: PendingPieces<SelfPair, SelfPair, PairUpperBound>,
+}
+
+/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no answer worse.
+///
+/// # Errors
+/// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
+pub(crate) fn self_clears_tube(
+    tube: &Tube,
+    memory: &mut SelfTubeMemory,
+    margin: Real,
+    resolution: Real,
+) -> Result<Decision, ProximityError> {
+    let SelfTubeMemory { turns, beginning, pairs, pending } = memory;
+    tube.measure_turns(turns)?;
+    let own = TubeWithItself::new(tube, turns)?;
+    let wanted = Wanted { margin, resolution, start: None };
+    let mut clears = |mut own: TubeWithItself| -> Result<Decision, ProximityError> {
+        own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
+        let (decision, _) = clears_pieces(&mut own, pending, pairs.drain(..), None, wanted)?;
+        Ok(decision)
+    };
+    match own.less_known() {
+        Some(less_known) => {
+            let decision = clears(less_known);
+            Decision::better_of(decision, || clears(own))
+        }
+        None => clears(own),
+    }
+}

@@ -1,0 +1,231 @@
+//! What a robot is known to keep from each structure while it moves, without a look at the structure.
+//!
+//! A robot that once kept a distance keeps what is left of it when it has moved on: the [`Odometer`] counts the way once for all
+//! structures. So a structure is looked at again when the robot may have reached it, and not before.
+//!
+//! Rounding. The way is counted in the scene's frame, distances are measured in a mesh's. Let M be the largest coordinate of
+//! robot and structure in the scene, radius and translations included. A link is placed with an error of 74 u M in the scene, as in
+//! [`PlacedRobot`]. In the mesh's frame it is placed by the product of two poses: its rotation errs by less than 24 u and its
+//! length by as much, which moves points of the size 2 M by less than 170 u M; the rotated point, the rotated translation and that
+//! of the inverse err by 70 u M, 35 u M and 35 u M, and sums by 11 u M. So the two places of an axis' end are less than 400 u M
+//! apart. A distance errs by 16 u of an extent below 4 M, and what is subtracted here by 4 u of it. All of that is less than
+//! 1024 u M, with a flat cap's rim [accounted for](Odometer::error_from_ends); 2048 u M are taken off when a distance is noted, for what it
+//! was measured with then, and again when it is asked for, for what it would be measured with now.
+//!
+//! Where coordinates are so large that a place in a mesh's frame could be out of range nothing is known, so that it is looked at.
+
+use crate::distance::Scalar;
+use crate::pair::PlacedRobot;
+use crate::query::nearest::{Odometer, PlacedOutline};
+use crate::robot::COORDINATE_LIMIT;
+use parry3d_f64::math::Real;
+
+/// A look is to speak for so many steps of the robot.
+const STEPS: Real = 8.0;
+
+/// What one robot keeps from the structures of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DistanceCache {
+    odometer: Odometer,
+    structures: Vec<CachedDistance>,
+    /// How much farther than asked a look is to go, so that it speaks for the next questions too; nothing where it would not.
+    room: Option<Real>,
+}
+
+/// What it keeps from one of them.
+#[derive(Clone, Copy, Debug)]
+struct CachedDistance {
+    /// The reading of the odometer at which the robot may have reached it.
+    reached_at: Real,
+    /// Whether the robot was near of late, so that a look would tell nothing.
+    is_near: bool,
+}
+
+impl CachedDistance {
+    const UNKNOWN: Self = Self { reached_at: Real::NEG_INFINITY, is_near: false };
+}
+
+impl DistanceCache {
+    /// A question begins, with the robot here, among so many structures.
+    pub fn begin(&mut self, robot: PlacedRobot, structures: usize) {
+        if !self.odometer.advance(robot) {
+            self.structures.clear();
+        }
+        self.structures.resize(structures, CachedDistance::UNKNOWN);
+        let room = STEPS * self.odometer.last_step();
+        // For a robot that jumps nothing would be far enough, and one that rests is answered by the engines' memory.
+        self.room = (0.0 < room && room < PlacedOutline::around_all(robot).size()).then_some(room);
+    }
+
+    /// Forgets what the robot keeps from a structure that has moved.
+    pub fn forget(&mut self, structure: usize) {
+        if let Some(watched) = self.structures.get_mut(structure) {
+            *watched = CachedDistance::UNKNOWN;
+        }
+    }
+
+    /// How much farther than asked a look is to go, so that it speaks for the next questions too.
+    pub fn look_ahead(&self) -> Option<Real> {
+        self.room
+    }
+
+    /// Whether a look at a structure is likely to tell more than that the robot is near. After one that did not, or an answer that
+    /// the robot is near, the next is left out.
+    pub fn is_worth_a_query(&mut self, structure: usize) -> bool {
+        !std::mem::take(&mut self.structures[structure].is_near)
+    }
+
+    /// Notes that the robot is near a structure.
+    pub fn mark_near(&mut self, structure: usize) {
+        self.structures[structure].is_near = true;
+    }
+
+    /// Notes that the robot keeps `apart` or more from a structure of this `size`: the largest coordinate of its mesh and its pose.
+    pub fn record(&mut self, structure: usize, apart: Real, size: Real) {
+        let at = (apart - self.rounding(size) + self.odometer.reading()).next_down();
+        let CachedDistance { reached_at, .. } = &mut self.structures[structure];
+        *reached_at = reached_at.max(at);
+    }
+
+    /// What the robot keeps from a structure of this `size` at least.
+    pub fn lower_bound(&self, structure: usize, size: Real) -> Real {
+        let left = self.structures[structure].reached_at - self.odometer.reading();
+        left.next_down() - self.rounding(size)
+    }
+
+    fn rounding(&self, size: Real) -> Real {
+        let largest = self.odometer.extent() + size;
+        if largest < COORDINATE_LIMIT / 16.0 {
+            self.odometer.error_from_ends(2048.0 * Real::UNIT_ROUNDOFF * largest)
+        } else {
+            Real::INFINITY
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{BvhSearch, Proximity};
+    use crate::robot::Chain;
+    use crate::scene::structure::Structure;
+    use continuum_testing::Random;
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// What makes a robot approach the wall z = 0.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Way {
+        Whole,
+        Start,
+        End,
+        Radius,
+        /// The rim of a thin disc that turns.
+        Rim,
+        /// All of these a little, and back again.
+        Any,
+        /// Others take its place: with other caps, or more links.
+        Swaps,
+    }
+
+    const WAYS: [Way; 7] = [Way::Whole, Way::Start, Way::End, Way::Radius, Way::Rim, Way::Any, Way::Swaps];
+
+    struct Robot {
+        points: [Vector; 3],
+        radius: Real,
+        local: Pose,
+        model: usize,
+        links: usize,
+    }
+
+    impl Robot {
+        fn new(random: &mut Random, way: Way) -> Self {
+            let (low, slanted) = (random.between(2.0, 3.0), random.direction());
+            let flat = Vector::new(slanted.x, slanted.y, 0.0);
+            let thin = [0.02, 1e-4][random.below(2) as usize];
+            let (points, radius) = match way {
+                Way::Rim => ([low, low + thin, low + 2.0 * thin].map(|z| Vector::Z * z), 1.0),
+                Way::Start => ([Vector::Z * low, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * 5.0], 0.3),
+                Way::End => ([Vector::Z * 5.0, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * low], 0.3),
+                _ => ([Vector::Z * low + flat, Vector::Z * low, Vector::Z * (low + 1.0)], 0.3),
+            };
+            let model = if way == Way::Rim { 1 } else { random.below(2) as usize };
+            Self { points, radius, local: Pose::IDENTITY, model, links: 2 }
+        }
+
+        fn walk(&mut self, random: &mut Random, way: Way, step: Real) {
+            match way {
+                Way::Whole => self.local.translation.z -= step,
+                Way::Start => self.points[0].z -= step,
+                Way::End => self.points[2].z -= step,
+                Way::Radius => self.radius += step,
+                Way::Rim => {
+                    let about = Pose::from_translation(self.points[1]);
+                    let turn = Pose::rotation(Vector::X * step);
+                    self.local = self.local * about * turn * about.inverse();
+                }
+                Way::Any => {
+                    let way = WAYS[random.below(5) as usize];
+                    let share = [1.0, -0.5][random.below(2) as usize];
+                    self.walk(random, way, step * share);
+                }
+                Way::Swaps => match random.below(8) {
+                    0 => self.model = 1 - self.model,
+                    1 => self.links = 3 - self.links,
+                    2 => self.points.reverse(),
+                    _ => self.local.translation.z += step * random.between(-1.0, 1.0),
+                },
+            }
+        }
+
+        fn chain(&self, size: Real) -> Chain {
+            let points: Vec<_> = self.points[2 - self.links..].iter().map(|&point| point * size).collect();
+            let make = [Chain::capsules, Chain::cylinders][self.model];
+            make(&points, &vec![self.radius * size; self.links]).unwrap()
+        }
+    }
+
+    /// No robot is nearer to a wall than is told, wherever both are and in any unit, and where it heads for the wall with what is
+    /// nearest it is told next to nothing less.
+    #[test]
+    fn no_robot_is_nearer_than_told() {
+        let (mut told, mut sharp) = ([0_u32; 7], [0_u32; 7]);
+        for seed in 0..1400 {
+            let (random, kind) = (&mut Random::new(seed), seed as usize % WAYS.len());
+            let size = [1.0, 2.0_f64.powi(-300), 2.0_f64.powi(300)][random.below(3) as usize];
+            let wall = [[-99.0, -99.0, 0.0], [99.0, -99.0, 0.0], [0.0, 99.0, 0.0]];
+            let wall = wall.map(|corner| Vector::from_array(corner) * size);
+            let search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]]).unwrap();
+            let mut structure = Structure::new(String::new(), search, None);
+            let far = [1.0, 1e5][random.below(2) as usize];
+            let mut pose = random.pose(far);
+            pose.translation *= size;
+            structure.set_pose(&pose).unwrap();
+
+            let (way, step) = (WAYS[kind], 10.0_f64.powf(random.between(-4.0, -1.7)));
+            let (mut robot, mut watch, mut noted) = (Robot::new(random, way), DistanceCache::default(), None);
+            for question in 0..40 {
+                robot.walk(random, way, step);
+                let mut local = robot.local;
+                local.translation *= size;
+                let (chain, at) = (robot.chain(size), pose * local);
+                watch.begin(PlacedRobot::new(&chain, &at).unwrap(), 1);
+                let mut fresh = structure.search.clone();
+                let distance = fresh.minimum(&chain, &structure.in_mesh(&at)).unwrap().distance;
+                let keeps = watch.lower_bound(0, structure.size());
+                assert!(keeps <= distance, "seed {seed}, {way:?}: {keeps:e} of {distance:e}");
+                if let Some(noted) = noted
+                    && keeps > 0.0
+                {
+                    told[kind] += 1;
+                    sharp[kind] += u32::from(distance - keeps < 0.1 * (noted - distance));
+                }
+                if question % 10 == 1 {
+                    watch.record(0, distance, structure.size());
+                    noted = Some(distance);
+                }
+            }
+        }
+        assert!(told.iter().all(|&told| told > 1000), "{told:?}");
+        assert!(sharp[..5].iter().all(|&sharp| sharp > 1000), "{sharp:?}");
+    }
+}
